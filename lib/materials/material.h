@@ -52,11 +52,11 @@ struct Target {
   const char* what;    // for people: what the file is and who reads it
   // The file for a fitted paint. Error: the paint has no lobes.
   Result<Material> (*material)(const paint::Paint& paint, const Naming& naming);
-  const char* companion = nullptr;  // ending of a second file beside the first, with the dot
+  const char* companion = nullptr;  // ending of a second file beside the first, behind the name without an ending
   std::size_t at_once = 16;         // files to make and hold side by side; large ones are fewer
 };
 extern const Target kRgl, kRglSpectral, kMaterialX, kGltf, kUsd, kStandardSurface, kOpenPbr, kOpenPbrUsd, kMdl,
-    kRadiance;
+    kRadiance, kEnterprise, kOpenMaterial;
 
 // All targets, in the order in which help names them.
 std::span<const Target* const> targets();

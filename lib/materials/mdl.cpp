@@ -14,19 +14,18 @@
 #include "brdf/measured.h"
 #include "materials/internal/documents.h"
 #include "materials/internal/shown.h"
+#include "materials/internal/widened_mirror.h"
 
 namespace goniochrome::materials {
 
 namespace {
 
 constexpr std::size_t kTheta = 90, kPhi = 180;  // cells of 1 deg
-// Lobes sharper than this are narrower than the grid resolves: the mirror gets their light.
-constexpr double kSharpestExponent = 1000;
 
 // The mirror of the coat, with what sharp lobes reflect, as a share of Fresnel's reflectance.
 double mirror_weight(const paint::LobeFit& lobes) {
   paint::LobeFit sharp = lobes;
-  std::erase_if(sharp.lobes, [](const paint::Lobe& lobe) { return lobe.exponent < kSharpestExponent; });
+  std::erase_if(sharp.lobes, [](const paint::Lobe& lobe) { return lobe.exponent < kSharpestInCells; });
   const CoatGloss gloss = coat_gloss(sharp);
   return std::min(gloss.mirror + gloss.satin, 1.0);
 }
@@ -35,7 +34,7 @@ double mirror_weight(const paint::LobeFit& lobes) {
 paint::LobeFit without_mirror(paint::LobeFit lobes) {
   const auto clear = [](std::vector<paint::Lobe>& all) {
     for (paint::Lobe& lobe : all)
-      if (lobe.exponent >= kSharpestExponent) lobe.gloss = {};
+      if (lobe.exponent >= kSharpestInCells) lobe.gloss = {};
   };
   clear(lobes.lobes);
   for (paint::ViewLobes& view : lobes.views) clear(view.lobes);

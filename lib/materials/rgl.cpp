@@ -18,6 +18,7 @@
 #include "brdf/lobe_model.h"
 #include "brdf/measured.h"
 #include "materials/internal/ggx.h"
+#include "materials/internal/seen_paint.h"
 #include "materials/internal/shown.h"
 #include "materials/internal/widened_mirror.h"
 #include "math/cosine_power.h"
@@ -48,116 +49,9 @@ double view_rad(std::size_t k) {
   return (k < kEven ? 3.75 * static_cast<double>(k) : kGrazing_deg[k - kEven]) * kDegree;
 }
 
-// A direction below the horizon, raised to it; others stay.
-Vec3 raised(const Vec3& light) {
-  constexpr double kLowest = 1e-3;
-  if (light.z >= kLowest) return light;
-  const double across = std::hypot(light.x, light.y), level = std::sqrt(1 - kLowest * kLowest);
-  if (across < 1e-9) return {level, 0, kLowest};  // straight down
-  return {light.x * level / across, light.y * level / across, kLowest};
-}
-
 double luminance(const color::Rgb& rgb) {
   return color::xyz_d65_from_rgb(rgb).Y;
 }
-
-// A paint seen from one angle, whose values are f cos(theta_light) with the widened mirror: in Rec.709, or in bands.
-template <std::size_t kChannels>
-class SeenPaint {
- public:
-  using Values = std::array<double, kChannels>;
-
-  SeenPaint(double coat_index, double view_rad)
-      : coat_index_(coat_index), view_(direction(view_rad, 0)), mirror_scale_(1 / (4 * mirror_area(view_.z))) {}
-  virtual ~SeenPaint() = default;
-  const Vec3& view() const { return view_; }
-
-  // Below the horizon what stands just above it goes on, so that the cells there interpolate well.
-  Values operator()(Vec3 light, const Vec3& half, double half_rad) const {
-    light = raised(light);
-    const double fresnel =
-        brdf::fresnel_dielectric(std::clamp(dot(view_, half), 0.0, 1.0), brdf::mirror_index(coat_index_));
-    return values(light, mirror_scale_ * fresnel * mirror_peak(half_rad));
-  }
-
- protected:
-  // `mirror` is what a mirror of weight 1 shows.
-  virtual Values values(const Vec3& light, double mirror) const = 0;
-
- private:
-  double coat_index_;
-  Vec3 view_;
-  double mirror_scale_;
-};
-
-class SeenRgb final : public SeenPaint<3> {
- public:
-  static constexpr std::array<double, 3> kLuminance = {0.2126, 0.7152, 0.0722};  // of Rec.709
-
-  SeenRgb(const paint::LobeFit& lobes, double view_rad) : SeenPaint(lobes.coat_index, view_rad), lobes_(lobes) {
-    for (const paint::Lobe& lobe : brdf::at_view(lobes, view_rad / kDegree).lobes)
-      if (lobe.is_mirror()) mirror_ = lobe.gloss;
-  }
-
- private:
-  Values values(const Vec3& light, double mirror) const override {
-    const color::Rgb rgb =
-        color::rec709_from_rec2020(light.z * brdf::coated_brdf(lobes_, light, view(), {0, 0, 1}) + mirror * mirror_);
-    return {rgb.x, rgb.y, rgb.z};
-  }
-
-  const paint::LobeFit& lobes_;
-  color::Rgb mirror_;
-};
-
-class SeenBands final : public SeenPaint<color::kBands> {
- public:
-  SeenBands(const paint::BandLobes& lobes, double view_rad)
-      : SeenPaint(lobes.coat_index, view_rad), lobes_(lobes), weights_(weights_at(lobes, view_rad / kDegree)) {}
-
- private:
-  // Linear between two views, and constant beyond the ends.
-  static paint::BandWeights weights_at(const paint::BandLobes& lobes, double view_deg) {
-    const auto above = std::ranges::upper_bound(lobes.views, view_deg, {}, &paint::BandWeights::view_deg);
-    if (above == lobes.views.begin()) return lobes.views.front();
-    if (above == lobes.views.end()) return lobes.views.back();
-    const paint::BandWeights &low = above[-1], &high = above[0];
-    const double share = (view_deg - low.view_deg) / (high.view_deg - low.view_deg);
-    paint::BandWeights mixed = low;
-    const auto mix = [share](color::Bands& a, const color::Bands& b) {
-      for (std::size_t k = 0; k < a.size(); ++k) a[k] = std::lerp(a[k], b[k], share);
-    };
-    mix(mixed.diffuse, high.diffuse);
-    mix(mixed.mirror, high.mirror);
-    for (std::size_t e = 0; e < lobes.exponents.size(); ++e) {
-      mix(mixed.directional_diffuse[e], high.directional_diffuse[e]);
-      mix(mixed.gloss[e], high.gloss[e]);
-    }
-    return mixed;
-  }
-
-  // f cos(theta_light) = cos T T (K_D + sum K_DD cos^E) + F(theta_h)/F(45) sum K_G cos^E, band by band.
-  Values values(const Vec3& light, double mirror) const override {
-    const double base = light.z * brdf::coat_passages(lobes_.coat_index, std::min(light.z, 1.0), view().z);
-    const double gloss = brdf::coat_fresnel(half_cosine(light, view()));
-    const double log_cos = math::log_cosine(paint::aspecular_angle_rad(light, view(), {0, 0, 1}));
-    Values sum{};
-    const auto add = [&sum](double scale, const color::Bands& weights) {
-      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += scale * weights[k];
-    };
-    add(base, weights_.diffuse);
-    add(mirror, weights_.mirror);
-    for (std::size_t e = 0; e < lobes_.exponents.size(); ++e) {
-      const double power = math::power_of_cosine(log_cos, lobes_.exponents[e]);
-      add(base * power, weights_.directional_diffuse[e]);
-      add(gloss * power, weights_.gloss[e]);
-    }
-    return sum;
-  }
-
-  const paint::BandLobes& lobes_;
-  paint::BandWeights weights_;
-};
 
 // What the tables are shaped by: a paint as a diffuse ground and lobes, in luminance.
 struct Shapes {

@@ -51,8 +51,8 @@ assert min(shares)[0] > 0.98
 PY
 }
 
-# A reflectance of 0.8 from 600 nm on and of 0.2 below, at 45as45, on a matt paint.
-@test "a spectral table has the spectrum of the paint, and a paint without one is told so" {
+# red_paint: matt.xml, a reflectance of 0.8 from 600 nm on and of 0.2 below, at 45as45, on a matt paint.
+red_paint() {
   spectrum=$(for nm in $(seq 400 10 700); do [ "$nm" -ge 600 ] && echo 0.8 || echo 0.2; done | tr '\n' ' ')
   cat >red.xml <<XML
 <?xml version="1.0"?><paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="red">
@@ -62,6 +62,10 @@ XML
   echo '<basis xmlns="urn:goniochrome:basis:1" name="matt"><exponent>1</exponent></basis>' >matt.basis.xml
   paint-convert -q --illuminant D65 --observer 2 red.xml -o lit.xml
   fit-paint -q --basis matt.basis.xml --coat none lit.xml -o matt.xml
+}
+
+@test "a spectral table has the spectrum of the paint, and a paint without one is told so" {
+  red_paint
   paint-export --to rgl-spectral matt.xml -o red.bsdf --report r.json
   jq -e '.results.paints[0].de00_mean < 0.3' r.json
   /usr/bin/python3 -c 'import numpy' 2>/dev/null || skip "python3-numpy is not there"
@@ -143,6 +147,13 @@ PY
   jq -e '.extensionsUsed | index("KHR_materials_iridescence") | not' jet_black.gltf
 }
 
+@test "the parameters of the Enterprise PBR Shading Model read back as told" {
+  read_back enterprise dspbr.gltf
+  jq -e '.materials[0] | .name == "candy_red" and .extras.shading_model == "Enterprise PBR Shading Model 2022x"' candy_red.dspbr.gltf
+  # An index of refraction is at least 1, and a tint at most 1.
+  jq -es 'all(.[].materials[0].extensions; .KHR_materials_ior.ior >= 1 and (.KHR_materials_specular.specularColorFactor | max <= 1))' ./*.dspbr.gltf
+}
+
 @test "the parameters of UsdPreviewSurface read back as told" {
   read_back usda usda
 }
@@ -151,6 +162,40 @@ PY
   read_back radiance xml
   awk '{ sum += $2 } $2 > 0.5 { exit 1 } END { exit !(sum / NR <= 0.3) }' both
   xmllint --noout --huge ./*.xml
+}
+
+@test "a table of OpenMATERIAL has the spectrum of the paint, reads back as told, and names its second file" {
+  /usr/bin/python3 -c 'import numpy' 2>/dev/null || skip "python3-numpy is not there"
+  red_paint
+  paint-export -q --to openmaterial matt.xml -o 'my-{name}' --report r.json
+  jq -e '.results.paints[0] | .companion == "my-red_brdf.xompt" and .de00_mean < 0.3' r.json
+  /usr/bin/python3 - "$readers" <<'PY'
+import sys
+sys.dont_write_bytecode = True
+sys.path.insert(0, sys.argv[1])
+import numpy
+import openmaterial
+nm = openmaterial.table("my-red.xomp")[0]
+f = openmaterial.bands("my-red.xomp", numpy.array([(-0.5 ** 0.5, 0, 0.5 ** 0.5)]), numpy.array([(0.0, 0, 1)]))[0]
+print(numpy.pi * f)
+assert abs(numpy.pi * f - numpy.where(nm >= 6e-7, 0.8, 0.2)).max() < 0.01
+PY
+  # A gray metallic paint needs no spectrum.
+  sed 's/name="red"/name="gray"/; s/a="40" b="30"/a="0" b="0"/; /<spectrum/s/.*<.measurement>/<\/measurement>/' red.xml |
+    sed 's|</measurement>|<lab geometry="45as15" L="110" a="0" b="0"/><lab geometry="45as110" L="30" a="0" b="0"/>&|' >gray.xml
+  fit-paint -q -b "$TESTDATA/b7.basis.xml" gray.xml -o gray.fit.xml
+  paint-export -q --to openmaterial gray.fit.xml -o '{name}.xomp' --report r.json
+  read -r mean worst < <(/usr/bin/python3 "$readers/compare.py" gray.fit.xml gray gray.xomp)
+  jq -e --argjson mean "$mean" --argjson worst "$worst" \
+    '.results.paints[0] | (.de00_mean - $mean | fabs) < 0.05 and (.de00_max - $worst | fabs) < 0.1 and .de00_mean < 0.3' r.json
+  # The same paint has the same identity, and another one another.
+  [ "$(jq -r .metadata.uuid gray.xomp)" = "$(jq -r .metadata.uuid gray_brdf.xompt)" ]
+  [ "$(jq -r .metadata.uuid gray.xomp)" != "$(jq -r .metadata.uuid my-red.xomp)" ]
+  run --separate-stderr paint-export -q --to openmaterial "$fitted#candy_red" -o x
+  [ "$status" -eq 3 ]
+  [[ "$stderr" = *'"candy_red": '*spectr* ]]
+  run paint-export -q --to openmaterial gray.fit.xml -o -
+  [ "$status" -eq 2 ]
 }
 
 @test "the library of Radiance reads the tree, in color" {
@@ -291,6 +336,7 @@ PY
   [ -d "$node/node_modules/gltf-validator" ] || { mkdir -p "$node" && (cd "$node" && timeout 120 npm install --silent gltf-validator) >/dev/null 2>&1; } ||
     skip "npm cannot install the package gltf-validator"
   paint-export -q --to gltf "$fitted" >/dev/null
+  paint-export -q --to enterprise "$fitted" >/dev/null
   NODE_PATH=$node/node_modules node -e '
     const validator = require("gltf-validator"), fs = require("fs");
     Promise.all(process.argv.slice(1).map(async path => {

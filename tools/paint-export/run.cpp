@@ -131,7 +131,7 @@ class Run {
 
   // The second file stands beside the first, under the same name with an ending of its own.
   std::string companion_of(const std::string& file) const {
-    return std::filesystem::path(file).replace_extension(target_.companion).string();
+    return std::filesystem::path(file).replace_extension().string() + target_.companion;
   }
 
   void leave_out(const Error& error) {
@@ -170,7 +170,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   const materials::Target& target = target_of(options.to);
   if (options.output == "-" && target.companion)
     return usage_error("--output -: a material for {} has two files: give a pattern such as '{{name}}'", target.name);
-  if (target.companion && std::filesystem::path(options.output).extension() == target.companion)
+  if (target.companion && options.output.ends_with(target.companion))
     return usage_error("--output {}: {} is the ending of the second file, which stands beside the first one",
                        options.output, target.companion);
   session.explain(fmt::format("target {}: {}\nleft out: flakes, color maps and anisotropy, which it has no place for\n",

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/angles.h"
+#include "base/paths.h"
 #include "base/text.h"
 #include "formats/basis.h"
 #include "formats/reference.h"
@@ -48,7 +49,7 @@ std::string path_beside(const std::string& file, const std::string& name) {
 
 // Whether somebody may have meant kGlass, and no file.
 bool is_like_glass(const std::string& file) {
-  return edit_distance(lower(file), kGlass) <= 2 && !std::filesystem::exists(file);
+  return edit_distance(lower(file), kGlass) <= 2 && !is_there(file);
 }
 
 // Glass in the place of a paint.

@@ -55,29 +55,65 @@ FacetAlbedo facet_albedo(double alpha, double cosine) {
   return sum;
 }
 
-// The table is even in the square root of alpha, which is what most models call roughness, and in the cosine.
+namespace {
+
+// The tables are even in the square root of alpha, which is what most models call roughness, and in the cosine.
+constexpr std::size_t kAlphas = 33, kCosines = 49;
+
+// The cell of an even table that holds a share of 0 to 1 of its length, and the place in it.
+struct Place {
+  std::size_t cell;
+  double share;
+};
+Place place_of(double x, std::size_t nodes) {
+  const double at = std::clamp(x, 0.0, 1.0) * static_cast<double>(nodes - 1);
+  const std::size_t cell = std::min(static_cast<std::size_t>(at), nodes - 2);
+  return {cell, at - static_cast<double>(cell)};
+}
+
+FacetAlbedo mixed(const FacetAlbedo& a, const FacetAlbedo& b, double share) {
+  return {std::lerp(a.all, b.all, share), std::lerp(a.grazing, b.grazing, share)};
+}
+
+double root_at(std::size_t i) {
+  return static_cast<double>(i) / (kAlphas - 1);
+}
+
+}  // namespace
+
 FacetAlbedo quick_facet_albedo(double alpha, double cosine) {
-  constexpr std::size_t kAlphas = 33, kCosines = 49;
   static const std::vector<FacetAlbedo> table = [] {
     std::vector<FacetAlbedo> all;
     for (std::size_t i = 0; i < kAlphas; ++i)
-      for (std::size_t j = 0; j < kCosines; ++j) {
-        const double root = static_cast<double>(i) / (kAlphas - 1);
-        all.push_back(facet_albedo(root * root, static_cast<double>(j) / (kCosines - 1)));
-      }
+      for (std::size_t j = 0; j < kCosines; ++j)
+        all.push_back(facet_albedo(root_at(i) * root_at(i), static_cast<double>(j) / (kCosines - 1)));
     return all;
   }();
-  const double x = std::sqrt(std::clamp(alpha, 0.0, 1.0)) * (kAlphas - 1);
-  const double y = std::clamp(cosine, 0.0, 1.0) * (kCosines - 1);
-  const std::size_t i = std::min(static_cast<std::size_t>(x), kAlphas - 2);
-  const std::size_t j = std::min(static_cast<std::size_t>(y), kCosines - 2);
-  const double s = x - static_cast<double>(i), t = y - static_cast<double>(j);
-  const auto mixed = [&](double FacetAlbedo::*part) {
-    const auto at = [&](std::size_t k) { return table[k].*part; };
-    const std::size_t k = i * kCosines + j;
-    return std::lerp(std::lerp(at(k), at(k + 1), t), std::lerp(at(k + kCosines), at(k + kCosines + 1), t), s);
+  const Place row = place_of(std::sqrt(std::max(alpha, 0.0)), kAlphas), column = place_of(cosine, kCosines);
+  const auto along = [&](std::size_t i) {
+    const std::size_t k = i * kCosines + column.cell;
+    return mixed(table[k], table[k + 1], column.share);
   };
-  return {mixed(&FacetAlbedo::all), mixed(&FacetAlbedo::grazing)};
+  return mixed(along(row.cell), along(row.cell + 1), row.share);
+}
+
+FacetAlbedo quick_facet_average(double alpha) {
+  static const std::vector<FacetAlbedo> table = [] {
+    constexpr int kSteps = 96;
+    std::vector<FacetAlbedo> all;
+    for (std::size_t i = 0; i < kAlphas; ++i) {
+      FacetAlbedo sum{0, 0};
+      for (int j = 0; j < kSteps; ++j) {
+        const double cosine = (j + 0.5) / kSteps;
+        const FacetAlbedo albedo = facet_albedo(root_at(i) * root_at(i), cosine);
+        sum.all += albedo.all * 2 * cosine / kSteps, sum.grazing += albedo.grazing * 2 * cosine / kSteps;
+      }
+      all.push_back(sum);
+    }
+    return all;
+  }();
+  const Place row = place_of(std::sqrt(std::max(alpha, 0.0)), kAlphas);
+  return mixed(table[row.cell], table[row.cell + 1], row.share);
 }
 
 }  // namespace goniochrome::materials

@@ -39,6 +39,19 @@ TEST(Ggx, TheTableIsNearTheSum) {
     }
 }
 
+TEST(Ggx, TheMeanIsThatOfAllViewers) {
+  for (double alpha = 0.003; alpha < 1; alpha *= 1.7) {
+    FacetAlbedo sum{0, 0};
+    for (int j = 0; j < 500; ++j) {
+      const double cosine = (j + 0.5) / 500;
+      const FacetAlbedo albedo = facet_albedo(alpha, cosine);
+      sum.all += albedo.all * cosine / 250, sum.grazing += albedo.grazing * cosine / 250;
+    }
+    EXPECT_NEAR(quick_facet_average(alpha).all, sum.all, 5e-3) << alpha;
+    EXPECT_NEAR(quick_facet_average(alpha).grazing, sum.grazing, 5e-3) << alpha;
+  }
+}
+
 TEST(Ggx, IsReciprocal) {
   const Vec3 a = direction(0.3, 0.2), b = direction(1.1, 2.5);
   EXPECT_DOUBLE_EQ(ggx(0.3, a, b), ggx(0.3, b, a));

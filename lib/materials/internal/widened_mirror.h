@@ -14,4 +14,7 @@ double mirror_peak(double half_rad);
 // more near grazing. A mirror that reflects F shows F mirror_peak / (4 mirror_area), in f cos(theta_light).
 double mirror_area(double cosine);
 
+// Lobes of that exponent and more are narrower than the cells of a table at even angles: the mirror gets their light.
+inline constexpr double kSharpestInCells = 1000;
+
 }  // namespace goniochrome::materials

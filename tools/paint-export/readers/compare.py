@@ -2,8 +2,8 @@
 
   compare.py PAINTS.xml NAME FILE        prints the mean and the largest CIEDE2000 difference over the 17 geometries
 
-The ending of FILE chooses the reader: rgl.py, mdl.py, materialx.py, gltf.py,
-usd.py or radiance.py beside this script.
+The ending of FILE chooses the reader: rgl.py, mdl.py, materialx.py, enterprise.py, gltf.py, usd.py, radiance.py or
+openmaterial.py beside this script.
 """
 
 import importlib
@@ -18,7 +18,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts"))
 from shared.colors import de2000, lab
 
 SPACE = "{urn:goniochrome:paint:1}"
-READERS = {".bsdf": "rgl", ".mdl": "mdl", ".mtlx": "materialx", ".gltf": "gltf", ".usda": "usd", ".xml": "radiance"}
+READERS = {".bsdf": "rgl", ".mdl": "mdl", ".mtlx": "materialx", ".dspbr.gltf": "enterprise", ".gltf": "gltf", ".usda": "usd", ".xml": "radiance", ".xomp": "openmaterial"}
 XYZ_FROM_REC2020 = numpy.array(((0.636958, 0.144617, 0.168881), (0.262700, 0.677998, 0.059302), (0.0, 0.028073, 1.060985)))
 XYZ_FROM_REC709 = numpy.array(((0.412391, 0.357584, 0.180481), (0.212639, 0.715169, 0.072192), (0.019331, 0.119195, 0.950532)))
 PLANE = {45: (-15, 15, 25, 45, 75, 110), 15: (-45, -15, 15, 45, 80), 65: (15, 25, 45, 75, 110)}
@@ -69,7 +69,7 @@ def lobes(path, name, light, view):
 def main():
     paints, name, file = sys.argv[1:]
     light, view = geometries()
-    reader = importlib.import_module(READERS[pathlib.Path(file).suffix])
+    reader = importlib.import_module(next(name for ending, name in READERS.items() if file.endswith(ending)))
     shown = lab(numpy.pi * reader.reflection(file, light, view) @ XYZ_FROM_REC709.T)
     differences = de2000(lab(numpy.pi * lobes(paints, name, light, view) @ XYZ_FROM_REC2020.T), shown)
     print(f"{differences.mean():.4f} {differences.max():.4f}")

@@ -1,0 +1,17 @@
+// A file of glTF 2.0 with a sphere that wears one material.
+#pragma once
+
+#include <string>
+
+#include "base/json.h"
+#include "materials/material.h"
+
+namespace goniochrome::materials {
+
+// The text of the file. `used` are the names of the extensions of the material.
+std::string gltf_sphere(const Json& material, const Json& used, const Naming& naming);
+
+// What a material keeps for people: its identifier and how far it is from the paint.
+Json gltf_extras(const Naming& naming, const Shown& shown);
+
+}  // namespace goniochrome::materials
