@@ -86,7 +86,7 @@ size() { oiiotool --info "$1" | sed -E 's/.*: +([0-9]+) x +([0-9]+),.*/\1x\2/'; 
   } >mixed.xml
   run render-osmesa $walls --basis "$TESTDATA/b5.basis.xml" --paint - -o '{code}.png' --report r.json <mixed.xml
   [ "$status" -eq 1 ]
-  [[ "$output" =~ 'no picture: standard input: the paint "empty"' ]]
+  [[ "$output" =~ 'no picture: standard input: paint "empty" has no color' ]]
   [[ "$output" =~ 'L is "5,0"' || "$output" =~ '5,0' ]]
   [[ "$output" =~ "2 paints failed" ]]
   [ -e good.png ] && [ -e 'L 9.png' ]
