@@ -161,7 +161,10 @@ Result<std::optional<fit::PaintFitter>> fitter_of(const Options& options) {
 Error about_paint(const Error& error, const std::string& name) {
   const std::string quoted = fmt::format("\"{}\"", shown(name));
   if (error.message.find(quoted) != std::string::npos) return error;
-  return {error.kind, fmt::format("the paint {}: {}", quoted, error.message)};
+  // Some are told with the bare name in front, as is said of a mesh with several paints.
+  const std::string bare = name + ": ";
+  const std::size_t begin = error.message.starts_with(bare) ? bare.size() : 0;
+  return {error.kind, fmt::format("the paint {}: {}", quoted, error.message.substr(begin))};
 }
 
 Result<paint::Paint> with_lobes(paint::Paint paint, const fit::PaintFitter* fitter, const std::string& file) {
