@@ -147,6 +147,18 @@ small_disk() {
   each_writer small_disk
 }
 
+@test "where /proc is not mounted, files are written, and nothing else is left" {
+  unshare -rm mount -t tmpfs none /proc 2>/dev/null || skip "/proc may not be hidden here"
+  mkdir bare
+  for content in new again; do
+    run unshare -rm bash -c 'mount -t tmpfs none /proc && exec "$@"' bash \
+      paint-convert -q "$BATS_FILE_TMPDIR/many.xml" --to csv -o bare/paints.csv
+    [ "$status" -eq 0 ] || { echo "$content: exit $status: $output"; return 1; }
+    [ "$(ls -A bare)" = paints.csv ]
+    paint-convert -q "$BATS_FILE_TMPDIR/many.xml" --to csv | cmp - bare/paints.csv
+  done
+}
+
 readonly_target() {
   shift
   for place in /proc/none.exr no/such/folder/file.exr; do

@@ -113,9 +113,7 @@ inline void tell_traced(const panels::SeamLights& lights, std::size_t views, con
 // option does, as in "--picture shows". Error (usage): it is not the first paint.
 inline Result<void> check_only_paint(int count, const char* option_does, const std::string& name) {
   if (count <= 1) return {};
-  return usage_error(
-      "{} one paint and there is another, \"{}\": choose one by --only, or write {{name}} in the name of the file",
-      option_does, name);
+  return usage_error("{} one paint and there is another, \"{}\": choose one by --only", option_does, name);
 }
 
 // A PNG that says which run made it.

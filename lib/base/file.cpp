@@ -52,6 +52,10 @@ std::string scratch_name(const std::string& path) {
   return fmt::format("{}/.goniochrome-{}-{}-{}.tmp", folder_of(path), getpid(), ++count, now.tv_nsec);
 }
 
+std::string path_of_descriptor(int descriptor) {
+  return fmt::format("/proc/self/fd/{}", descriptor);
+}
+
 // The number N where `path` leads to /proc/self/fd/N or the like, as /dev/stdout does. Such a name stands for an open
 // file, which must not be replaced by another.
 std::optional<int> named_descriptor(const std::string& path) {
@@ -172,7 +176,7 @@ Result<InputFile> InputFile::second_reading() {
     if (lseek(descriptor_, 0, SEEK_SET) != 0) return cannot_be_read(name_);
   }
   // Opened anew, the file has a position of its own.
-  InputFile second(name_, ::open(fmt::format("/proc/self/fd/{}", descriptor_).c_str(), O_RDONLY | O_CLOEXEC));
+  InputFile second(name_, ::open(path_of_descriptor(descriptor_).c_str(), O_RDONLY | O_CLOEXEC));
   if (second.descriptor_ < 0 || lseek(second.descriptor_, begin, SEEK_SET) != begin) return cannot_be_read(name_);
   return second;
 }
@@ -209,7 +213,8 @@ Result<OutputFile> written_in_place(int descriptor, const std::string& path,
 
 // An unnamed file (O_TMPFILE) is gone with the process, however it ends; only commit() gives it a name. A file can take
 // the place of another only under a name, so who kills the process within commit() may leave the whole new file under a
-// hidden name. File systems without unnamed files get a dot file, removed by the destructor.
+// hidden name. File systems without unnamed files get a dot file, removed by the destructor, and so do root folders
+// without /proc, where an unnamed file cannot get a name.
 Result<OutputFile> OutputFile::create(const std::string& path) {
   if (path.empty() || path == "-") return OutputFile("", "", stdout);
   const auto in_place = [](std::FILE* stream) { return OutputFile("", "", stream); };
@@ -223,8 +228,13 @@ Result<OutputFile> OutputFile::create(const std::string& path) {
   if (there && access(path.c_str(), W_OK) != 0) return cannot_be_written(path);
   GONIO_ASSIGN(const std::string file, file_behind(path));
   int fd = open(folder_of(file).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  bool has_dot_file = fd < 0 && (errno == EOPNOTSUPP || errno == EISDIR);
+  if (fd >= 0 && access(path_of_descriptor(fd).c_str(), F_OK) != 0) {
+    close(fd);
+    has_dot_file = true;
+  }
   std::string scratch;
-  if (fd < 0 && (errno == EOPNOTSUPP || errno == EISDIR)) {
+  if (has_dot_file) {
     scratch = scratch_name(file);
     fd = open(scratch.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0600);
   }
@@ -282,7 +292,7 @@ Result<void> OutputFile::commit() {
 
 std::string OutputFile::scratch_path() const {
   if (path_.empty()) return "";
-  return scratch_.empty() ? fmt::format("/proc/self/fd/{}", fileno(stream_)) : scratch_;
+  return scratch_.empty() ? path_of_descriptor(fileno(stream_)) : scratch_;
 }
 
 Result<void> write_file(const std::string& path, std::string_view bytes) {

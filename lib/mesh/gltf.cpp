@@ -248,10 +248,15 @@ class Reader {
     return {};
   }
 
-  std::uint32_t part(const std::string& name, const std::string& material) {
-    const auto [found, is_new] = parts_.try_emplace(name, static_cast<std::uint32_t>(result_.parts.size()));
-    if (is_new) result_.parts.push_back({name, material});
-    return found->second;
+  // The part of that name and material. A name that comes twice is one part, unless it is made of something else: that
+  // gets the name of its material behind its own.
+  std::uint32_t part(std::string name, const std::string& material) {
+    while (true) {
+      const auto [found, is_new] = parts_.try_emplace(name, static_cast<std::uint32_t>(result_.parts.size()));
+      if (is_new) result_.parts.push_back({name, material});
+      if (result_.parts[found->second].material == material) return found->second;
+      name += "." + (material.empty() ? "plain" : material);
+    }
   }
 
   Result<void> place(const tinygltf::Primitive& primitive, const Matrix& matrix, std::uint32_t part,

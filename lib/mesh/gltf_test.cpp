@@ -34,7 +34,9 @@ std::string document(const std::string& nodes, const std::string& roots, const s
   return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[)" + roots + R"(]}],"nodes":[)" + nodes +
          R"(],"materials":[{"name":"Red"},{"name":"Glass"}],"meshes":[{"name":"tri","primitives":[)" + attributes +
          R"(]},{"name":"two","primitives":[)" + attributes +
-         R"(,{"attributes":{"POSITION":0},"material":1}]}],"buffers":[{"byteLength":78,"uri":")" + data +
+         R"(,{"attributes":{"POSITION":0},"material":1}]},{"primitives":[{"attributes":{"POSITION":0},"material":1}]},)"
+         R"({"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":78,"uri":")" +
+         data +
          R"("}],"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":36},{"buffer":0,)"
          R"("byteOffset":72,"byteLength":6}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
          R"({"bufferView":1,"componentType":5126,"count":3,"type":"VEC3"},)"
@@ -105,6 +107,21 @@ TEST_F(GltfFiles, AMeshInSeveralMaterialsIsSeveralParts) {
   EXPECT_EQ(mesh->parts[1].name, "door.Glass");
   EXPECT_EQ(mesh->parts[1].material, "Glass");
   EXPECT_EQ(mesh->repairs.normals_made, 3);  // of the one without normals
+}
+
+TEST_F(GltfFiles, NodesOfOneNameAreOnePartForEachMaterial) {
+  const std::string node = R"({"name":"lid","mesh":0})";
+  const std::string other = R"({"name":"lid","mesh":2})";
+  const auto mesh = read(document(node + "," + other + "," + node + "," + R"({"name":"lid","mesh":3})", "0,1,2,3"));
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  ASSERT_EQ(mesh->parts.size(), 3U);
+  EXPECT_EQ(mesh->parts[0].name, "lid");
+  EXPECT_EQ(mesh->parts[0].material, "Red");
+  EXPECT_EQ(mesh->parts[1].name, "lid.Glass");
+  EXPECT_EQ(mesh->parts[1].material, "Glass");
+  EXPECT_EQ(mesh->parts[2].name, "lid.plain");
+  EXPECT_EQ(mesh->parts[2].material, "");
+  EXPECT_EQ(mesh->triangles.size(), 4U);
 }
 
 TEST_F(GltfFiles, BinaryFilesAndFilesBesideAreTheSame) {

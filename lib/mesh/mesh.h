@@ -42,11 +42,11 @@ Box bounding_box(const Mesh& mesh);
 
 // Reads OBJ, whose parts are its objects (`o`) or else its groups (`g`; a name that comes twice is one part); glTF 2.0
 // or GLB, whose parts are the nodes of the scene with meshes, by their own names or those of the meshes, so that nodes
-// of one name are one part, and whose meshes in several materials give a part NAME.MATERIAL for each; or OFF, PLY or
-// STL as a single part. Vertices without a normal get one: the mean over the faces around them, weighted by angle and
-// broken at edges sharper than 60 degrees. Triangles without area are dropped. Both are counted. The ending of the name
-// tells the format; where there is none, as with pipes and standard input, the content does. Errors name file, line and
-// remedy.
+// of one name and material are one part (of one name in another material they are a part NAME.MATERIAL), and whose
+// meshes in several materials give a part NAME.MATERIAL for each; or OFF, PLY or STL as a single part. Vertices without
+// a normal get one: the mean over the faces around them, weighted by angle and broken at edges sharper than 60 degrees.
+// Triangles without area are dropped. Both are counted. The ending of the name tells the format; where there is none,
+// as with pipes and standard input, the content does. Errors name file, line and remedy.
 Result<Mesh> read_mesh(const std::string& path);
 
 }  // namespace goniochrome::mesh

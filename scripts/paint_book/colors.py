@@ -28,10 +28,10 @@ def strip(paint, last_deg=110, steps=12):
     return f"linear-gradient(90deg,{','.join(srgb(paint.lab_at(angle)) for angle in angles)})"
 
 
-def gloss_border(paint):
-    """A CSS border whose gray is the gloss of the paint, from black for 0 to white for 100 gloss units; dashed if unknown."""
+def gloss_border(paint, width=3):
+    """A CSS border of `width` pixels whose gray is the gloss of the paint, from black for 0 to white for 100 gloss units; dashed if unknown."""
     gloss = paint.gloss.get(60.0, next(iter(paint.gloss.values()), None))
     if gloss is None:
-        return "3px dashed #808080"
+        return f"{width}px dashed #808080"
     gray = round(2.55 * min(max(float(gloss), 0), 100))
-    return f"3px solid #{gray:02x}{gray:02x}{gray:02x}"
+    return f"{width}px solid #{gray:02x}{gray:02x}{gray:02x}"

@@ -178,11 +178,21 @@ def kind_of(paint):
 
 
 def tile(index, paint, picture, size):
-    encoded = base64.b64encode(picture).decode()
     return (f'<li data-paint="{index}"><button type="button" class="tile" aria-haspopup="dialog">'
-            f'<img alt="" width="{size[0]}" height="{size[1]}" src="data:image/png;base64,{encoded}">'
+            f'<img alt="" width="{size[0]}" height="{size[1]}" src="{picture_address(picture)}">'
             f'<span class="strip" style="background:{strip(paint)};border:{gloss_border(paint)}"></span>'
             f'<span class="label">{text(paint.name)}<small>{text(kind_of(paint))}</small></span></button></li>')
+
+
+def picture_address(picture):
+    """The address of a PNG that is in the page."""
+    return f"data:image/png;base64,{base64.b64encode(picture).decode()}"
+
+
+def studio_link(paint, studio):
+    """A link that opens the paint in the page of paint-studio at the address `studio`; empty without one."""
+    address = f"{studio}#paint={urllib.parse.quote(paint.name, safe='')}" if studio else ""
+    return f'<a href="{text(address)}">Open in the studio</a>' if studio else ""
 
 
 def lab_cells(lab):
@@ -206,8 +216,7 @@ def card(paint, size, studio, beside=False):
     if paint.fit:
         facts.append(("Picture off the readings, mean dE00", number(paint.fit["mean"], 2)))
     figures = "".join(f'<tr><th scope="row">{text(name)}</th><td>{value}</td></tr>' for name, value in facts)
-    opened = f"{studio}#paint={urllib.parse.quote(paint.name, safe='')}" if studio else ""
-    link = f'<a href="{text(opened)}">Open in the studio</a>' if studio else ""
+    link = studio_link(paint, studio)
     notes = "".join(f'<p class="hint">Note: {text(flag)}.</p>' for flag in paint.flags)
     label = f"{text(paint.name)} on the mesh"
     picture = (f'<span class="picture" role="img" aria-label="{label}"></span>' if beside else

@@ -333,3 +333,84 @@ PY
   [ -s many-001.files/tiles-0001.png ]
   [ -s many-002.files/cards-0001.js ]
 }
+
+# The tiles of a page of few paints, one to a line: heading, name or class, command.
+tiles_of() {
+  /usr/bin/python3 - "$1" <<'PY'
+import html, re, sys
+page = open(sys.argv[1], encoding="utf-8").read()
+assert "{{" not in re.sub(r"<main.*</main>", "", page, flags=re.S)
+assert not re.search(r'(src|href)="(?!data:)', page), "the page needs no other file"
+for tile in re.findall(r"<li.*?</li>", page, re.S):
+    heading = re.search(r"<h3>(.*?)<small>(.*?)</small>", tile)
+    print(*(html.unescape(found) for found in (heading[1], heading[2], re.search(r"<code>(.*?)</code>", tile)[1])), sep="|")
+PY
+}
+
+@test "--variations: nine tiles around the paint as it was, each with a command that goes on from it" {
+  paint-edit -q "$TESTDATA/paints.paints.xml#candy_red" --variations face --step 7 |
+    book --variations - --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 96x64 --quiet -o sheet.html
+  tiles_of sheet.html >tiles
+  [ "$(cut -d'|' -f1 tiles | paste -sd,)" = "Face lighter,Face darker,Face red,Face yellow,As it was,Face green,Face cyan,Face blue,Face magenta" ]
+  [ "$(sed -n 5p tiles | cut -d'|' -f2)" = candy_red ]
+  [ "$(grep -c '<li class=middle>' sheet.html)" -eq 1 ]
+  sed -n 1p tiles | grep -qF 'paint-edit candy_red.face-lighter.paints.xml --variations face --step 7 | paint-book --variations - --env small.env.exr'
+  sed -n 1p tiles | grep -qF -- '--size 96x64 -o candy_red.face-lighter.html'
+
+  # The file of a tile and its command lead on.
+  /usr/bin/python3 - sheet.html <<'PY'
+import re, sys, urllib.parse
+page = open(sys.argv[1], encoding="utf-8").read()
+for name, address in ((n, a) for a, n in re.findall(r'href="data:application/xml;charset=utf-8,([^"]*)" download="([^"]*)"', page)):
+    open(name, "w", encoding="utf-8").write(urllib.parse.unquote(address))
+PY
+  paint-book() { book "$@"; }
+  eval "$(sed -n 1p tiles | cut -d'|' -f3-)"
+  tiles_of candy_red.face-lighter.html | sed -n 5p | grep -qF 'As it was|candy_red.face-lighter|'
+
+  # The pictures are those of the paints: the middle as the paint itself.
+  paint-convert -q "$TESTDATA/paints.paints.xml#candy_red" -o one.paints.xml
+  book one.paints.xml --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 96x64 --quiet -o one.html
+  /usr/bin/python3 - sheet.html one.html <<'PY'
+import base64, re, struct, sys
+def pixels(png, at=8):
+    """The compressed pixels, without the notes of the file, which name the run."""
+    size, kind = struct.unpack(">I4s", png[at:at + 8])
+    rest = pixels(png, at + 12 + size) if kind != b"IEND" else b""
+    return (png[at + 8:at + 8 + size] if kind == b"IDAT" else b"") + rest
+sheet, one = ([pixels(base64.b64decode(text)) for text in re.findall(r'src="data:image/png;base64,([^"]*)"', open(name).read())]
+              for name in sys.argv[1:])
+assert len(sheet) == 9 and sheet[4] == one[0]
+assert len(set(sheet)) == 9, "no two variations look the same"
+PY
+}
+
+@test "--variations: of a file with other paints, by name; two paints make two sheets" {
+  cp "$TESTDATA/paints.paints.xml" all.paints.xml
+  paint-edit -q all.paints.xml --only candy_red --variations travel --step 4 -o some.paints.xml
+  book --variations some.paints.xml --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 --quiet -o travel.html
+  tiles_of travel.html >tiles
+  [ "$(cut -d'|' -f1 tiles | paste -sd,)" = "Travel -16,Travel -12,Travel -8,Travel -4,As it was,Travel +4,Travel +8,Travel +12,Travel +16" ]
+  sed -n 9p tiles | grep -qF "paint-edit 'some.paints.xml#candy_red.travel+16' --variations travel --step 4 |"
+  paint-edit -q 'all.paints.xml#candy_red,jet_black' --variations gloss --step 3 |
+    book --variations - --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 --quiet -o gloss.html
+  [ "$(grep -c '<section' gloss.html)" -eq 2 ]
+  run book --variations all.paints.xml -o none.html
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "there are no variations in it: paint-edit --variations makes them" ]]
+  [ ! -e none.html ]
+}
+
+@test "--palette: flat chips in the order of the library, in a border of their gloss" {
+  book --palette small.paints.xml --quiet -o palette.html
+  tiles_of palette.html | cut -d'|' -f2 >classes
+  [ "$(paste -sd, classes)" = "solid,code R1, solid,metallic,pearl" ]
+  grep -qF '<h3>blue &lt;/script&gt; &quot;x&quot; &amp; {{title}}<small>' palette.html
+  [ "$(grep -o 'border:12px [a-z]* #[0-9a-f]*' palette.html | paste -sd,)" = \
+    "border:12px dashed #808080,border:12px solid #e5e5e5,border:12px solid #ebebeb,border:12px dashed #808080" ]
+  ! grep -q '<img' palette.html
+  run book --palette --variations small.paints.xml -o x.html
+  [ "$status" -eq 2 ]
+  run book --palette small.paints.xml --beside -o x.html
+  [ "$status" -eq 2 ]
+}

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import sys
 
 from shared.tools import Failed, run_tool, tools_folder
 
@@ -30,7 +31,7 @@ class Tools:
         `gloss` is assumed for paints that do not state it.
         """
         plain, fitted = folder / "library.paints.xml", folder / "fitted.paints.xml"
-        self.run("paint-convert", library, "-o", plain)
+        self.run("paint-convert", library, "-o", plain, given=sys.stdin.buffer.read() if library == "-" else b"")
         if basis is None:
             return plain
         self.run("fit-paint", plain, "--basis", basis, *(["--gloss", gloss] if gloss else []), "-o", fitted)

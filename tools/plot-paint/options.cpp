@@ -43,7 +43,9 @@ cli::ToolSpec tool_spec(Options& o) {
           "flop or travel will be seen.");
   spec.heading = "output";
   spec.option("output,o", "FILE", "sheet.svg", &o.output, "where the page or sheet goes; - is standard output")
-      .more("It is a PNG if the name ends in .png, else an SVG.");
+      .more(
+          "It is a PNG if the name ends in .png, else an SVG. With {name}, {code} or {index} in it, every paint gets a "
+          "page of its own, as in -o 'page-{name}.svg'.");
   spec.option("pages", "FOLDER", ".", &o.pages, "write a page for every paint, as FOLDER/name.svg or .png");
   spec.option("format", "FORMAT", "png", &o.format, "format of these pages").one_of({"svg", "png"});
   cli::add_common_options(spec, o.common);

@@ -34,6 +34,23 @@ setup() {
   [[ "$output" =~ "absent: is no folder" ]]
 }
 
+@test "words in braces make a page for each paint, safe and told apart" {
+  plot-paint -q --paint candy_red --paint jet_black fitted.xml -o '{index} x-{name}.svg' --report r.json
+  [ "$(ls ./*.svg)" = "$(printf './0001 x-jet_black.svg\n./0002 x-candy_red.svg')" ]
+  grep -q '>candy_red, ' '0002 x-candy_red.svg'
+  grep -q '"file": "0001 x-jet_black.svg"' r.json
+  sed -e 's/name="candy_red"/name="a\/b"/' -e 's/name="jet_black"/name="a_b"/' fitted.xml >alike.xml
+  mkdir 'pages {x}'
+  plot-paint -q --paint a/b --paint a_b alike.xml --pages 'pages {x}'
+  [ "$(ls 'pages {x}')" = "$(printf 'a_b-2.svg\na_b.svg')" ]
+  run plot-paint fitted.xml -o '{name}-{face}.svg'
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "{face} is not known here" ]]
+  run plot-paint fitted.xml --pages . -o '{name}.svg'
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "exclude each other" ]]
+}
+
 @test "a paint without lobes is drawn, and the summary says what makes them" {
   run plot-paint --paint candy_red "$paints" -o page.svg
   [ "$status" -eq 0 ]

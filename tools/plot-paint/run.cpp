@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "base/file.h"
+#include "base/file_names.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "formats/xml.h"
@@ -55,29 +55,48 @@ Result<std::vector<ChosenPaint>> chosen_paints(const Options& options) {
   return Result(std::move(chosen));
 }
 
-Result<void> write_drawing(const std::string& path, bool png, const report::Drawing& drawing) {
+// As PNG if the name ends in .png, else as SVG.
+Result<void> write_drawing(const std::string& path, const report::Drawing& drawing) {
   const std::string document = report::svg(std::vector<report::Drawing>{drawing}, 1);
-  if (!png) return write_file(path, document);
+  if (!lower(path).ends_with(".png")) return write_file(path, document);
   GONIO_ASSIGN(const std::string bytes, png_of(document));
   return write_file(path, bytes);
 }
 
-// A name that a file may have, and that no earlier page has: a number follows where two names would become the same.
-// Long names are cut, to leave room for the number and the ending.
-std::string file_name(std::string name, std::set<std::string>& taken) {
-  constexpr std::size_t kLongest = 200;
-  for (char& c : name)
-    if (c == '/' || static_cast<unsigned char>(c) < ' ') c = '_';
-  if (name.starts_with('.')) name = "_" + name;
-  if (name.size() > kLongest) name = name.substr(0, kLongest);
-  std::string unique = name;
-  for (int n = 2; !taken.insert(unique).second; ++n) unique = fmt::format("{}-{}", name, n);
-  return unique;
-}
+// The files of the pages, where every paint gets one of its own.
+class PageFiles {
+ public:
+  // Nothing where all paints are on one sheet. Error (usage): a word in braces that there is not.
+  static Result<std::optional<PageFiles>> create(const Options& options) {
+    const bool is_pattern = FileNames::is_pattern(options.output);
+    if (!is_pattern && options.pages.empty()) return std::optional<PageFiles>();
+    if (is_pattern && !options.pages.empty())
+      return usage_error("--pages and --output {} exclude each other: each names the pages", options.output);
+    // Braces in the name of a folder are no words.
+    const std::string folder = is_pattern ? "" : options.pages + "/";
+    const std::string pattern = is_pattern ? options.output : "{name}." + options.format;
+    GONIO_ASSIGN(FileNames names, FileNames::create(pattern, {"name", "code", "index"}, "--output"));
+    return std::optional(PageFiles(folder, std::move(names)));
+  }
+
+  // Writes the page of the next paint and returns its file.
+  Result<std::string> write(const paint::Paint& paint, const report::Drawing& page) {
+    std::string file = folder_ + names_.next(++count_, paint.name, paint.code);
+    GONIO_TRY(write_drawing(file, page));
+    return Result(std::move(file));
+  }
+
+ private:
+  PageFiles(std::string folder, FileNames names) : folder_(std::move(folder)), names_(std::move(names)) {}
+
+  std::string folder_;
+  FileNames names_;
+  std::size_t count_ = 0;
+};
 
 // The pages of the color maps, each with its paint. A paint without one is told.
 Result<std::vector<report::Drawing>> map_pages(const std::vector<ChosenPaint>& paints, const Options& options,
-                                               cli::Session& session, std::vector<std::string>& names) {
+                                               cli::Session& session, std::vector<const paint::Paint*>& drawn) {
   std::vector<report::Drawing> pages;
   for (const ChosenPaint& chosen : paints) {
     if (!chosen.paint.color_map) {
@@ -87,7 +106,7 @@ Result<std::vector<report::Drawing>> map_pages(const std::vector<ChosenPaint>& p
     GONIO_ASSIGN(const brdf::ColorMap map,
                  image::read_color_map((chosen.folder / chosen.paint.color_map->href).string()));
     pages.push_back(map_page(chosen.paint.name, map, options.incidence_deg));
-    names.push_back(chosen.paint.name);
+    drawn.push_back(&chosen.paint);
     session.results()["paints"].push_back(
         {{"name", chosen.paint.name}, {"model", map.aspecular ? "aspecular" : "isolines"}});
   }
@@ -104,17 +123,14 @@ void report(const PageInput& input, const std::string& file, cli::Session& sessi
                                          {"target", target}});
 }
 
-Result<cli::Verdict> draw_maps(const std::vector<ChosenPaint>& paints, const Options& options, cli::Session& session) {
-  std::vector<std::string> names;
-  GONIO_ASSIGN(const std::vector<report::Drawing> pages, map_pages(paints, options, session, names));
-  std::set<std::string> taken;
-  for (std::size_t i = 0; i < pages.size() && !options.pages.empty(); ++i) {
-    const std::string file = fmt::format("{}/{}.{}", options.pages, file_name(names[i], taken), options.format);
-    GONIO_TRY(write_drawing(file, options.format == "png", pages[i]));
-    session.results()["paints"][i]["file"] = file;
+Result<cli::Verdict> draw_maps(const std::vector<ChosenPaint>& paints, const Options& options,
+                               std::optional<PageFiles>& files, cli::Session& session) {
+  std::vector<const paint::Paint*> drawn;
+  GONIO_ASSIGN(const std::vector<report::Drawing> pages, map_pages(paints, options, session, drawn));
+  for (std::size_t i = 0; i < pages.size() && files; ++i) {
+    GONIO_ASSIGN(session.results()["paints"][i]["file"], files->write(*drawn[i], pages[i]));
   }
-  if (options.pages.empty())
-    GONIO_TRY(write_drawing(options.output, lower(options.output).ends_with(".png"), report::column_of(pages)));
+  if (!files) GONIO_TRY(write_drawing(options.output, report::column_of(pages)));
   session.say(fmt::format("{}: {} color maps drawn", session.tool(), pages.size()));
   return cli::Verdict::kDone;
 }
@@ -126,6 +142,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     if (!is_folder(options.pages)) return input_error("{}: is no folder: make it first", options.pages);
     GONIO_TRY(can_be_written(options.pages + "/page." + options.format));
   }
+  GONIO_ASSIGN(std::optional<PageFiles> files, PageFiles::create(options));
   GONIO_ASSIGN(const std::vector<ChosenPaint> paints, chosen_paints(options));
   GONIO_ASSIGN(const Brdfs brdfs, read_brdfs(options.brdfs));
   for (const auto& [name, brdf] : brdfs)
@@ -135,35 +152,32 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
 
   if (options.color_map && !options.hud.empty())
     return usage_error("--color-map and --hud exclude each other: each draws a page of its own");
-  if (options.color_map) return draw_maps(paints, options, session);
+  if (options.color_map) return draw_maps(paints, options, files, session);
   std::optional<HudView> view;
   if (!options.hud.empty()) {
     GONIO_ASSIGN(view, read_hud_view(options.hud));
   }
   std::vector<report::Drawing> rows;
   std::size_t unfitted = 0;
-  std::set<std::string> taken;  // by pages
   for (const ChosenPaint& chosen : paints) {
     const paint::Paint& paint = chosen.paint;
     const auto brdf = brdfs.find(paint.name);
     const PageInput input{paint, brdf == brdfs.end() ? nullptr : brdf->second.get(), options.incidence_deg};
     unfitted += !paint.lobes;
-    const bool as_page = !options.pages.empty() || paints.size() == 1;
+    const bool as_page = files || paints.size() == 1;
     GONIO_ASSIGN(report::Drawing drawing, view      ? hud_drawing(paint, *view)
                                           : as_page ? page_of(input)
                                                     : row_of_sheet(input));
     std::string file = options.output;
-    if (!options.pages.empty()) {
-      file = fmt::format("{}/{}.{}", options.pages, file_name(paint.name, taken), options.format);
-      GONIO_TRY(write_drawing(file, options.format == "png", drawing));
+    if (files) {
+      GONIO_ASSIGN(file, files->write(paint, drawing));
     } else {
       rows.push_back(std::move(drawing));
     }
     report(input, file, session);
     session.progress(fmt::format("{}: {}", session.tool(), paint.name));
   }
-  if (options.pages.empty())
-    GONIO_TRY(write_drawing(options.output, lower(options.output).ends_with(".png"), report::column_of(rows)));
+  if (!files) GONIO_TRY(write_drawing(options.output, report::column_of(rows)));
   session.say(
       fmt::format("{}: {} paints drawn{}", session.tool(), paints.size(),
                   unfitted > 0 ? fmt::format(", {} of them without lobes: fit-paint makes them", unfitted) : ""));

@@ -32,8 +32,7 @@ bool PaintSource::next(bool look_ahead, SourcePaint& result) {
     result.paint = *std::move(fitted);
     auto map = color_map_of(result.paint, file_);
     if (map.ok()) result.map = *std::move(map);
-    if (!map.ok())
-      result.failure = Error{map.error().kind, fmt::format("the paint \"{}\": {}", name, map.error().message)};
+    if (!map.ok()) result.failure = about_paint(map.error(), name);
   } else {
     result.failure = fitted.error();
   }

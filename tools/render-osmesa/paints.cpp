@@ -159,6 +159,15 @@ Result<std::optional<fit::PaintFitter>> fitter_of(const Options& options) {
   return std::optional<fit::PaintFitter>(std::in_place, std::move(basis), fit::FitOptions{});
 }
 
+Error about_paint(const Error& error, const std::string& name) {
+  const std::string quoted = fmt::format("\"{}\"", shown(name));
+  if (error.message.find(quoted) != std::string::npos) return error;
+  // Some are told with the bare name in front, as is said of a mesh with several paints.
+  const std::string bare = name + ": ";
+  const std::size_t begin = error.message.starts_with(bare) ? bare.size() : 0;
+  return {error.kind, fmt::format("the paint {}: {}", quoted, error.message.substr(begin))};
+}
+
 Result<paint::Paint> with_lobes(paint::Paint paint, const fit::PaintFitter* fitter, const std::string& file) {
   if (paint.lobes) return paint;
   if (fitter == nullptr)
@@ -168,8 +177,10 @@ Result<paint::Paint> with_lobes(paint::Paint paint, const fit::PaintFitter* fitt
         "--basis BASIS.xml -o FITTED.xml`",
         file, paint.name, file);
   auto fit = fitter->fit(paint);
-  if (!fit.ok())
-    return Error{fit.error().kind, fmt::format("{}: the paint \"{}\": {}", file, paint.name, fit.error().message)};
+  if (!fit.ok()) {
+    const Error error = about_paint(fit.error(), paint.name);
+    return Error{error.kind, fmt::format("{}: {}", file, error.message)};
+  }
   if (fit->lobes.coat_index != paint::kNoCoat) paint.coat_index = fit->lobes.coat_index;
   paint.lobes = std::move(fit->lobes);
   return paint;

@@ -43,6 +43,9 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool
 // Fits paints as fit-paint(1) does without further options; none without --basis.
 Result<std::optional<fit::PaintFitter>> fitter_of(const Options& options);
 
+// The error with the name of the paint in front, unless it is told with its name already.
+Error about_paint(const Error& error, const std::string& name);
+
 // The paint with its lobes, which are fitted where it has none and there is a fitter. Error: it has none; `file` is
 // where it comes from.
 Result<paint::Paint> with_lobes(paint::Paint paint, const fit::PaintFitter* fitter, const std::string& file);

@@ -86,13 +86,18 @@ size() { oiiotool --info "$1" | sed -E 's/.*: +([0-9]+) x +([0-9]+),.*/\1x\2/'; 
   } >mixed.xml
   run render-osmesa $walls --basis "$TESTDATA/b5.basis.xml" --paint - -o '{code}.png' --report r.json <mixed.xml
   [ "$status" -eq 1 ]
-  [[ "$output" =~ 'no picture: standard input: the paint "empty"' ]]
+  [[ "$output" =~ 'no picture: standard input: paint "empty" has no color' ]]
   [[ "$output" =~ 'L is "5,0"' || "$output" =~ '5,0' ]]
   [[ "$output" =~ "2 paints failed" ]]
   [ -e good.png ] && [ -e 'L 9.png' ]
   [ "$(ls ./*.png | wc -l)" -eq 2 ]
   [ "$(jq .results.failed r.json)" -eq 2 ]
   [ "$(jq -r '.results.pictures[1].status' r.json)" = failed ]
+  # A name is told once, also where the light was traced for other paints.
+  fit-paint -q --basis "$TESTDATA/b7.basis.xml" "$library#candy_red" -o other.xml
+  run render-osmesa $kept --paint other.xml -o '{name}.png'
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ 'the paint "candy_red": a paint has a lobe of exponent' ]]
   # Where nothing can be drawn, that is the error.
   run render-osmesa $walls --basis "$TESTDATA/b5.basis.xml" --paint 'mixed.xml#empty' -o '{code}.png'
   [ "$status" -eq 3 ]

@@ -100,15 +100,10 @@ class Streaming {
   Result<void> draw(StreamSlot& slot) {
     if (!slot.source.failure) {
       const Result<void> drawn = views_.draw(slot.source, slot.view);
-      if (!drawn.ok()) slot.source.failure = named(drawn.error(), slot.source.paint.name);
+      if (!drawn.ok()) slot.source.failure = about_paint(drawn.error(), slot.source.paint.name);
       slot.plan = views_.plan();
     }
     return sink_.place(slot);
-  }
-
-  static Error named(const Error& error, const std::string& name) {
-    if (error.message.find(name) != std::string::npos) return error;
-    return {error.kind, fmt::format("the paint \"{}\": {}", name, error.message)};
   }
 
   void tell_failure(const StreamSlot& slot) {
@@ -169,7 +164,8 @@ void report(const Options& options, const Request& request, const Streaming& str
   line += fmt::format(", {} x {}, shaded in {:.1f} ms each by {}, {:.0f} pictures/s, exposure {:+.2f}{}",
                       request.size.width, request.size.height, streaming.shading_ms(), views.engine(), rate,
                       views.stops, display ? ", " + display->name() : "");
-  if (streaming.failed() > 0) line += fmt::format(", {} paints failed", streaming.failed());
+  if (streaming.failed() > 0)
+    line += fmt::format(", {} paint{} failed", streaming.failed(), streaming.failed() == 1 ? "" : "s");
   session.say(line);
 }
 
