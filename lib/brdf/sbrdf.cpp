@@ -92,11 +92,14 @@ SbrdfTexture mean_texture(const SbrdfTexture& texture) {
   const double share = 1 / static_cast<double>(texels);
   std::vector<LobeSums> sums(static_cast<std::size_t>(texture.lobes));
   color::Rgb diffuse;
+  double covered = 0;
   for (std::size_t i = 0; i < texels; ++i) {
     const float* at = &texture.values[i * static_cast<std::size_t>(texture.stride())];
     diffuse += share * color::Rgb{at[0], at[1], at[2]};
     for (std::size_t lobe = 0; lobe < sums.size(); ++lobe) sums[lobe].add(at + 5 + 7 * lobe, at + 3, share);
+    covered += texture.alpha.empty() ? share : share * texture.alpha[i];
   }
+  if (!texture.alpha.empty()) mean.alpha = {static_cast<float>(covered)};
   double c = 0, s = 0;
   for (const LobeSums& lobe : sums) c += lobe.odd[0], s += lobe.odd[1];
   const double size = std::hypot(c, s);

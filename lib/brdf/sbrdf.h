@@ -12,10 +12,12 @@
 namespace goniochrome::brdf {
 
 // Texels row by row from the top, each: diffuse RGB; cos and sin of twice the angle from the tangent to the texel's own
-// x axis (turned by 180 deg a lobe is the same); then for each lobe albedo RGB, axes XYZ, exponent.
+// x axis (turned by 180 deg a lobe is the same); then for each lobe albedo RGB, axes XYZ, exponent. The diffuse part
+// and the albedos of a texel that covers only a part of what lies beneath it are multiplied by its alpha.
 struct SbrdfTexture {
   int width = 0, height = 0, lobes = 0;
   std::vector<float> values;
+  std::vector<float> alpha = {};  // of each texel, the part that it covers, 0 to 1; empty where that is all
 
   int stride() const { return 5 + 7 * lobes; }
   const float* texel(int column, int row) const {
@@ -53,7 +55,7 @@ std::vector<std::pair<int, double>> covered_texels(int at, int to, int from);
 // One texel in the place of all: the mean diffuse part, and for each lobe, weighted by albedo/(n+1), the mean of that,
 // of log(n+1) and of the axes as matrices of the tangent frame, whose common direction is its frame's. It is the
 // control that shows what a texture gains; it is not the mean of the texels' BRDFs, which would take as many lobes as
-// there are texels.
+// there are texels. Alpha is the mean.
 SbrdfTexture mean_texture(const SbrdfTexture& texture);
 
 }  // namespace goniochrome::brdf

@@ -120,6 +120,23 @@ Result<std::vector<int>> sources(const std::vector<std::string>& wanted, const s
   return result;
 }
 
+// Alpha of all texels; nothing where all are 1.
+Result<std::vector<float>> alpha_of(const Image& image, const std::string& path) {
+  std::vector<float> alpha;
+  const auto channel = std::ranges::find(image.channel_names, "alpha");
+  if (channel == image.channel_names.end()) return alpha;
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column) {
+      const float value = image.pixel(column, row)[channel - image.channel_names.begin()];
+      if (!(value >= 0 && value <= 1))
+        return input_error("{}: alpha of texel ({},{}) is {}: give a number from 0 to 1", path, column, row, value);
+      alpha.push_back(value);
+    }
+  }
+  if (std::ranges::all_of(alpha, [](float value) { return value == 1; })) alpha.clear();
+  return alpha;
+}
+
 Result<void> check_axes(const brdf::SbrdfTexture& texture, const std::string& path) {
   for (int row = 0; row < texture.height; ++row) {
     for (int column = 0; column < texture.width; ++column) {
@@ -182,16 +199,28 @@ Result<brdf::SbrdfTexture> read_sbrdf(const std::string& path) {
     }
   }
   GONIO_TRY(check_axes(texture, path));
+  GONIO_ASSIGN(texture.alpha, alpha_of(image, path));
   return texture;
 }
 
 Result<void> write_sbrdf(const std::string& path, const brdf::SbrdfTexture& texture, const Attributes& attributes,
                          const std::vector<ImagePart>& beside) {
   std::vector<std::string> names = channels_of(texture.lobes);
+  const auto stride = static_cast<std::size_t>(texture.stride());
+  std::vector<float> values = texture.values;
+  if (!texture.alpha.empty()) {
+    names.emplace_back("alpha");
+    values.clear();
+    for (std::size_t i = 0; i < texture.alpha.size(); ++i) {
+      const auto from = texture.values.begin() + static_cast<std::ptrdiff_t>(i * stride);
+      values.insert(values.end(), from, from + static_cast<std::ptrdiff_t>(stride));
+      values.push_back(texture.alpha[i]);
+    }
+  }
   const auto channels = static_cast<int>(names.size());
   const PixelType type = halves_do(texture) ? PixelType::kHalf : PixelType::kFloat;
   ImagePart part{
-      "sbrdf", {texture.width, texture.height, channels, texture.values, std::move(names)}, attributes, type};
+      "sbrdf", {texture.width, texture.height, channels, std::move(values), std::move(names)}, attributes, type};
   part.attributes["colorInteropID"] = std::string("lin_rec2020_scene");
   std::vector<ImagePart> parts = {std::move(part)};
   parts.insert(parts.end(), beside.begin(), beside.end());

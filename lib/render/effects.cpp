@@ -164,7 +164,7 @@ bool is_mapped(const Scene& scene, std::size_t part) {
 }
 
 bool wears_rough_coat(const Scene& scene, std::size_t part) {
-  const bool worn = scene.layer != nullptr && scene.layer->surface(static_cast<int>(part)).texture != nullptr;
+  const bool worn = scene.layer != nullptr && scene.layer->surface(static_cast<int>(part)).hides_paint();
   return !worn && !is_anisotropic(anisotropy_of(scene, part)) && brdf::stands_for_coat(scene.paints[part]);
 }
 

@@ -192,7 +192,11 @@ bool is_textured(const Scene& scene, int part) {
   return scene.layer != nullptr && scene.layer->surface(part).texture != nullptr;
 }
 
-// The colors of the textured ones of these points take the place of what is there.
+bool hides_paint(const Scene& scene, int part) {
+  return scene.layer != nullptr && scene.layer->surface(part).hides_paint();
+}
+
+// The textured ones of these points get their colors, and keep of what is there the part that is not covered.
 void put_textured(const Scene& scene, const std::vector<VisiblePoint>& points, const Effects& effects,
                   const Surroundings& around, std::vector<color::Rgb>& colors) {
   std::vector<TexturedPoint> textured;
@@ -205,7 +209,8 @@ void put_textured(const Scene& scene, const std::vector<VisiblePoint>& points, c
   const std::vector<color::Rgb> shown =
       textured_radiance(textured, effects.environment ? around : darkness(around), lights_of(scene, effects),
                         effects.reflection ? &scene.reflection : nullptr);
-  for (std::size_t i = 0; i < shown.size(); ++i) colors[numbers[i]] = shown[i];
+  for (std::size_t i = 0; i < shown.size(); ++i)
+    colors[numbers[i]] = textured[i].place.bare * colors[numbers[i]] + shown[i];
 }
 
 }  // namespace
@@ -242,7 +247,7 @@ std::vector<color::Rgb> exact_radiance(const std::vector<VisiblePoint>& points, 
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto part = static_cast<std::size_t>(points[i].part);
-    if (is_textured(scene, points[i].part)) continue;
+    if (hides_paint(scene, points[i].part)) continue;
     surface.push_back({points[i].normal, points[i].to_viewer, &paints[part], &models[part]});
     numbers.push_back(i);
   }

@@ -19,7 +19,10 @@ Vec3 Gbuffer::normal(int x, int y) const {
 
 VisiblePoint Gbuffer::point(int x, int y, const std::vector<TexturePlace>& places) const {
   VisiblePoint point{normal(x, y), to_viewer(x, y), part(x, y)};
-  if (!places.empty()) point.placed = true, point.place = places[index(x, y)];
+  if (places.empty()) return point;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  point.placed = true, point.place = places[index(x, y)];
+  for (std::size_t i = index(x, y) + pixels; i < places.size(); i += pixels) point.over.push_back(places[i]);
   return point;
 }
 

@@ -24,6 +24,8 @@ struct TexturePlace {
   float tangent[3] = {0, 0, 0};  // world, along growing u; of about unit length, or 0 where it is not known
   // The footprint: how far u and v go from one pixel to the next, to the right and downward; 0 where it is not known.
   float across[2] = {0, 0}, down[2] = {0, 0};
+  // Of the texture, which is shown here as far as the places on it that are blended have this one. 0: not at all.
+  float share = 1;
 };
 
 // A visible point that is shaded alone.
@@ -32,6 +34,7 @@ struct VisiblePoint {
   int part = 0;
   bool placed = false;  // whether its place on a texture is known
   TexturePlace place = {};
+  std::vector<TexturePlace> over = {};  // on the textures that lie over that of `place`, the uppermost last
 };
 
 // What a G-buffer has in the place of a triangle's number where the mesh is not seen.
@@ -51,7 +54,8 @@ struct Gbuffer {
   int part(int x, int y) const;
   Vec3 normal(int x, int y) const;
   Vec3 to_viewer(int x, int y) const { return -rays.direction(x + 0.5, y + 0.5); }
-  // What is seen at this pixel, with its place on a texture unless `places` is empty.
+  // What is seen at this pixel, with its place on each texture that `places` tells of: as many a pixel as there are,
+  // those of all pixels on one texture after those on the texture below.
   VisiblePoint point(int x, int y, const std::vector<TexturePlace>& places = {}) const;
 };
 

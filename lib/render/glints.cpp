@@ -66,7 +66,7 @@ void add_glints(const Scene& scene, const Effects& effects, const Gbuffer& gbuff
       for (int x = 0; x < gbuffer.width; ++x) {
         const int part = gbuffer.part(x, y);
         if (part < 0) continue;
-        if (scene.layer != nullptr && scene.layer->surface(part).texture != nullptr) continue;
+        if (scene.layer != nullptr && scene.layer->surface(part).hides_paint()) continue;
         const paint::LobeFit& paint = paints[static_cast<std::size_t>(part)];
         if (!wears_lobe(paint, paint::kMirrorExponent, LobeWeight::kGloss)) continue;
         const Vec3 r = mirrors.at(x, y);

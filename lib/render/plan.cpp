@@ -412,7 +412,7 @@ std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const G
 
 namespace {
 
-// With the footprints on textures that one of so many samples of a pixel has; their places are left open.
+// With the footprints on textures that one of so many samples of a pixel has; see SurfaceLayer::put_places().
 std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count,
                                        const Scene& scene, int samples) {
   std::vector<VisiblePoint> points = probe_points(gbuffers, count);
@@ -420,8 +420,7 @@ std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const G
   std::size_t number = 0;
   for (const ProbePixel& pixel : probe_pixels(gbuffers, count)) {
     VisiblePoint& point = points[number++];
-    if (const auto place = scene.layer->place(*pixel.gbuffer, pixel.x, pixel.y); place)
-      point.place = repeated(*place, 1 / std::sqrt(samples));
+    scene.layer->put_places(*pixel.gbuffer, pixel.x, pixel.y, 1 / std::sqrt(samples), point);
   }
   return points;
 }

@@ -9,6 +9,7 @@
 #include "render/gl/gl.h"
 #include "render/gl/shader.h"
 #include "render/glints.h"
+#include "render/internal/samples.h"
 #include "render/internal/seen_through.h"
 #include "render/internal/tilt_table.h"
 #include "render/path/path_engine.h"
@@ -279,13 +280,7 @@ const std::vector<TexturePlace>& Renderer::State::places(int sample) {
 // Makes the picture the mean of `count` samples from `first` on.
 Result<void> Renderer::State::take(int first, int count, image::Image& picture) {
   const float gain = 1.0F / static_cast<float>(count);
-  for (int i = first; i < first + count; ++i) GONIO_TRY(engine->shade(*this, i, gain, i > first, picture));
-  engine->finish(picture);
-  picture.channel_names = {"R", "G", "B", "A"};
-  if (!engine->info().traces_rays && effects.extent && effects.mirror)
-    for (int i = first; i < first + count; ++i) add_glints(scene, effects, *gbuffer(i), gain, picture);
-  for (int i = first; scene.layer != nullptr && !engine->shades_layer() && i < first + count; ++i)
-    scene.layer->add(*gbuffer(i), places(i), effects, gain, picture, !engine->shades_textures());
+  GONIO_TRY(take_samples(*this, *engine, scene, effects, first, count, picture));
   for (int i = first; effects.panes && !engine->info().traces_rays && i < first + count; ++i)
     GONIO_TRY(add_seen_through(i, gain, picture));
   return {};

@@ -25,23 +25,35 @@ SurfaceLayer::SurfaceLayer(const Scene& scene, std::vector<PartSurface> surfaces
                            const MipCube* mip)
     : scene_(scene), surfaces_(std::move(surfaces)), treatment_(treatment), id_(next_id()) {
   surfaces_.resize(scene.mesh->parts.size());
-  std::vector<bool> parts;
-  std::vector<TextureLaying> layings;
-  for (const PartSurface& surface : surfaces_) {
-    parts.push_back(surface.texture != nullptr);
-    layings.push_back(surface.laying);
+  laid_.resize(surfaces_.size());
+  std::vector<std::vector<bool>> parts;  // of each layout
+  std::vector<std::vector<TextureLaying>> layings;
+  for (std::size_t part = 0; part < surfaces_.size(); ++part) {
+    const PartSurface& surface = surfaces_[part];
     empty_ = empty_ && surface.texture == nullptr && surface.color_map == nullptr;
-    mapped_ = mapped_ || (surface.color_map != nullptr && !scene.lights.empty());
-    if (surface.texture == nullptr) continue;
-    textured_ = true;
-    if (std::ranges::find(textures_, surface.texture) == textures_.end()) textures_.push_back(surface.texture);
+    mapped_ = mapped_ || (surface.color_map != nullptr && !surface.hides_paint() && !scene.lights.empty());
+    dims_ = dims_ || (surface.texture != nullptr && !surface.hides_paint());
+    for (const LaidTexture& laid : surface.textures()) {
+      const std::size_t level = laid_[part].size();
+      if (level == kMostLaid) break;
+      textured_ = true;
+      auto known = std::ranges::find(textures_, laid.texture);
+      if (known == textures_.end()) known = textures_.insert(known, laid.texture);
+      laid_[part].push_back({static_cast<std::size_t>(known - textures_.begin()), laid.repeat, laid.blends});
+      if (level == parts.size()) {
+        parts.emplace_back(surfaces_.size());
+        layings.emplace_back(surfaces_.size());
+      }
+      parts[level][part] = true, layings[level][part] = laid.laying;
+    }
   }
   if (!textured_) return;
   for (const brdf::SbrdfTexture* texture : textures_) means_.push_back(brdf::mean_texture(*texture));
   std::vector<const brdf::SbrdfTexture*> all = textures_;
   for (const brdf::SbrdfTexture& mean : means_) all.push_back(&mean);
   shader_ = std::make_unique<const SbrdfShader>(scene.env, mip, all);
-  layout_ = std::make_unique<const TextureLayout>(*scene.mesh, parts, std::move(layings));
+  for (std::size_t level = 0; level < parts.size(); ++level)
+    layouts_.push_back(std::make_unique<const TextureLayout>(*scene.mesh, parts[level], layings[level]));
 }
 
 SurfaceLayer::~SurfaceLayer() = default;
@@ -52,41 +64,115 @@ int SurfaceLayer::lobes() const {
   return most;
 }
 
+namespace {
+
+template <class PlacesOf>
+std::vector<TexturePlace> on_all(const std::vector<std::unique_ptr<const TextureLayout>>& layouts,
+                                 const PlacesOf& places_of) {
+  std::vector<TexturePlace> all;
+  for (const auto& layout : layouts) {
+    std::vector<TexturePlace> places = places_of(*layout);
+    if (all.empty()) {
+      all = std::move(places);
+    } else {
+      all.insert(all.end(), places.begin(), places.end());
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
 std::vector<TexturePlace> SurfaceLayer::places(const Gbuffer& gbuffer) const {
-  return textured_ ? layout_->places(gbuffer) : std::vector<TexturePlace>();
+  return on_all(layouts_, [&](const TextureLayout& layout) { return layout.places(gbuffer); });
 }
 
 std::vector<TexturePlace> SurfaceLayer::filtered_places(const Gbuffer& gbuffer,
                                                         const std::array<double, 2>& middle) const {
-  return textured_ ? layout_->filtered_places(gbuffer, middle) : std::vector<TexturePlace>();
+  return on_all(layouts_, [&](const TextureLayout& layout) { return layout.filtered_places(gbuffer, middle); });
 }
 
-std::optional<TexturePlace> SurfaceLayer::place(const Gbuffer& gbuffer, int x, int y) const {
+void SurfaceLayer::put_places(const Gbuffer& gbuffer, int x, int y, double scale, VisiblePoint& point) const {
   const int part = gbuffer.part(x, y);
-  if (part < 0 || gbuffer.triangles.empty() || surface(part).texture == nullptr) return std::nullopt;
-  return layout_->place(gbuffer, x, y);
+  if (part < 0 || gbuffer.triangles.empty()) return;
+  const std::size_t count = laid_[static_cast<std::size_t>(part)].size();
+  if (count == 0) return;
+  const auto place = [&](std::size_t level) {
+    TexturePlace here = layouts_[level]->place(gbuffer, x, y);
+    for (float* step : {here.across, here.down})
+      for (int c = 0; c < 2; ++c) step[c] = static_cast<float>(scale * step[c]);
+    return here;
+  };
+  point.place = place(0);
+  for (std::size_t level = 1; level < count; ++level) point.over.push_back(place(level));
+  point.placed = count > 1 || !surface(part).hides_paint();
 }
+
+void SurfaceLayer::stack(int part, const TexturePlace* places, std::size_t step, const Effects& effects, double scale,
+                         Stack& result) const {
+  const std::vector<Laid>& laid = laid_[static_cast<std::size_t>(part)];
+  result.count = laid.size(), result.bare = laid.empty() ? 1 : 0;
+  double left = 1, covered = 0;  // by the uppermost textures so far, and by those that are blended with this one
+  for (std::size_t k = laid.size(); k-- > 0;) {
+    Shown& shown = result.shown[k];
+    shown.number = shading_of(laid[k], effects);
+    shown.place = places + k * step, shown.repeat = laid[k].repeat;
+    shown.repeated = repeated(*shown.place, shown.repeat);
+    shown.share = left * shown.place->share;
+    shown.probes = {};
+    if (shown.share > 0) {
+      if (effects.texture_filter) shown.probes = shader_->probes(shown.number, shown.repeated, scale);
+      covered += shown.place->share * coverage(shown, scale, effects.texture_lobes);
+    }
+    if (laid[k].blends) continue;
+    left *= std::max(1 - covered, 0.0), covered = 0;
+  }
+  result.bare = left;
+}
+
+double SurfaceLayer::coverage(const Shown& shown, double scale, std::uint32_t lobes) const {
+  if (shader_->packed(shown.number).covers) return 1;
+  double sum = 0;
+  for (int i = 0; i < shown.probes.count(); ++i)
+    sum +=
+        shader_->coverage(shown.number, probe_place(shown.repeated, scale, shown.probes, i), shown.probes.level, lobes);
+  return sum / shown.probes.count();
+}
+
+namespace {
+
+const TexturePlace& place_on(const VisiblePoint& point, std::size_t level) {
+  return level == 0 || level > point.over.size() ? point.place : point.over[level - 1];
+}
+
+}  // namespace
 
 double SurfaceLayer::filter_cost(const std::vector<VisiblePoint>& points) const {
   double sum = 0, count = 0;
   for (const VisiblePoint& point : points) {
-    const brdf::SbrdfTexture* texture = surface(point.part).texture;
-    if (texture == nullptr) continue;
-    const auto which = static_cast<std::size_t>(std::ranges::find(textures_, texture) - textures_.begin());
-    const FilterProbes probes = shader_->probes(which, repeated(point.place, surface(point.part).repeat), 1);
-    sum += probes.count() * (1.0 + shader_->packed(which, probes.level).lobes) / (1.0 + shader_->packed(which).lobes);
-    ++count;
+    const std::vector<Laid>& laid = laid_[static_cast<std::size_t>(point.part)];
+    if (!laid.empty()) ++count;
+    for (std::size_t k = 0; k < laid.size(); ++k) {
+      if (place_on(point, k).share == 0) continue;
+      const std::size_t which = laid[k].texture;
+      const FilterProbes probes = shader_->probes(which, repeated(place_on(point, k), laid[k].repeat), 1);
+      sum += probes.count() * (1.0 + shader_->packed(which, probes.level).lobes) / (1.0 + shader_->packed(which).lobes);
+    }
   }
   return count > 0 ? sum / count : 1;
 }
 
 double SurfaceLayer::covered_texels(const VisiblePoint& point) const {
-  const PartSurface& of = surface(point.part);
-  if (of.texture == nullptr) return 1;
-  const auto texels = [&](const float* step) {
-    return std::max(1.0, of.repeat * std::hypot(step[0] * of.texture->width, step[1] * of.texture->height));
-  };
-  return texels(point.place.across) * texels(point.place.down);
+  const std::vector<Laid>& laid = laid_[static_cast<std::size_t>(point.part)];
+  double most = 1;
+  for (std::size_t k = 0; k < laid.size(); ++k) {
+    const brdf::SbrdfTexture& texture = *textures_[laid[k].texture];
+    const auto texels = [&](const float* step) {
+      return std::max(1.0, laid[k].repeat * std::hypot(step[0] * texture.width, step[1] * texture.height));
+    };
+    most = std::max(most, texels(place_on(point, k).across) * texels(place_on(point, k).down));
+  }
+  return most;
 }
 
 namespace {
@@ -133,9 +219,15 @@ SbrdfLight light_of(const Scene& scene, const Effects& effects) {
 
 }  // namespace
 
-std::size_t SurfaceLayer::shading_of(int part, const Effects& effects) const {
-  const auto which = static_cast<std::size_t>(std::ranges::find(textures_, surface(part).texture) - textures_.begin());
-  return effects.texture ? which : textures_.size() + which;
+std::vector<LaidTexture> PartSurface::textures() const {
+  if (texture == nullptr) return {};
+  std::vector<LaidTexture> all = {{texture, repeat, laying, false}};
+  all.insert(all.end(), over.begin(), over.end());
+  return all;
+}
+
+std::size_t SurfaceLayer::shading_of(const Laid& laid, const Effects& effects) const {
+  return effects.texture ? laid.texture : textures_.size() + laid.texture;
 }
 
 std::vector<std::size_t> SurfaceLayer::drawn(const Effects& effects) const {
@@ -145,60 +237,89 @@ std::vector<std::size_t> SurfaceLayer::drawn(const Effects& effects) const {
 }
 
 // Steps of the golden section cover a texture evenly.
-TexturePlace SurfaceLayer::placed(const VisiblePoint& point, std::size_t number) const {
-  const double repeat = surface(point.part).repeat;
-  const auto step = [&](double share) {
-    const double at = share * static_cast<double>(number);
-    return static_cast<float>(at - std::floor(at));
-  };
-  if (!point.placed) {
+std::vector<TexturePlace> SurfaceLayer::placed(const VisiblePoint& point, std::size_t number) const {
+  const std::vector<Laid>& laid = laid_[static_cast<std::size_t>(point.part)];
+  std::vector<TexturePlace> places;
+  for (std::size_t k = 0; k < laid.size(); ++k) {
+    TexturePlace& place = places.emplace_back(place_on(point, k));
+    if (point.placed) continue;
+    const auto step = [&](double share) {
+      const double at = share * static_cast<double>(number);
+      return static_cast<float>((at - std::floor(at)) / laid[k].repeat);
+    };
     const Vec3 level = cross({0, 1, 0}, point.normal);
-    TexturePlace place = repeated(point.place, repeat);
     place.u = step(0.61803398875), place.v = step(0.7548776662);
     for (int c = 0; c < 3; ++c) place.tangent[c] = static_cast<float>(level[c]);
-    return place;
   }
-  return repeated(point.place, repeat);
+  return places;
 }
 
 namespace {
 
-void add_seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at, double share,
-                     SurfaceLayer::Place& result) {
-  for (const brdf::TextureTap& tap : brdf::texture_taps(texture.width, texture.height, at.u, at.v)) {
-    if (tap.weight == 0) continue;
-    result.pieces.push_back({brdf::sbrdf_texel(texture, tap.column, tap.row), share * tap.weight});
-  }
-}
-
-// The texels themselves at places that are spread over the whole footprint, up to 16 x 16.
-SurfaceLayer::Place seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at, bool filtered) {
-  SurfaceLayer::Place result{{at.tangent[0], at.tangent[1], at.tangent[2]}, {}};
+// The texels themselves at places that are spread over the whole footprint, up to 16 x 16, with the lobes whose bits
+// are set. Returns the part that they cover.
+double add_seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at, bool filtered, std::uint32_t lobes,
+                       std::vector<SurfaceLayer::Piece>& pieces) {
   const auto places = [&](const float* step) {
     const double texels = std::hypot(step[0] * texture.width, step[1] * texture.height);
     return filtered ? static_cast<int>(std::clamp(std::ceil(texels), 1.0, 16.0)) : 1;
   };
   const FilterProbes all{0, places(at.across), places(at.down)};
-  for (int i = 0; i < all.count(); ++i) add_seen_texels(texture, probe_place(at, 1, all, i), 1.0 / all.count(), result);
-  return result;
+  const Vec3 tangent = {at.tangent[0], at.tangent[1], at.tangent[2]};
+  double covered = 0;
+  for (int i = 0; i < all.count(); ++i) {
+    const TexturePlace probe = probe_place(at, 1, all, i);
+    for (const brdf::TextureTap& tap : brdf::texture_taps(texture.width, texture.height, probe.u, probe.v)) {
+      if (tap.weight == 0) continue;
+      const double share = tap.weight / all.count();
+      pieces.push_back({brdf::sbrdf_texel(texture, tap.column, tap.row), share, tangent});
+      std::vector<brdf::LafortuneLobe>& of = pieces.back().texel.surface.lobes;
+      for (std::size_t lobe = 0; lobe < of.size(); ++lobe)
+        if ((lobes >> lobe & 1U) == 0) of[lobe].albedo = {};
+      const auto texel = static_cast<std::size_t>(tap.row) * static_cast<std::size_t>(texture.width) +
+                         static_cast<std::size_t>(tap.column);
+      covered += texture.alpha.empty() ? share : share * texture.alpha[texel];
+    }
+  }
+  return covered;
 }
 
 }  // namespace
 
-SurfaceLayer::Place SurfaceLayer::place(const VisiblePoint& point, std::size_t number, const Effects& effects) const {
-  const std::size_t which = shading_of(point.part, effects);
-  const brdf::SbrdfTexture& texture = which < textures_.size() ? *textures_[which] : means_[which - textures_.size()];
-  Place result = seen_texels(texture, placed(point, number), effects.texture_filter);
-  for (Piece& piece : result.pieces) {
-    std::vector<brdf::LafortuneLobe>& lobes = piece.texel.surface.lobes;
-    for (std::size_t i = 0; i < lobes.size(); ++i)
-      if ((effects.texture_lobes >> i & 1U) == 0) lobes[i].albedo = {};
+// As stack() has it, from the uppermost texture on.
+SurfaceLayer::Place SurfaceLayer::place(int part, const std::vector<TexturePlace>& places,
+                                        const Effects& effects) const {
+  const std::vector<Laid>& laid = laid_[static_cast<std::size_t>(part)];
+  Place result;
+  double left = 1, covered = 0;
+  for (std::size_t k = laid.size(); k-- > 0;) {
+    const double share = left * places[k].share;
+    if (share > 0) {
+      const std::size_t which = shading_of(laid[k], effects), first = result.pieces.size();
+      const brdf::SbrdfTexture& texture =
+          which < textures_.size() ? *textures_[which] : means_[which - textures_.size()];
+      covered += places[k].share * add_seen_texels(texture, repeated(places[k], laid[k].repeat), effects.texture_filter,
+                                                   effects.texture_lobes, result.pieces);
+      for (std::size_t i = first; i < result.pieces.size(); ++i) result.pieces[i].share *= share;
+    }
+    if (laid[k].blends) continue;
+    left *= std::max(1 - covered, 0.0), covered = 0;
   }
+  result.bare = left;
   return result;
 }
 
+SurfaceLayer::Place SurfaceLayer::place(const VisiblePoint& point, std::size_t number, const Effects& effects) const {
+  return place(point.part, placed(point, number), effects);
+}
+
 SurfaceLayer::Place SurfaceLayer::place(int part, const MeshPoint& point) const {
-  return seen_texels(*surface(part).texture, repeated(layout_->place(part, point), surface(part).repeat), false);
+  std::vector<TexturePlace> places;
+  for (std::size_t k = 0; k < laid_[static_cast<std::size_t>(part)].size(); ++k)
+    places.push_back(layouts_[k]->place(part, point));
+  Effects all;
+  all.texture = true, all.texture_filter = false, all.texture_lobes = ~0U;
+  return place(part, places, all);
 }
 
 void SurfaceLayer::add_mapped(const std::vector<VisiblePoint>& points, bool coat,
@@ -218,16 +339,21 @@ void SurfaceLayer::add(const std::vector<VisiblePoint>& points, const Effects& e
     std::vector<std::pair<std::size_t, double>> shares;
   };
   std::map<std::pair<std::size_t, int>, Probes> all;
+  Stack seen;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (surface(points[i].part).texture == nullptr) continue;
-    const std::size_t which = shading_of(points[i].part, effects);
-    const TexturePlace place = placed(points[i], i);
-    const FilterProbes probes = effects.texture_filter ? shader_->probes(which, place, 1) : FilterProbes{};
-    for (int k = 0; k < probes.count(); ++k) {
-      Probes& into = all[{which, probes.level}];
-      into.points.push_back(points[i]);
-      into.points.back().place = probe_place(place, 1, probes, k);
-      into.shares.emplace_back(i, 1.0 / probes.count());
+    const std::vector<TexturePlace> places = placed(points[i], i);
+    if (places.empty()) continue;
+    stack(points[i].part, places.data(), 1, effects, 1, seen);
+    colors[i] = seen.bare * colors[i];
+    for (std::size_t level = 0; level < seen.count; ++level) {
+      const Shown& shown = seen.shown[level];
+      if (!(shown.share > 0)) continue;
+      for (int k = 0; k < shown.probes.count(); ++k) {
+        Probes& into = all[{shown.number, shown.probes.level}];
+        into.points.push_back({points[i].normal, points[i].to_viewer, points[i].part, true,
+                               probe_place(shown.repeated, 1, shown.probes, k)});
+        into.shares.emplace_back(i, shown.share / shown.probes.count());
+      }
     }
   }
   const SbrdfLight light = light_of(scene_, effects);
@@ -240,23 +366,27 @@ void SurfaceLayer::add(const std::vector<VisiblePoint>& points, const Effects& e
 // The textured points of one row of a picture, gathered until the kernel has enough of one texture.
 class SurfaceLayer::Row {
  public:
-  Row(const SbrdfShader& shader, const SbrdfLight& light, float weight, bool filtered, image::Image& rgba)
-      : shader_(shader), light_(light), weight_(weight), filtered_(filtered), rgba_(rgba) {}
+  Row(const SbrdfShader& shader, const SbrdfLight& light, float weight, image::Image& rgba)
+      : shader_(shader), light_(light), weight_(weight), rgba_(rgba) {}
 
-  void put(std::size_t texture, int x, int y, const float* normal, const Vec3& to_viewer, const TexturePlace& place,
-           double repeat) {
+  // A sample covers `scale` times the footprints along each side.
+  void put(const Stack& stack, double scale, int x, int y, const float* normal, const Vec3& to_viewer) {
     const float toward[3] = {static_cast<float>(to_viewer.x), static_cast<float>(to_viewer.y),
                              static_cast<float>(to_viewer.z)};
     float* pixel = rgba_.pixel(x, y);
-    // A sample stands for its share of the area of the pixel.
-    const double scale = std::sqrt(weight_);
-    const TexturePlace whole = filtered_ ? repeated(place, repeat) : place;
-    const FilterProbes probes = filtered_ ? shader_.probes(texture, whole, scale) : FilterProbes{};
-    if (probes.level == 0 && probes.count() == 1)
-      return put_one(texture, 0, pixel, weight_, normal, toward, place, repeat);
-    for (int i = 0; i < probes.count(); ++i) {
-      put_one(texture, probes.level, pixel, weight_ / static_cast<float>(probes.count()), normal, toward,
-              probe_place(whole, scale, probes, i), 1);
+    for (std::size_t level = 0; level < stack.count; ++level) {
+      const Shown& shown = stack.shown[level];
+      if (!(shown.share > 0)) continue;
+      const FilterProbes& probes = shown.probes;
+      const auto weight = static_cast<float>(weight_ * shown.share);
+      if (probes.level == 0 && probes.count() == 1) {
+        put_one(shown.number, 0, pixel, weight, normal, toward, *shown.place, shown.repeat);
+        continue;
+      }
+      for (int i = 0; i < probes.count(); ++i) {
+        put_one(shown.number, probes.level, pixel, weight / static_cast<float>(probes.count()), normal, toward,
+                probe_place(shown.repeated, scale, probes, i), 1);
+      }
     }
   }
   void flush() {
@@ -281,7 +411,6 @@ class SurfaceLayer::Row {
   const SbrdfShader& shader_;
   const SbrdfLight& light_;
   float weight_;
-  bool filtered_;
   image::Image& rgba_;
   std::size_t texture_ = 0;
   int level_ = 0;
@@ -293,11 +422,15 @@ class SurfaceLayer::Row {
 void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects,
                        float weight, image::Image& rgba, bool with_textures) const {
   with_textures = with_textures && textured_;
-  if (!with_textures && !(mapped_ && effects.maps)) return;
+  if (!with_textures && !dims_ && !(mapped_ && effects.maps)) return;
+  // A sample stands for its share of the area of the pixel.
+  const double scale = std::sqrt(weight);
+  const std::size_t pixels = static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height);
   const SbrdfLight light = light_of(scene_, effects);
   parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
     std::optional<Row> textured;
-    if (with_textures) textured.emplace(*shader_, light, weight, effects.texture_filter, rgba);
+    Stack seen;
+    if (with_textures) textured.emplace(*shader_, light, weight, rgba);
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       const Rays& rays = gbuffer.rays;
       const Vec3 first = rays.corner + (y + 0.5) * rays.down;
@@ -305,14 +438,15 @@ void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& 
         const int part = gbuffer.part(x, y);
         if (part < 0) continue;
         const PartSurface& surface = surfaces_[static_cast<std::size_t>(part)];
-        if (surface.texture != nullptr) {
-          if (with_textures)
-            textured->put(shading_of(part, effects), x, y, gbuffer.at(x, y), -(first + (x + 0.5) * rays.right),
-                          places[static_cast<std::size_t>(y) * gbuffer.width + x], surface.repeat);
-        } else if (effects.maps && surface.color_map != nullptr) {
+        if (effects.maps && surface.color_map != nullptr && !surface.hides_paint()) {
           const color::Rgb color = mapped_difference(part, gbuffer.normal(x, y), gbuffer.to_viewer(x, y), effects.coat);
           for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] += weight * static_cast<float>(color[c]);
         }
+        if (surface.texture == nullptr || !(with_textures || dims_)) continue;
+        stack(part, &places[gbuffer.index(x, y)], pixels, effects, scale, seen);
+        if (dims_)
+          for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] *= static_cast<float>(seen.bare);
+        if (with_textures) textured->put(seen, scale, x, y, gbuffer.at(x, y), -(first + (x + 0.5) * rays.right));
       }
     }
     if (textured) textured->flush();

@@ -19,13 +19,32 @@
 
 namespace goniochrome::render {
 
-// The surface of a part beyond its paint. A part with a texture has a paint without weights.
-struct PartSurface {
+// A texture and how it lies on a part.
+struct LaidTexture {
   const brdf::SbrdfTexture* texture = nullptr;
   double repeat = 1;  // how many times the texture is laid where its coordinates run from 0 to 1
-  const brdf::ColorMap* color_map = nullptr;
   TextureLaying laying = {};
+  // Whether it is one more projection of the texture beneath it: what they show is added up by their shares, and not
+  // laid over each other.
+  bool blends = false;
 };
+
+// The surface of a part beyond its paint. A part whose paint is not seen has one without weights.
+struct PartSurface {
+  const brdf::SbrdfTexture* texture = nullptr;  // the lowest one
+  double repeat = 1;
+  const brdf::ColorMap* color_map = nullptr;  // of the paint
+  TextureLaying laying = {};
+  std::vector<LaidTexture> over = {};  // that lie over `texture`, the uppermost last
+
+  // All textures from the lowest one on.
+  std::vector<LaidTexture> textures() const;
+  // Whether no place of the part shows the paint: the lowest texture has no alpha.
+  bool hides_paint() const { return texture != nullptr && texture->alpha.empty(); }
+};
+
+// The most textures of a part.
+constexpr std::size_t kMostLaid = 12;
 
 class SurfaceLayer {
  public:
@@ -40,6 +59,11 @@ class SurfaceLayer {
   // What there is to add to a picture that an engine drew by lobes: textures, and color maps under lights. Paths
   // evaluate color maps under every light.
   bool textured() const { return textured_; }
+  // Whether a paint is seen through a texture, so that the picture beneath the layer is dimmed. It must then hold one
+  // sample alone.
+  bool dims() const { return dims_; }
+  // The most textures that a part has.
+  std::size_t depth() const { return layouts_.size(); }
   bool mapped() const { return mapped_; }
   const PartSurface& surface(int part) const { return surfaces_[static_cast<std::size_t>(part)]; }
   brdf::CriticalAngle treatment() const { return treatment_; }
@@ -48,18 +72,40 @@ class SurfaceLayer {
   // The textures as the kernel and the programs of OpenGL have them, and then the mean texel of each; null where there
   // are none.
   const SbrdfShader* shader() const { return shader_.get(); }
-  // Which of these a part with a texture shows, and all that are shown.
-  std::size_t shading_of(int part, const Effects& effects) const;
+  // Those of them that are shown.
   std::vector<std::size_t> drawn(const Effects& effects) const;
   // The most lobes of a texture.
   int lobes() const;
 
-  // Where the textured parts of a G-buffer's pixels lie on their textures; empty without textures.
+  // What a point shows of one of its textures: the number for shader(), its place there (as it is, and with the
+  // repetition) and the probes of it, and the part of what is seen.
+  struct Shown {
+    std::size_t number = 0;
+    const TexturePlace* place = nullptr;
+    double repeat = 1;
+    TexturePlace repeated = {};
+    FilterProbes probes = {};
+    double share = 1;
+  };
+  // What all textures show of a point, and the part of the paint beneath that is seen. `places` are those on each
+  // texture of the part, `step` apart. A sample covers `scale` times their footprints along each side.
+  struct Stack {
+    std::size_t count = 0;
+    std::array<Shown, kMostLaid> shown;
+    double bare = 1;
+  };
+  void stack(int part, const TexturePlace* places, std::size_t step, const Effects& effects, double scale,
+             Stack& result) const;
+
+  // Where the textured parts of a G-buffer's pixels lie on their textures, those of all pixels on the lowest texture
+  // first, see Gbuffer::point(); empty without textures.
   std::vector<TexturePlace> places(const Gbuffer& gbuffer) const;
   // The same with footprints, whose middles lie so far from the points, in pixels to the right and downward.
   std::vector<TexturePlace> filtered_places(const Gbuffer& gbuffer, const std::array<double, 2>& middle = {}) const;
-  // That of one pixel, with its footprint; nothing where it shows no texture or the G-buffer has no triangles.
-  std::optional<TexturePlace> place(const Gbuffer& gbuffer, int x, int y) const;
+  // Puts those of one pixel, with their footprints, which are `scale` times as large, on a point. They count as known
+  // where it matters which place is covered. Leaves it alone where it shows no texture or the G-buffer has no
+  // triangles.
+  void put_places(const Gbuffer& gbuffer, int x, int y, double scale, VisiblePoint& point) const;
   // In how many places a textured point is shaded with the effect texture_filter, where each counts with the lobes of
   // its level, relative to those without it: the mean over the points.
   double filter_cost(const std::vector<VisiblePoint>& points) const;
@@ -68,7 +114,8 @@ class SurfaceLayer {
 
   // Adds `weight` times the layer, as far as the effects have it, to the RGB of every pixel; a part whose texture is
   // left out shows its mean texel. `places` are those of the G-buffer. Of a color map it adds the difference to what
-  // the lobe model shows of the same light, gloss apart. Where an engine drew the textures, `with_textures` is false.
+  // the lobe model shows of the same light, gloss apart. What is in the picture is dimmed where textures cover it.
+  // Where an engine drew the textures, `with_textures` is false.
   // With the effect texture_filter, the weight is also the part of its pixel that a sample stands for.
   // Bit-identical for any number of threads.
   void add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects, float weight,
@@ -85,14 +132,16 @@ class SurfaceLayer {
   // each, which is enough to tell what a texture is worth.
   void add(const std::vector<VisiblePoint>& points, const Effects& effects, std::vector<color::Rgb>& colors) const;
 
-  // Texels, in the frame of normal and tangent, and their shares: what a textured point consists of.
+  // Texels, in the frame of normal and tangent, and their shares: what a textured point consists of, besides a part of
+  // its paint.
   struct Piece {
     brdf::SbrdfTexel texel;
     double share = 1;
+    Vec3 tangent = {};
   };
   struct Place {
-    Vec3 tangent;
     std::vector<Piece> pieces;
+    double bare = 0;
   };
   // Of the point of this number; its lobes that the effects have.
   Place place(const VisiblePoint& point, std::size_t number, const Effects& effects) const;
@@ -102,17 +151,27 @@ class SurfaceLayer {
 
  private:
   class Row;
-  TexturePlace placed(const VisiblePoint& point, std::size_t number) const;
+  struct Laid {
+    std::size_t texture = 0;
+    double repeat = 1;
+    bool blends = false;
+  };
+  std::size_t shading_of(const Laid& laid, const Effects& effects) const;
+  double coverage(const Shown& shown, double scale, std::uint32_t lobes) const;
+  Place place(int part, const std::vector<TexturePlace>& places, const Effects& effects) const;
+  std::vector<TexturePlace> placed(const VisiblePoint& point, std::size_t number) const;
 
   const Scene& scene_;
   std::vector<PartSurface> surfaces_;
   brdf::CriticalAngle treatment_;
   std::uint64_t id_;
-  bool empty_ = true, textured_ = false, mapped_ = false;
+  bool empty_ = true, textured_ = false, mapped_ = false, dims_ = false;
   std::vector<const brdf::SbrdfTexture*> textures_;  // each once
   std::vector<brdf::SbrdfTexture> means_;            // of the same
   std::unique_ptr<const SbrdfShader> shader_;        // of the textures, then of the means
-  std::unique_ptr<const TextureLayout> layout_;
+  std::vector<std::vector<Laid>> laid_;              // on each part, the lowest first
+  std::vector<std::unique_ptr<const TextureLayout>>
+      layouts_;  // of the lowest textures of all parts, of those over them
 };
 
 }  // namespace goniochrome::render

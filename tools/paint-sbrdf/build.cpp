@@ -16,6 +16,8 @@ namespace goniochrome::tool {
 namespace {
 
 constexpr int kUsualSize = 256, kMostLobes = 16;
+// Shares add up to 1 but for rounding.
+constexpr float kAllCovered = 1 - 1e-6F;
 constexpr std::size_t kMostTexels = std::size_t{1} << 24;
 constexpr double kGlossIndex = 1.5;
 
@@ -93,7 +95,7 @@ class Changes {
     return changes;
   }
 
-  void apply(double u, double v, brdf::LobeSurface& surface) const {
+  void apply(double u, double v, double alpha, brdf::LobeSurface& surface) const {
     const double steps = 2 * (polish_.at(u, v) - wear_.at(u, v));
     if (steps == 0 && turn_rad_ == 0 && gloss_.empty()) return;
     brdf::LobeSurface changed{surface.diffuse, {}};
@@ -101,7 +103,7 @@ class Changes {
       if (steps != 0) widen(lobe.lobe, std::pow(4.0, steps));
       changed.lobes.push_back(brdf::turned_lobe(lobe.lobe, lobe.turn_rad + turn_rad_));
     }
-    brdf::add_surface(changed, coat_, gloss_.at(u, v));
+    brdf::add_surface(changed, coat_, alpha * gloss_.at(u, v));
     surface = std::move(changed);
   }
 
@@ -132,8 +134,8 @@ class Collection {
 
 // A texel and how far it is from what it stands for, by refit_error().
 struct MadeTexel {
-  brdf::LobeSurface surface;
-  double error = 0;
+  brdf::LobeSurface surface;  // multiplied by alpha
+  double error = 0, alpha = 0;
 };
 
 class Builder {
@@ -152,7 +154,7 @@ class Builder {
         share[number] += part;
         add(surfaces_.all[number], column, line, part, texel);
       }
-      changes_.apply((column + 0.5) / layout_.width, 1 - (line + 0.5) / layout_.height, texel.surface);
+      changes_.apply((column + 0.5) / layout_.width, 1 - (line + 0.5) / layout_.height, texel.alpha, texel.surface);
     }
     return texels;
   }
@@ -162,12 +164,15 @@ class Builder {
   void add(const Surface& surface, int column, int row, double part, MadeTexel& texel) const {
     if (surface.width() == 0) {
       brdf::add_surface(texel.surface, surface.paint, part);
+      texel.alpha += part * surface.alpha(0, 0);
       return;
     }
     brdf::LobeSurface sum;
     for (const auto& [y, high] : brdf::covered_texels(row, layout_.height, surface.height()))
-      for (const auto& [x, wide] : brdf::covered_texels(column, layout_.width, surface.width()))
+      for (const auto& [x, wide] : brdf::covered_texels(column, layout_.width, surface.width())) {
         brdf::add_surface(sum, surface.texel(x, y), wide * high);
+        texel.alpha += part * wide * high * surface.alpha(x, y);
+      }
     const int most = most_lobes_ > 0 ? std::min(most_lobes_, surface.lobes()) : surface.lobes();
     fit::Refit fitted = fit::refit(sum, most);
     texel.error = std::max(texel.error, fitted.error);
@@ -222,6 +227,8 @@ Result<BuiltMap> built_map(const Options& options, const Surfaces& surfaces, con
   std::vector<std::vector<double>> shares(rows, std::vector<double>(surfaces.all.size(), 0.0));
   std::vector<std::uint32_t> numbers(rows * wide);
   std::vector<float> resampled(rows * wide);  // errors
+  std::vector<float> alpha(rows * wide);
+  bool covers = true;
   Collection kinds;
   constexpr std::size_t kRowsAtOnce = 32;
   for (std::size_t first = 0; first < rows; first += kRowsAtOnce) {
@@ -235,6 +242,8 @@ Result<BuiltMap> built_map(const Options& options, const Surfaces& surfaces, con
         const std::size_t place = (first + i) * wide + column;
         numbers[place] = kinds.number(made[i][column].surface);
         resampled[place] = static_cast<float>(made[i][column].error);
+        alpha[place] = static_cast<float>(std::min(made[i][column].alpha, 1.0));
+        covers = covers && alpha[place] > kAllCovered;
       }
     }
     session.progress(fmt::format("texels: {} of {} rows", first + count, rows));
@@ -272,8 +281,12 @@ Result<BuiltMap> built_map(const Options& options, const Surfaces& surfaces, con
       const float* from = &texels[stride * numbers[static_cast<std::size_t>(row % layout.crop_height) * wide +
                                                    static_cast<std::size_t>(column % layout.crop_width)]];
       texture.values.insert(texture.values.end(), from, from + stride);
+      if (!covers)
+        texture.alpha.push_back(alpha[static_cast<std::size_t>(row % layout.crop_height) * wide +
+                                      static_cast<std::size_t>(column % layout.crop_width)]);
     }
   }
+  for (const float value : alpha) map.alpha_mean += value / static_cast<double>(alpha.size());
   return map;
 }
 

@@ -91,10 +91,12 @@ cli::ToolSpec tool_spec(Options& o) {
       "A surface is a fitted paint (FILE#NAME of a paint XML file; a name with * is several surfaces), a map, or a "
       "picture, whose colors become the diffuse part. Paints keep the exponents that they were fitted with, so that an "
       "environment that was prefiltered for their basis serves the map. Their mirror becomes the sharpest lobe, and "
-      "what the coat lets through is that of 45 degrees.",
+      "what the coat lets through is that of 45 degrees. The word none is a surface that is not there: where it lies, "
+      "the "
+      "map has an alpha below 1 and shows what lies beneath it, such as the paint of a car beneath a decal.",
       "Where surfaces meet in a texel, their reflections are mixed, and not the parameters of their lobes. The mean of "
       "the parameters of two lobes is a third lobe that looks like neither."};
-  spec.inputs = {"SURFACE", "paints (FILE#NAME), maps (*.sbrdf.exr) and pictures", &o.inputs, 1};
+  spec.inputs = {"SURFACE", "paints (FILE#NAME), maps (*.sbrdf.exr), pictures and none", &o.inputs, 1};
   add_pattern(spec, o);
   add_changes(spec, o);
   add_lobes(spec, o);
@@ -103,6 +105,8 @@ cli::ToolSpec tool_spec(Options& o) {
       {"fit-paint -q --basis testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.paints.xml && paint-sbrdf "
        "fitted.paints.xml#silver_fine fitted.paints.xml#candy_red --stripe 0.45,0.55 -o stripe.sbrdf.exr",
        "lay a red stripe on silver"},
+      {"paint-sbrdf none testdata/nameplate.sbrdf.exr --stripe 0.4,0.6 -o strip.sbrdf.exr",
+       "make a strip that is laid on any paint"},
       {"paint-sbrdf testdata/brushed.sbrdf.exr testdata/wood.sbrdf.exr --mosaic 2 -o both.sbrdf.exr",
        "set two maps side by side"},
       {"paint-sbrdf testdata/brushed.sbrdf.exr testdata/nameplate.sbrdf.exr --mix 0.5 --lobes 3 --size 16x16 -o "
@@ -118,14 +122,15 @@ cli::ToolSpec tool_spec(Options& o) {
       {"exponents", "lowest and highest exponent of a lobe that reflects; null where none does"},
       {"mirror_exponent", "exponent of the lobes that mirrors became"},
       {"surfaces[].name", "name of the paint, or file"},
-      {"surfaces[].kind", "paint, map or picture"},
+      {"surfaces[].kind", "paint, map, picture or nothing"},
       {"surfaces[].share", "share of the map that it covers"},
       {"surfaces[].strength_error",
        "mean relative error of the gloss of a paint over viewing angles up to 80 degrees; 0 where it has none"},
       {"refitted_texels", "texels whose lobes were fitted, since a texel has no room for all"},
       {"refit_error_mean", "mean relative error of these (root mean square over light and viewer)"},
       {"refit_error_max", "the largest"},
-      {"albedo_max", "largest share of even light that a texel sends back along the normal"}};
+      {"albedo_max", "largest share of even light that a texel sends back along the normal"},
+      {"alpha_mean", "mean alpha: 1 where the map covers all that lies beneath it"}};
   spec.see_also = {"render-osmesa(1)", "fit-paint(1)", "prefilter-envmap(1)", "goniochrome-paint(5)",
                    "goniochrome-theory(7)"};
   return spec;

@@ -124,6 +124,27 @@ gray() { # gray FILE W H BYTES...: a gray picture, bytes as octal numbers
   for channel in diffuse.R lobe0.n lobe0.R; do [ "$(channel a.exr $channel 7 7)" = "$(channel b.exr $channel 7 7)" ]; done
 }
 
+@test "where none lies, the map has alpha, which changes and mixtures keep" {
+  paint-sbrdf -q none p.xml#light --stripe 0.25,0.625 --size 4x4 --report r.json -o m.exr
+  for row in "0 0.000000000 0.000000000" "1 0.500000000 0.125000000" "2 1.000000000 0.250000000" "3 0.000000000 0.000000000"; do
+    read -r y alpha diffuse <<<"$row"
+    [ "$(channel m.exr alpha 1 "$y") $(channel m.exr diffuse.R 1 "$y")" = "$alpha $diffuse" ] || { echo "$y"; false; }
+  done
+  [ "$(jq -c '[.results.alpha_mean, .results.surfaces[0].kind]' r.json)" = '[0.375,"nothing"]' ]
+  paint-sbrdf -q m.exr --crop 1,1,1,2 --tile 2x1 -o cut.exr
+  [ "$(channel cut.exr alpha 1 0) $(channel cut.exr alpha 1 1)" = "0.500000000 1.000000000" ]
+  paint-sbrdf -q m.exr --size 2x2 -o half.exr
+  [ "$(channel half.exr alpha 0 0) $(channel half.exr alpha 0 1)" = "0.250000000 0.500000000" ]
+  paint-sbrdf -q m.exr p.xml#dark --mix 0.5 -o mixed.exr
+  [ "$(channel mixed.exr alpha 0 0) $(channel mixed.exr alpha 0 2)" = "0.500000000 1.000000000" ]
+  paint-sbrdf -q p.xml#light p.xml#dark --mix 0.5 --size 1x1 --report r.json -o all.exr
+  [ "$(jq .results.alpha_mean r.json)" = 1 ]
+  run oiiotool --info -v all.exr
+  [[ "$output" != *alpha* ]]
+  oiiotool m.exr --mulc 2 -o wrong.exr
+  refused 3 "give a number from 0 to 1" paint-sbrdf wrong.exr
+}
+
 @test "--explain tells the surfaces, the pattern and the map" {
   run paint-sbrdf p.xml#dark "$wood" --stripe 0.4,0.6 --explain -o m.exr
   [[ "$output" == *"surface 1: paint dark, 1 lobes"* && "$output" == *"128 x 128 texels"* && "$output" == *"exact"* ]]

@@ -56,6 +56,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   results["refit_error_mean"] = map.error_mean;
   results["refit_error_max"] = map.error_max;
   results["albedo_max"] = map.albedo_max;
+  results["alpha_mean"] = map.alpha_mean;
   if (map.albedo_max > 1.001)
     session.warn(
         fmt::format("a texel sends back {:.3g} of the light that it gets along the normal: a surface that "
@@ -64,6 +65,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   std::string line =
       fmt::format("map: {} x {} texels, {} lobes", map.texture.width, map.texture.height, map.texture.lobes);
   if (reflects) line += fmt::format(" of exponents {:.4g} to {:.4g}", map.lowest, map.highest);
+  if (!map.texture.alpha.empty()) line += fmt::format("; alpha is {:.3g} in the mean", map.alpha_mean);
   if (map.refitted > 0)
     line += fmt::format("; {} texels fitted, with errors of {:.1f} % in the mean and {:.1f} % at most", map.refitted,
                         100 * map.error_mean, 100 * map.error_max);

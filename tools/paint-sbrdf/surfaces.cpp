@@ -15,6 +15,8 @@ namespace goniochrome::tool {
 namespace {
 
 constexpr double kUsualMirrorExponent = 1000;
+// Stands for a surface that is not there.
+constexpr const char* kNothing = "none";
 
 struct ReadPaint {
   paint::Paint paint;
@@ -122,10 +124,21 @@ brdf::LobeSurface Surface::texel(int column, int row) const {
   return {(1 / kPi) * color::Rgb{rgb[0], rgb[1], rgb[2]}, {}};
 }
 
+double Surface::alpha(int column, int row) const {
+  if (kind == "nothing") return 0;
+  if (!map || map->alpha.empty()) return 1;
+  return map
+      ->alpha[static_cast<std::size_t>(row) * static_cast<std::size_t>(map->width) + static_cast<std::size_t>(column)];
+}
+
 Result<Surfaces> read_surfaces(const Options& options, cli::Session& session) {
   Surfaces result;
   std::vector<Slot> slots;
   for (const std::string& input : options.inputs) {
+    if (input == kNothing) {
+      slots.push_back({{kNothing, "nothing", {}, nullptr, nullptr, 0}, {}});
+      continue;
+    }
     const std::string file = formats::paint_reference(input).file;
     GONIO_ASSIGN(const Kind kind, kind_of(file));
     if (kind == Kind::kPaints) {

@@ -15,7 +15,7 @@ namespace goniochrome::tool {
 // One of them. A paint is the same everywhere; maps and pictures have texels, and repeat.
 struct Surface {
   std::string name;
-  std::string kind;                               // "paint", "map" or "picture"
+  std::string kind;                               // "paint", "map", "picture" or "nothing"
   brdf::LobeSurface paint;                        // of a paint
   std::shared_ptr<const brdf::SbrdfTexture> map;  // of a map
   std::shared_ptr<const image::Image> picture;    // of a picture: reflectances
@@ -26,6 +26,8 @@ struct Surface {
   // The most lobes of a texel.
   int lobes() const { return map ? map->lobes : static_cast<int>(paint.lobes.size()); }
   brdf::LobeSurface texel(int column, int row) const;
+  // The part of what lies beneath that it covers there.
+  double alpha(int column, int row) const;
 };
 
 struct Surfaces {

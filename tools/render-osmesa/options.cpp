@@ -62,13 +62,18 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
           "The texture is an EXR of generalized cosine lobes, as paint-sbrdf(1) makes, and stands in the place of a "
           "paint. FILE*N repeats it N times. project=uv lays it by the texture coordinates of the mesh, and box along "
           "the coordinate axis that is nearest to the normal; without the word it is uv, or box where there are no "
-          "coordinates, which is told. planar lays it along axis (x, y, z, -x, ... or X,Y,Z), so that it reads right "
+          "coordinates, which is told. triplanar lays it along all three coordinate axes and blends what they show by "
+          "the fourth powers of the normal's components, so that it has no seams. planar lays it along axis (x, y, z, "
+          "-x, ... or X,Y,Z), so that it reads right "
           "from both sides; decal does so once and from one side, and the rest of the part shows the texels of its "
-          "edge; cylinder and sphere lay it around axis. scale is the width of the texture in units of the mesh, "
+          "edge, or nothing of a map that has alpha; cylinder and sphere lay it around axis. scale is the width of the "
+          "texture in units of the mesh, "
           "center "
           "(X,Y,Z) the place of its middle, and turn an angle in degrees. Without them the texture covers the parts "
           "once, about the middle of their box, and axis is y, or for planar the thinnest side of the box. "
-          "Without the effect texture, the part shows the mean texel.");
+          "A map that has alpha lies over what the part wears, its paint or the maps that were named before, and "
+          "shows of it what it does not cover; several may lie over one another. Without the effect texture, the part "
+          "shows the mean texel.");
   spec.option("texture-maps", "WHAT", "mip", &o.texture_maps, "where the lobes of textures are looked up")
       .one_of({"cubes", "mip"})
       .more(
@@ -406,7 +411,8 @@ void add_report(cli::ToolSpec& spec) {
        "the longest side of the mesh's box in its units, and the meters of the unit that it is taken to be in"},
       {"parts[]: name, material, paint", "parts of the mesh and what they wear"},
       {"textures[]: part, file, projection, width",
-       "what --texture laid where; projection is uv, planar, box, cylinder, sphere or decal, and width that of the "
+       "what --texture laid where; projection is uv, planar, box, triplanar, cylinder, sphere or decal, and width that "
+       "of the "
        "texture in units of the mesh, or null"},
       {"exposure_stops", "exposure in force"},
       {"view", "display and view of a PNG"},

@@ -102,6 +102,43 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
   done
 }
 
+@test "a triplanar projection shows a side as a box does, and has no seam" {
+  draw box cube.obj Cube=four.sbrdf.exr,project=box
+  draw three cube.obj Cube=four.sbrdf.exr,project=triplanar
+  oiiotool box.exr three.exr --fail 0.001 --diff
+  [ "$(jq -c '.results.textures[0] | [.projection, .width]' three.json)" = '["triplanar",2]' ]
+}
+
+@test "a map with alpha shows what lies beneath, in every engine and in order" {
+  { echo '<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="blue"><lobes space="lin_rec2020_scene" basis="b" method="stated" max_de00="0" mean_de00="0">'
+    echo '<diffuse r="0.01" g="0.01" b="0.3"/></lobes></paint></paints>'; } >p.xml
+  printf 'P6\n1 1\n255\n\377\0\0' >red.ppm
+  printf 'P6\n1 1\n255\n\0\377\0' >green.ppm
+  paint-sbrdf -q none red.ppm --stripe 0.5,1 --size 2x2 -o red.sbrdf.exr
+  paint-sbrdf -q none green.ppm --stripe 0.5,1 --angle 90 --size 2x2 -o green.sbrdf.exr
+  for engine in cpu gl integral path; do
+    # shellcheck disable=SC2086
+    render-osmesa -q --mesh square.obj --paint p.xml --texture Square=red.sbrdf.exr,project=decal,axis=z \
+      --texture Square=green.sbrdf.exr,project=decal,axis=z $lit --orbit 0,0,0.9 --engine $engine -o $engine.exr
+    [ "$(texel $engine.exr 11 11) $(texel $engine.exr 20 11) $(texel $engine.exr 11 20) $(texel $engine.exr 20 20)" = "green red green blue" ] ||
+      [ "$(texel $engine.exr 11 11) $(texel $engine.exr 20 11) $(texel $engine.exr 11 20) $(texel $engine.exr 20 20)" = "red green blue green" ] ||
+      { echo "$engine: $(texel $engine.exr 11 11) $(texel $engine.exr 20 11) $(texel $engine.exr 11 20) $(texel $engine.exr 20 20)"; false; }
+    oiiotool cpu.exr $engine.exr --fail 0.002 --diff
+  done
+  # The other way round, red lies over green.
+  # shellcheck disable=SC2086
+  render-osmesa -q --mesh square.obj --paint p.xml --texture Square=green.sbrdf.exr,project=decal,axis=z \
+    --texture Square=red.sbrdf.exr,project=decal,axis=z $lit --orbit 0,0,0.9 --report r.json -o turned.exr
+  [ "$(texel turned.exr 11 11) $(texel turned.exr 20 11)" = "red red" ]
+  [ "$(jq -r '.results.parts[0].paint' r.json)" = blue ]
+  # The mean texels are seen through as well.
+  # shellcheck disable=SC2086
+  render-osmesa -q --mesh square.obj --paint p.xml --texture Square=red.sbrdf.exr ${lit/auto/auto,-texture} --orbit 0,0,0.9 -o mean.exr
+  oiiotool --dumpdata:empty=0 mean.exr | awk '/Pixel \(16, 16\)/ { exit !($(NF-3) > 0.05 && $(NF-1) > 0.05) }'
+  run render-osmesa --mesh square.obj --part Square=glass --texture Square=red.sbrdf.exr $lit -o none.exr
+  [ "$status" -eq 2 ] && [[ "$output" == *"give the part a paint"* ]] && [ ! -e none.exr ]
+}
+
 @test "words that are wrong are usage errors" {
   while read -r words told; do
     # shellcheck disable=SC2086

@@ -16,9 +16,10 @@ namespace {
 
 using render::Projection;
 
-const std::array<std::pair<const char*, Projection>, 6> kProjections = {{{"uv", Projection::kOwn},
+const std::array<std::pair<const char*, Projection>, 7> kProjections = {{{"uv", Projection::kOwn},
                                                                          {"planar", Projection::kPlanar},
                                                                          {"box", Projection::kBox},
+                                                                         {"triplanar", Projection::kFacet},
                                                                          {"cylinder", Projection::kCylinder},
                                                                          {"sphere", Projection::kSphere},
                                                                          {"decal", Projection::kDecal}}};
@@ -137,6 +138,8 @@ Result<render::TextureLaying> laying_of(const std::string& option, const Texture
   render::TextureLaying laying;
   laying.projection = projection;
   laying.aspect = static_cast<double>(map.height) / map.width;
+  laying.ends = !map.alpha.empty();
+  const bool boxed = projection == Projection::kBox || projection == Projection::kFacet;
   laying.half_texel_u = 0.5 / map.width, laying.half_texel_v = 0.5 / map.height;
   laying.center = 0.5 * (box.low + box.high);
   const Vec3 size = box.high - box.low;
@@ -146,9 +149,8 @@ Result<render::TextureLaying> laying_of(const std::string& option, const Texture
   };
   if (const std::string* text = word("axis")) {
     const auto axis = vector_of(*text);
-    if (!axis || !(length(*axis) > 0) || projection == Projection::kBox)
-      return wrong(option, projection == Projection::kBox ? "a box has no axis: leave axis out, or take planar"
-                                                          : "axis is x, y, z, -x, -y, -z or three numbers");
+    if (boxed) return wrong(option, "a box has no axis: leave axis out, or take planar");
+    if (!axis || !(length(*axis) > 0)) return wrong(option, "axis is x, y, z, -x, -y, -z or three numbers");
     laying.axis = normalized(*axis);
   } else if (projection == Projection::kPlanar) {
     // The thinnest side of the box.
@@ -178,7 +180,7 @@ Result<render::TextureLaying> laying_of(const std::string& option, const Texture
                                                       : 1.0));
   if (*scale > 0)
     laying.width = *scale;
-  else if (projection == Projection::kBox)
+  else if (boxed)
     laying.width = std::max({size.x, size.y, size.z});
   else if (!turns)
     laying.width = covering_width(box, laying);
@@ -187,6 +189,44 @@ Result<render::TextureLaying> laying_of(const std::string& option, const Texture
   if (projection == Projection::kDecal && texture.repeat != 1)
     return wrong(option, "a decal is laid once: leave * out, or take planar");
   return laying;
+}
+
+// The three facets of a triplanar projection are three textures that are blended.
+std::vector<render::LaidTexture> facets_of(const render::LaidTexture& laid) {
+  if (laid.laying.projection != Projection::kFacet) return {laid};
+  std::vector<render::LaidTexture> facets(3, laid);
+  for (int facet = 0; facet < 3; ++facet) {
+    facets[static_cast<std::size_t>(facet)].laying.facet = facet;
+    facets[static_cast<std::size_t>(facet)].blends = facet > 0;
+  }
+  return facets;
+}
+
+// Lays a map on a part: over what lies there if it has alpha, else in its place.
+Result<void> lay(const std::string& option, const Texture& texture, const render::LaidTexture& laid, std::size_t part,
+                 DressedMesh& dress) {
+  render::PartSurface& surface = dress.surfaces[part];
+  const std::vector<render::LaidTexture> facets = facets_of(laid);
+  if (laid.texture->alpha.empty()) {
+    dress.paints[part] = {};
+    dress.anisotropy[part] = {};
+    dress.worn[part].reset();
+    dress.names[part] = texture.file;
+    surface = {};
+  } else if (dress.panes[part]) {
+    return wrong(option, "a pane that is seen through takes no map with alpha: give the part a paint");
+  }
+  const std::size_t there = surface.textures().size();
+  if (there + facets.size() > render::kMostLaid)
+    return wrong(option,
+                 fmt::format("a part takes {} maps at most, of which a triplanar one counts three", render::kMostLaid));
+  std::size_t first = 0;
+  if (there == 0) {
+    surface.texture = laid.texture, surface.repeat = laid.repeat, surface.laying = facets.front().laying;
+    first = 1;
+  }
+  surface.over.insert(surface.over.end(), facets.begin() + static_cast<std::ptrdiff_t>(first), facets.end());
+  return {};
 }
 
 }  // namespace
@@ -200,13 +240,15 @@ Result<void> lay_textures(const mesh::Mesh& mesh, const Options& options, Dresse
     if (const auto word = texture.words.find("project"); word != texture.words.end()) {
       const auto known = std::ranges::find_if(kProjections, [&](const auto& p) { return word->second == p.first; });
       if (known == kProjections.end())
-        return wrong(option,
-                     fmt::format("there is no projection \"{}\": give uv, planar, box, cylinder, sphere or decal",
-                                 word->second));
+        return wrong(
+            option,
+            fmt::format("there is no projection \"{}\": give uv, planar, box, triplanar, cylinder, sphere or decal",
+                        word->second));
       projection = known->second;
       if (projection == Projection::kOwn && !placed)
         return input_error(
-            "{}: the mesh has no texture coordinates there: give project=box, planar, cylinder, sphere or decal",
+            "{}: the mesh has no texture coordinates there: give project=box, triplanar, planar, cylinder, sphere or "
+            "decal",
             texture.part);
     } else if (!placed) {
       dress.unplaced.push_back(texture.part);
@@ -219,15 +261,10 @@ Result<void> lay_textures(const mesh::Mesh& mesh, const Options& options, Dresse
     GONIO_ASSIGN(const render::TextureLaying laying,
                  laying_of(option, texture, projection, box_of(mesh, parts), *dress.textures.back()));
     const double repeat = projection == Projection::kOwn ? texture.repeat : 1;
-    for (const std::size_t part : parts) {
-      dress.paints[part] = {};
-      dress.anisotropy[part] = {};
-      dress.worn[part].reset();
-      dress.surfaces[part] = {dress.textures.back().get(), repeat, nullptr, laying};
-      dress.names[part] = texture.file;
-    }
+    for (const std::size_t part : parts)
+      GONIO_TRY(lay(option, texture, {dress.textures.back().get(), repeat, laying, false}, part, dress));
     const bool flat =
-        projection == Projection::kPlanar || projection == Projection::kBox || projection == Projection::kDecal;
+        projection != Projection::kOwn && projection != Projection::kCylinder && projection != Projection::kSphere;
     LaidTexture laid{texture.part, texture.file, name_of(projection), std::nullopt};
     if (flat) laid.width = laying.width;
     dress.laid.push_back(laid);

@@ -228,8 +228,7 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   text += tilt_frame(effects);
   if (effects.environment) text += environment_terms(effects, product, !tilted.empty());
   if (effects.single_lights() > 0) text += light_terms(effects);
-  if (textures.any()) text += "\n  // the textures\n  radiance += textured(ivec2(gl_FragCoord.xy), n, wo);\n";
-  return text + "  color = vec4(radiance, 1.0);\n}\n";
+  return text + texture_terms(textures) + "  color = vec4(radiance, 1.0);\n}\n";
 }
 
 std::string shading_fragment_shader(const Scene& scene, const Effects& effects) {

@@ -29,6 +29,7 @@ TextureProgram texture_program(const Scene& scene, const Effects& effects) {
   TextureProgram program;
   if (scene.layer == nullptr || !scene.layer->textured()) return program;
   const SbrdfShader& shader = *scene.layer->shader();
+  program.depth = static_cast<int>(scene.layer->depth()), program.dims = scene.layer->dims();
   for (const std::size_t number : scene.layer->drawn(effects)) {
     TextureProgram::Texture& texture = program.textures.emplace_back();
     texture.lobes = shader.packed(number).lobes;
@@ -137,33 +138,39 @@ FloatTexture lobe_horizon_texture(const SbrdfShader& shader) {
 
 TextureLayers place_layers(const SurfaceLayer& layer, const Effects& effects, const Gbuffer& gbuffer,
                            const std::vector<TexturePlace>& places, double share) {
-  TextureLayers result{gbuffer.width, gbuffer.height, 3, {}};
-  result.rgba.assign(12 * places.size(), 0.0F);
+  const std::size_t pixels = static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height);
+  const auto layers = kPlaceLayers * layer.depth();
+  TextureLayers result{gbuffer.width, gbuffer.height, static_cast<int>(layers), {}};
+  result.rgba.assign(4 * layers * pixels, 0.0F);
   const std::vector<std::size_t> drawn = layer.drawn(effects);
   // The program counts from 0 to below 1, so that it has all digits for the place within the texture.
   const auto within = [](double x) {
     return std::min(static_cast<float>(x - std::floor(x)), 1 - std::numeric_limits<float>::epsilon());
   };
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  SurfaceLayer::Stack seen;
+  const double scale = std::sqrt(share);
+  const auto put = [&](const SurfaceLayer::Shown& shown, float* to) {
+    to[0] = within(shown.repeat * shown.place->u), to[1] = within(shown.repeat * shown.place->v);
+    to[2] = static_cast<float>(std::ranges::find(drawn, shown.number) - drawn.begin() + 1);
+    to[3] = static_cast<float>(shown.probes.level);
+    to += 4 * pixels;
+    std::copy_n(shown.repeated.tangent, 3, to);
+    to[3] = static_cast<float>(kMostProbes * shown.probes.down + shown.probes.across - 1);
+    to += 4 * pixels;
+    for (std::size_t c = 0; c < 2; ++c) {
+      to[c] = static_cast<float>(scale * shown.probes.wide * shown.repeated.across[c]);
+      to[2 + c] = static_cast<float>(scale * shown.probes.high * shown.repeated.down[c]);
+    }
+    to += 4 * pixels;
+    to[0] = static_cast<float>(shown.share);
+  };
+  for (std::size_t i = 0; i < pixels; ++i) {
     const int part = static_cast<int>(std::abs(gbuffer.data[4 * i + 3])) - 1;
     if (part < 0 || layer.surface(part).texture == nullptr) continue;
-    const double repeat = layer.surface(part).repeat;
-    const TexturePlace place = repeated(places[i], repeat);
-    const std::size_t which = layer.shading_of(part, effects);
-    const FilterProbes probes =
-        effects.texture_filter ? layer.shader()->probes(which, place, std::sqrt(share)) : FilterProbes{};
-    float* to = &result.rgba[4 * i];
-    to[0] = within(repeat * places[i].u), to[1] = within(repeat * places[i].v);
-    to[2] = static_cast<float>(std::ranges::find(drawn, which) - drawn.begin() + 1);
-    to[3] = static_cast<float>(probes.level);
-    to += 4 * places.size();
-    std::copy_n(place.tangent, 3, to);
-    to[3] = static_cast<float>(kMostProbes * probes.down + probes.across - 1);
-    to += 4 * places.size();
-    for (std::size_t c = 0; c < 2; ++c) {
-      to[c] = static_cast<float>(std::sqrt(share) * probes.wide * place.across[c]);
-      to[2 + c] = static_cast<float>(std::sqrt(share) * probes.high * place.down[c]);
-    }
+    layer.stack(part, &places[i], pixels, effects, scale, seen);
+    for (std::size_t level = 0; level < seen.count; ++level)
+      if (seen.shown[level].share > 0) put(seen.shown[level], &result.rgba[4 * (kPlaceLayers * level * pixels + i)]);
+    result.rgba[4 * ((kPlaceLayers - 1) * pixels + i) + 1] = static_cast<float>(1 - seen.bare);
   }
   return result;
 }
@@ -171,7 +178,8 @@ TextureLayers place_layers(const SurfaceLayer& layer, const Effects& effects, co
 std::string texture_uniforms(const TextureProgram& textures, const Effects& effects) {
   if (!textures.any()) return "";
   std::string text =
-      "uniform sampler2DArray places;  // u, v, number of the texture + 1, level; tangent, probes; footprint\n";
+      "uniform sampler2DArray places;  // for each texture of a part: u, v, number of the texture + 1, level; tangent, "
+      "probes; footprint; share, part of the paint that is covered\n";
   for (std::size_t i = 0; i < textures.textures.size(); ++i) {
     text += fmt::format(
         "uniform sampler2DArray texture_{};  // diffuse; {} x (color, log albedo; axes, exponent; cube, row, angle)\n",
@@ -291,19 +299,23 @@ std::string diffuse_terms(const TextureProgram& textures, const Effects& effects
 
 // The mean over the probes of a pixel, which lie within the texture once it is taken to repeat.
 std::string probed_function(const TextureProgram& textures, std::uint32_t on) {
-  std::string text = R"(vec3 textured(ivec2 at, vec3 n, vec3 wo) {
-  vec4 place = texelFetch(places, ivec3(at, 0), 0), tangent = texelFetch(places, ivec3(at, 1), 0);
-)";
+  std::string text = fmt::format(R"(vec3 textured(ivec2 at, int map, vec3 n, vec3 wo) {{
+  ivec3 layer = ivec3(at, {} * map);
+  vec4 place = texelFetch(places, layer, 0), tangent = texelFetch(places, layer + ivec3(0, 0, 1), 0);
+  float share = texelFetch(places, layer + ivec3(0, 0, 3), 0).x;
+)",
+                                 kPlaceLayers);
   if (!textures.filtered()) {
     for (std::size_t i = 0; i < textures.textures.size(); ++i) {
       text += fmt::format(
-          "  if (place.z == {0}.0) return texels(texture_{1}, {2}, {3}u, ivec3(textureSize(texture_{1}, 0).xy, 0), "
+          "  if (place.z == {0}.0) return share * texels(texture_{1}, {2}, {3}u, ivec3(textureSize(texture_{1}, 0).xy, "
+          "0), "
           "place.xy, tangent.xyz, n, wo);\n",
           i + 1, i, textures.textures[i].lobes, on);
     }
     return text + "  return vec3(0.0);\n}\n";
   }
-  text += fmt::format(R"(  vec4 footprint = texelFetch(places, ivec3(at, 2), 0);
+  text += fmt::format(R"(  vec4 footprint = texelFetch(places, layer + ivec3(0, 0, 2), 0);
   int across = int(tangent.w) % {0} + 1, down = int(tangent.w) / {0}, level = int(place.w);
   vec3 sum = vec3(0.0);
   for (int i = 0; i < across * down; ++i) {{
@@ -326,10 +338,21 @@ std::string probed_function(const TextureProgram& textures, std::uint32_t on) {
         "probe, tangent.xyz, n, wo);\n",
         i + 1, i, texture.level_lobes, texture.levels.size(), levels);
   }
-  return text + "  }\n  return sum / float(across * down);\n}\n";
+  return text + "  }\n  return share / float(across * down) * sum;\n}\n";
 }
 
 }  // namespace
+
+std::string texture_terms(const TextureProgram& textures) {
+  if (!textures.any()) return "";
+  std::string text = "\n  // the textures\n  ivec2 at = ivec2(gl_FragCoord.xy);\n";
+  if (textures.dims)
+    text += fmt::format("  radiance *= 1.0 - texelFetch(places, ivec3(at, {}), 0).y;  // the paint beneath\n",
+                        kPlaceLayers - 1);
+  if (textures.depth == 1) return text + "  radiance += textured(at, 0, n, wo);\n";
+  return text +
+         fmt::format("  for (int map = 0; map < {}; ++map) radiance += textured(at, map, n, wo);\n", textures.depth);
+}
 
 // The four texels around a place are shaded one by one, and their colors blended.
 std::string texture_function(const TextureProgram& textures, const Effects& effects) {

@@ -24,6 +24,8 @@ struct TextureProgram {
     std::vector<Level> levels;  // none without the effect texture_filter
   };
   std::vector<Texture> textures;  // none: the scene has none
+  int depth = 0;                  // the most that a part has
+  bool dims = false;              // whether paints are seen through some
   // Of each cube of prefiltered light in "lobe_maps": the texels along a face, and the row where it begins. That of the
   // diffuse part is the last. None: no environment.
   struct Cube {
@@ -57,15 +59,18 @@ FloatTexture lobe_map_texture(const SbrdfShader& shader);
 // The table of SbrdfShading::horizon, with a node in R and G of each texel.
 FloatTexture lobe_horizon_texture(const SbrdfShader& shader);
 
-// A texel for each pixel, in three layers: the place on the texture within 0..1, the number of the texture and 1 (0:
-// none), and the level; the tangent and the number of probes; the footprint to the right and downward. A sample stands
-// for `share` of its pixel.
+// A texel for each pixel, in four layers for each texture of a part, the lowest first: the place on the texture within
+// 0..1, the number of the texture and 1 (0: none), and the level; the tangent and the number of probes; the footprint
+// to the right and downward; the part of what is seen that it shows, and what all textures together cover of the paint.
+// A sample stands for `share` of its pixel.
+constexpr int kPlaceLayers = 4;
 TextureLayers place_layers(const SurfaceLayer& layer, const Effects& effects, const Gbuffer& gbuffer,
                            const std::vector<TexturePlace>& places, double share);
 
-// The uniforms, and the function `textured(at, n, wo)` that returns the radiance of the texture at a pixel, black where
-// it has none. Both are empty where nothing is textured.
+// The uniforms, the function `textured(at, map, n, wo)` that returns the radiance of a texture at a pixel, black where
+// it has none, and what the main function does with it. All are empty where nothing is textured.
 std::string texture_uniforms(const TextureProgram& textures, const Effects& effects);
 std::string texture_function(const TextureProgram& textures, const Effects& effects);
+std::string texture_terms(const TextureProgram& textures);
 
 }  // namespace goniochrome::render

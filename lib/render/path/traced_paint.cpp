@@ -87,7 +87,7 @@ Result<TracedPaint> TracedPaint::create(const paint::LobeFit& paint, double glos
 }
 
 void TracedPaint::put_coat(const paint::LobeFit& paint, double gloss_deg) {
-  if (!tilts_.empty() || layer_ != nullptr) return;
+  if (!tilts_.empty() || hidden_) return;
   const std::optional<brdf::RoughCoat> coat = brdf::coat_of_lobes(paint, gloss_deg);
   if (!coat) return;
   coat_.emplace(*coat, brdf::mirror_index(paint.coat_index));
@@ -183,7 +183,7 @@ float PaintedPoint::coat_mirror() const {
 }
 
 Float3 PaintedPoint::diffuse_albedo() const {
-  return static_cast<float>(kPi * brdf::mean_coat_transmission(coat_index_)) * diffuse_;
+  return static_cast<float>(kPi * brdf::mean_coat_transmission(coat_index_)) * diffuse_ + kFloatPi * texel_diffuse_;
 }
 
 Vec3 PaintedPoint::local(const Float3& direction) const {
@@ -243,13 +243,13 @@ PaintedPoint::Parts PaintedPoint::parts(const Float3& to_light) const {
   const float cos_i = rays::dot(normal_, to_light);
   if (!(cos_i > 0)) return parts;
   const float base = let_in(cos_i) * cos_i;
-  parts.diffuse = base * diffuse_;
+  parts.diffuse = base * diffuse_ + cos_i * texel_diffuse_;
   if (paint_ != nullptr) parts.lobes = mapped(to_light);
   visit_texels(to_light, [&](const TexelLobe& lobe, float power) {
     parts.lobes = parts.lobes + (std::exp(lobe.log_peak) * power * cos_i) * lobe.color;
   });
   if (coat_ != nullptr) {
-    const auto sent = static_cast<float>(coat_->sent(local(to_light), local(viewer_)).f_cos);
+    const float sent = bare_ * static_cast<float>(coat_->sent(local(to_light), local(viewer_)).f_cos);
     parts.gloss = {sent, sent, sent};
     parts.lobes = parts.lobes + parts.gloss;
   }
@@ -267,7 +267,7 @@ Reflection PaintedPoint::at(const Float3& to_light) const {
   const float cos_i = rays::dot(normal_, to_light);
   if (!(cos_i > 0) || !(total_ > 0)) return {to_light, {}, 0};
   const float base = let_in(cos_i) * cos_i;
-  Float3 f_cos = base * diffuse_;
+  Float3 f_cos = base * diffuse_ + cos_i * texel_diffuse_;
   float pdf = diffuse_chance_ * cos_i / kFloatPi;
   if (paint_ != nullptr) f_cos = f_cos + mapped(to_light);
   visit_texels(to_light, [&](const TexelLobe& lobe, float power) {
@@ -276,7 +276,7 @@ Reflection PaintedPoint::at(const Float3& to_light) const {
   });
   if (coat_ != nullptr) {
     const brdf::CoatFacets::Sent sent = coat_->sent(local(to_light), local(viewer_));
-    const auto gray = static_cast<float>(sent.f_cos);
+    const float gray = bare_ * static_cast<float>(sent.f_cos);
     f_cos = f_cos + Float3{gray, gray, gray};
     pdf += coat_chance_ * static_cast<float>(sent.pdf);
   }
@@ -321,14 +321,14 @@ Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
   const double irradiance = brdf::disc_irradiance(cosine, radius), above = brdf::disc_above(cosine, radius);
   // Through the coat at the mean cosine of what is seen, and for the rest of a lobe at that of its axis.
   const double passing = above > 0 ? irradiance * let_in(static_cast<float>(std::min(1.0, irradiance / above))) : 0;
-  Float3 f = static_cast<float>(passing) * diffuse_;
+  Float3 f = static_cast<float>(passing) * diffuse_ + static_cast<float>(irradiance) * texel_diffuse_;
   if (paint_ != nullptr) {
     for (const DiscDirection& part : disc_directions(light))
       if (dot(n, part.direction) > 0) f = f + static_cast<float>(part.weight) * mapped(float3(part.direction));
   }
   if (coat_ != nullptr) {
     const Vec3 middle = local(float3(light.direction));
-    const auto gray = static_cast<float>(coat_->over_disc(local(viewer_), normalized(middle), radius));
+    const float gray = bare_ * static_cast<float>(coat_->over_disc(local(viewer_), normalized(middle), radius));
     f = f + Float3{gray, gray, gray};
   }
   for (const TexelLobe& lobe : texels_) {
@@ -378,13 +378,15 @@ Float3 PaintedPoint::direction(double choice, double u, double v) const {
   }
   left -= diffuse_chance_;
   if (coat_ != nullptr) {
-    if (left < coat_chance_ || count_ == 0) return coat_direction(std::min(left / coat_chance_, 1.0), a, b);
+    if (left < coat_chance_ || (count_ == 0 && texels_.empty()))
+      return coat_direction(std::min(left / coat_chance_, 1.0), a, b);
     left -= coat_chance_;
   }
   if (!texels_.empty()) {
     std::size_t k = 0;
-    while (k + 1 < texels_.size() && left >= texels_[k].chance) left -= texels_[k++].chance;
-    return drawn_about(texels_[k].axis, texels_[k].exponent, a, b);
+    while (k < texels_.size() && left >= texels_[k].chance) left -= texels_[k++].chance;
+    if (k == texels_.size() && count_ == 0) --k;
+    if (k < texels_.size()) return drawn_about(texels_[k].axis, texels_[k].exponent, a, b);
   }
   int j = 0;
   while (j + 1 < count_ && left >= lobes_[j].chance) left -= lobes_[j++].chance;

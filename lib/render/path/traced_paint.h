@@ -30,9 +30,9 @@ class TracedPaint {
   // `tilts`: as ward_tilts() returns them; one or none: isotropic. Error: more than kMostTracedLobes lobes, a weight
   // that is not finite, an exponent below 0.
   static Result<TracedPaint> create(const paint::LobeFit& paint, double gloss_deg, std::vector<brdf::Tilt> tilts);
-  // The surface that a part of the scene has, where the layer holds one for it: the texture in the place of the paint,
-  // or the color map in the place of K_D and K_DD, so that f = map/pi + gloss lobes. The lobes of the paint are still
-  // what directions are drawn by. The layer must outlive the paint.
+  // The surface that a part of the scene has, where the layer holds one for it: the textures in the place of what they
+  // cover of the paint, and the color map in the place of K_D and K_DD, so that f = map/pi + gloss lobes. The lobes of
+  // the paint are still what directions are drawn by. The layer must outlive the paint.
   void put_surface(const SurfaceLayer& layer, int part);
 
   // Draws the rough coat that its gloss lobes and its mirror stand for, in their place; nothing where they stand for
@@ -68,6 +68,7 @@ class TracedPaint {
   float map_level_ = 0;                  // the mean size of the map's factors
   const SurfaceLayer* layer_ = nullptr;  // of a textured part
   int part_ = 0;
+  bool hidden_ = false;  // whether no place shows the paint
 };
 
 // cos^E below exp(-kPowerTail) is left out: 4e-18 of the peak.
@@ -186,6 +187,7 @@ class PaintedPoint {
   };
   friend class TracedPaint;
   void wear(const SurfaceLayer::Place& place);
+  void dim(float share);
   void add_texel_lobe(const Vec3& axis, double exponent, const color::Rgb& albedo);
   rays::Float3 mapped(const rays::Float3& to_light) const;
   void set_axes(const std::vector<brdf::Tilt>& tilts);
@@ -210,7 +212,9 @@ class PaintedPoint {
   Lobe lobes_[kMostTracedLobes];
   std::vector<Axis> axes_;  // of tilts; none: mirrored_ alone
   float axes_total_ = 1;
-  std::vector<TexelLobe> texels_;       // of a texture
+  float bare_ = 1;                      // the part of the paint that textures leave, which all of its weights hold
+  rays::Float3 texel_diffuse_;          // of textures, 1/sr; no coat lies over it
+  std::vector<TexelLobe> texels_;       // of textures
   const TracedPaint* paint_ = nullptr;  // of a color map
 };
 

@@ -14,6 +14,8 @@ using rays::float3;
 
 // exp of it is finite in floats, with room for the products that it is part of.
 constexpr double kLargestLog = 60;
+// Below it, alpha is as it may be rounded.
+constexpr double kLeastAlpha = 1e-3;
 
 float mean_size(const color::Rgb& c) {
   return static_cast<float>((std::abs(c.x) + std::abs(c.y) + std::abs(c.z)) / 3);
@@ -31,23 +33,33 @@ double most_reflected(const brdf::Lafortune& surface) {
 }
 
 // The texels of a texture that may send back the most, each of which could send back more than all; at most `count`.
+// Of a texel that does not cover all, what it would send back if it did.
 std::vector<SurfaceLayer::Place> brightest_texels(const brdf::SbrdfTexture& texture, std::size_t count) {
   struct Candidate {
     double most;
     int column, row;
   };
   std::vector<Candidate> candidates;
+  const auto whole = [&](int column, int row) {
+    brdf::SbrdfTexel texel = brdf::sbrdf_texel(texture, column, row);
+    if (texture.alpha.empty()) return texel;
+    const auto at =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(texture.width) + static_cast<std::size_t>(column);
+    const double scale = 1 / std::max<double>(texture.alpha[at], kLeastAlpha);
+    texel.surface.diffuse = scale * texel.surface.diffuse;
+    for (brdf::LafortuneLobe& lobe : texel.surface.lobes) lobe.albedo = scale * lobe.albedo;
+    return texel;
+  };
   for (int row = 0; row < texture.height; ++row) {
     for (int column = 0; column < texture.width; ++column) {
-      const double most = most_reflected(brdf::sbrdf_texel(texture, column, row).surface);
+      const double most = most_reflected(whole(column, row).surface);
       if (most > 1) candidates.push_back({most, column, row});
     }
   }
   std::ranges::stable_sort(candidates, std::greater<>(), &Candidate::most);
   if (candidates.size() > count) candidates.resize(count);
   std::vector<SurfaceLayer::Place> places;
-  for (const Candidate& c : candidates)
-    places.push_back({{1, 0, 0}, {{brdf::sbrdf_texel(texture, c.column, c.row), 1}}});
+  for (const Candidate& c : candidates) places.push_back({{{whole(c.column, c.row), 1, {1, 0, 0}}}, 0});
   return places;
 }
 
@@ -55,13 +67,13 @@ std::vector<SurfaceLayer::Place> brightest_texels(const brdf::SbrdfTexture& text
 
 void TracedPaint::put_surface(const SurfaceLayer& layer, int part) {
   const PartSurface& surface = layer.surface(part);
-  if (surface.texture != nullptr) {
-    // The texture takes the place of all that the paint shows.
+  if (surface.texture != nullptr) layer_ = &layer, part_ = part;
+  if (surface.hides_paint()) {
     views_.assign(1, {});
     coat_index_ = paint::kNoCoat;
     tilts_.clear();
     coat_.reset();
-    layer_ = &layer, part_ = part;
+    hidden_ = true;
     return;
   }
   if (surface.color_map == nullptr) return;
@@ -73,10 +85,13 @@ void TracedPaint::put_surface(const SurfaceLayer& layer, int part) {
 }
 
 bool TracedPaint::gains_light() const {
-  if (layer_ == nullptr) return gains_light(nullptr);
+  if (!hidden_ && gains_light(nullptr)) return true;
+  if (layer_ == nullptr) return false;
   constexpr std::size_t kMostTexels = 20;
-  return std::ranges::any_of(brightest_texels(*layer_->surface(part_).texture, kMostTexels),
-                             [&](const SurfaceLayer::Place& place) { return gains_light(&place); });
+  return std::ranges::any_of(layer_->surface(part_).textures(), [&](const LaidTexture& laid) {
+    return std::ranges::any_of(brightest_texels(*laid.texture, kMostTexels),
+                               [&](const SurfaceLayer::Place& place) { return gains_light(&place); });
+  });
 }
 
 // The share of even light that comes to the viewer: diffuse part, lobes and mirror. A texel may look another way from
@@ -119,18 +134,32 @@ PaintedPoint::PaintedPoint(const rays::Spot& spot, const TracedPaint& paint, con
   wear(paint.layer_->place(paint.part_, point));
 }
 
+// Leaves this part of all that the paint shows.
+void PaintedPoint::dim(float share) {
+  bare_ = share;
+  diffuse_ = share * diffuse_, mirror_ = share * mirror_;
+  diffuse_chance_ *= share, coat_chance_ *= share, total_ *= share;
+  if (share == 0) count_ = 0, coat_ = nullptr, paint_ = nullptr;
+  for (int j = 0; j < count_; ++j) {
+    lobes_[j].directional_diffuse = share * lobes_[j].directional_diffuse, lobes_[j].gloss = share * lobes_[j].gloss;
+    lobes_[j].chance *= share;
+  }
+}
+
 void PaintedPoint::wear(const SurfaceLayer::Place& place) {
+  dim(static_cast<float>(place.bare));
   const Vec3 normal = normalized(rays::vec3(normal_)), viewer = rays::vec3(viewer_);
   color::Rgb diffuse;
   for (const SurfaceLayer::Piece& piece : place.pieces) {
-    const brdf::SurfaceFrame frame = brdf::surface_frame(piece.texel, normal, place.tangent);
+    const brdf::SurfaceFrame frame = brdf::surface_frame(piece.texel, normal, piece.tangent);
     const Vec3 local = frame.local(viewer);
     diffuse += piece.share * piece.texel.surface.diffuse;
     for (const brdf::LafortuneLobe& lobe : piece.texel.surface.lobes)
       add_texel_lobe(frame.world(lobe.axes * local), lobe.exponent, piece.share * lobe.albedo);
   }
-  diffuse_ = float3(diffuse);
-  total_ = diffuse_chance_ = static_cast<float>(kPi) * mean_size(diffuse);
+  texel_diffuse_ = float3(diffuse);
+  diffuse_chance_ += static_cast<float>(kPi) * mean_size(diffuse);
+  total_ += static_cast<float>(kPi) * mean_size(diffuse);
   for (TexelLobe& lobe : texels_) {
     const float wide = 1 / std::sqrt(lobe.exponent + 2), middle = std::max(rays::dot(lobe.axis, normal_), 0.0F);
     const float cosine = middle + (1 - middle) * wide;
@@ -159,7 +188,8 @@ void PaintedPoint::add_texel_lobe(const Vec3& axis, double exponent, const color
 // cos_i map/pi: a map holds reflectance factors. Isolines do not change when both directions turn about the normal.
 Float3 PaintedPoint::mapped(const Float3& to_light) const {
   const Vec3 light = local(to_light);
-  return float3(light.z / kPi * brdf::reflectance_factor(*paint_->map_, light, local(viewer_), paint_->treatment_));
+  return float3(bare_ * light.z / kPi *
+                brdf::reflectance_factor(*paint_->map_, light, local(viewer_), paint_->treatment_));
 }
 
 }  // namespace goniochrome::render

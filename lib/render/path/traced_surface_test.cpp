@@ -285,7 +285,8 @@ TEST(TracedSurface, AConvexShapeShowsTheReference) {
         if (textured) {
           TexturedPoint point = stage.textured_point(spot, -toward);
           truth = textured_radiance({point}, env, stage.scene.lights, &stage.scene.reflection)[0];
-          point.place.tangent = cross(normal, point.place.tangent);  // control: brushed across
+          for (SurfaceLayer::Piece& piece : point.place.pieces)
+            piece.tangent = cross(normal, piece.tangent);  // control: brushed across
           other = textured_radiance({point}, env, stage.scene.lights, &stage.scene.reflection)[0];
         } else {
           truth = exact_radiance({{normal, -toward, 0}}, stage.scene, effects, nullptr)[0];

@@ -55,13 +55,31 @@ TexturePlace around(const TextureLaying& laying, const Vec3& from_center) {
 
 TexturePlace decal(const TextureLaying& laying, const Vec3& from_center, const Vec3& normal) {
   TexturePlace place = along(laying, laying.axis, from_center, 1);
-  if (dot(normal, laying.axis) <= 0) place.u = place.v = 0;
+  const bool behind = dot(normal, laying.axis) <= 0;
+  if (laying.ends && (behind || place.u < 0 || place.u > 1 || place.v < 0 || place.v > 1)) place.share = 0;
+  if (behind) place.u = place.v = 0;
   const auto edge_u = static_cast<float>(laying.half_texel_u), edge_v = static_cast<float>(laying.half_texel_v);
   place.u = std::clamp(place.u, edge_u, 1 - edge_u), place.v = std::clamp(place.v, edge_v, 1 - edge_v);
   return place;
 }
 
+// Along its coordinate axis, from the side on which the surface is seen.
+TexturePlace facet(const TextureLaying& laying, const Vec3& from_center, const Vec3& normal) {
+  Vec3 axis;
+  axis[laying.facet] = std::copysign(1.0, normal[laying.facet]);
+  TexturePlace place = along(laying, axis, from_center, 1);
+  place.share = static_cast<float>(facet_shares(normal)[laying.facet]);
+  return place;
+}
+
 }  // namespace
+
+Vec3 facet_shares(const Vec3& normal) {
+  Vec3 shares;
+  double sum = 0;
+  for (int c = 0; c < 3; ++c) shares[c] = std::pow(normal[c], 4), sum += shares[c];
+  return sum > 0 ? (1 / sum) * shares : Vec3{0, 1, 0};
+}
 
 TexturePlace projected(const TextureLaying& laying, const Vec3& position, const Vec3& normal) {
   const Vec3 from_center = position - laying.center;
@@ -73,6 +91,8 @@ TexturePlace projected(const TextureLaying& laying, const Vec3& position, const 
       return around(laying, from_center);
     case Projection::kDecal:
       return decal(laying, from_center, normal);
+    case Projection::kFacet:
+      return facet(laying, from_center, normal);
     default:
       return along(laying, laying.axis, from_center, dot(normal, laying.axis) < 0 ? -1 : 1);
   }

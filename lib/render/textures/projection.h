@@ -13,7 +13,8 @@ enum class Projection {
   kBox,       // along the coordinate axis that is nearest to the normal
   kCylinder,  // around the axis
   kSphere,    // around the axis by longitude and latitude
-  kDecal,     // along the axis, once and from one side; elsewhere, the texels of the edge
+  kDecal,     // along the axis, once and from one side; elsewhere, nothing or the texels of the edge
+  kFacet,     // along one coordinate axis, with a share that grows as the normal comes near to it
 };
 
 struct TextureLaying {
@@ -26,7 +27,12 @@ struct TextureLaying {
   double around = 1;      // how often it is repeated around the axis, a whole number: cylinder and sphere
   double radius = 1;      // at which its texels are squares: cylinder
   double half_texel_u = 0, half_texel_v = 0;  // half of a texel, from which a decal keeps to its edge
+  bool ends = false;                          // whether a decal shows nothing beyond its edge
+  int facet = 0;                              // the coordinate axis: 0 to 2
 };
+
+// The fourth powers of the normal's components, of sum 1: the shares of the three facets of a triplanar projection.
+Vec3 facet_shares(const Vec3& normal);
 
 // The directions in which u and v grow for who looks along -axis: across x up = axis. Up is +Y, or -Z where the axis is
 // nearly vertical and points up, +Z where it points down.

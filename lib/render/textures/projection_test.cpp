@@ -130,6 +130,50 @@ TEST(Projection, ABoxStretchesNoTexelByMoreThanARoot) {
   EXPECT_GT(most_around, 10);
 }
 
+// Where a box jumps from one side to the next, the facets of a triplanar projection are blended: what they show
+// together does not jump, and their shares add up to 1. The box is the control.
+TEST(Projection, FacetsBlendWhereABoxJumps) {
+  const auto shown = [](const Vec3& n, bool blended) {
+    double sum = 0, shares = 0;
+    for (int facet = 0; facet < (blended ? 3 : 1); ++facet) {
+      TextureLaying laying{blended ? Projection::kFacet : Projection::kBox, {0, 1, 0}, {}, 3, 1, 0};
+      laying.facet = facet;
+      const TexturePlace place = projected(laying, n, n);
+      sum += place.share * place.u, shares += place.share;
+    }
+    EXPECT_NEAR(shares, 1, 1e-6);
+    return sum;
+  };
+  double most = 0, most_of_box = 0;
+  for (double turn = 1; turn < 360; turn += 7) {
+    for (const double height : {-0.6, -0.2, 0.3, 0.7}) {
+      const auto at = [&](double azimuth_deg) {
+        const double wide = std::sqrt(1 - height * height);
+        return Vec3{wide * std::sin(azimuth_deg * kDegree), height, wide * std::cos(azimuth_deg * kDegree)};
+      };
+      const double edge = 90 * std::floor(turn / 90) + 45;
+      most = std::max(most, std::abs(shown(at(turn + 0.05), true) - shown(at(turn - 0.05), true)));
+      most = std::max(most, std::abs(shown(at(edge + 0.05), true) - shown(at(edge - 0.05), true)));
+      most_of_box = std::max(most_of_box, std::abs(shown(at(edge + 0.05), false) - shown(at(edge - 0.05), false)));
+    }
+  }
+  EXPECT_LT(most, 0.01);
+  EXPECT_GT(most_of_box, 0.2);
+  EXPECT_NEAR(facet_shares({0, 0, -1}).z, 1, 1e-12);
+}
+
+// Beyond its edge and behind, a decal that ends shows nothing.
+TEST(Projection, ADecalThatEndsShowsNothingElsewhere) {
+  TextureLaying laying{Projection::kDecal, {0, 1, 0}, {}, 1, 1, 0};
+  laying.ends = true;
+  EXPECT_EQ(projected(laying, {0.4, 3, 0.4}, {0, 1, 0}).share, 1);
+  EXPECT_EQ(projected(laying, {0.6, 3, 0}, {0, 1, 0}).share, 0);
+  EXPECT_EQ(projected(laying, {0, 3, -0.6}, {0, 1, 0}).share, 0);
+  EXPECT_EQ(projected(laying, {0, -3, 0}, {0, -1, 0}).share, 0);
+  laying.ends = false;
+  EXPECT_EQ(projected(laying, {0.6, 3, 0}, {0, 1, 0}).share, 1);
+}
+
 // What a G-buffer shows is projected pixel by pixel, as the point of the mesh is.
 TEST(Projection, PlacesOfPixelsAreThoseOfPoints) {
   const mesh::Mesh mesh = sphere_mesh(32);

@@ -178,7 +178,7 @@ void SbrdfShader::pack_lobe(const brdf::LafortuneLobe& lobe, float* to) const {
 }
 
 PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
-  PackedTexture result{texture.width, texture.height, texture.lobes, {}};
+  PackedTexture result{texture.width, texture.height, texture.lobes, {}, texture.alpha.empty()};
   const std::size_t size = result.stride();
   const auto texels = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
   result.texels.assign(size * texels, 0.0F);
@@ -188,6 +188,7 @@ PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
       const brdf::SbrdfTexel texel = brdf::sbrdf_texel(texture, static_cast<int>(i % wide), static_cast<int>(i / wide));
       float* to = &result.texels[size * i];
       for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(texel.surface.diffuse[c]);
+      to[kTexelAlpha] = result.covers ? 1 : texture.alpha[i];
       to[4] = static_cast<float>(texel.x_tangent), to[5] = static_cast<float>(texel.x_bitangent);
       to += kTexelFloats;
       for (const brdf::LafortuneLobe& lobe : texel.surface.lobes) {
@@ -201,13 +202,14 @@ PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
 }
 
 PackedTexture SbrdfShader::pack(const TextureLevel& level) const {
-  PackedTexture result{level.width, level.height, 0, {}};
+  PackedTexture result{level.width, level.height, 0, {}, level.alpha.empty()};
   for (const brdf::LobeSurface& texel : level.texels)
     result.lobes = std::max(result.lobes, static_cast<int>(texel.lobes.size()));
   result.texels.assign(result.stride() * level.texels.size(), 0.0F);
   for (std::size_t i = 0; i < level.texels.size(); ++i) {
     float* to = &result.texels[result.stride() * i];
     for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(level.texels[i].diffuse[c]);
+    to[kTexelAlpha] = result.covers ? 1 : level.alpha[i];
     to[4] = 1, to += kTexelFloats;
     for (std::size_t lobe = 0; lobe < static_cast<std::size_t>(result.lobes); ++lobe, to += kTexelLobeFloats) {
       const bool there = lobe < level.texels[i].lobes.size();
@@ -229,6 +231,15 @@ const PackedTexture& SbrdfShader::packed(std::size_t texture, int level, std::ui
   if (made.empty())
     for (const TextureLevel& of : texture_levels(*given_[texture], lobes)) made.push_back(pack(of));
   return made[static_cast<std::size_t>(level) - 1];
+}
+
+double SbrdfShader::coverage(std::size_t texture, const TexturePlace& place, int level, std::uint32_t lobes) const {
+  const PackedTexture& of = packed(texture, level, lobes);
+  if (of.covers) return 1;
+  double sum = 0;
+  for (const brdf::TextureTap& tap : brdf::texture_taps(of.width, of.height, place.u, place.v))
+    sum += tap.weight * of.at(tap.column, tap.row)[kTexelAlpha];
+  return sum;
 }
 
 FilterProbes SbrdfShader::probes(std::size_t texture, const TexturePlace& place, double scale) const {

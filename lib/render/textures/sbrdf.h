@@ -44,6 +44,7 @@ constexpr int kTextureHorizonSegments = 64;
 struct PackedTexture {
   int width = 0, height = 0, lobes = 0;
   std::vector<float> texels;
+  bool covers = true;  // whether alpha is 1 everywhere
 
   std::size_t stride() const { return kTexelFloats + kTexelLobeFloats * static_cast<std::size_t>(lobes); }
   const float* at(int column, int row) const {
@@ -70,6 +71,10 @@ class SbrdfShader {
   // for any company of points.
   std::vector<color::Rgb> shade(std::size_t texture, const SbrdfLight& light, const std::vector<VisiblePoint>& points,
                                 int level = 0) const;
+
+  // The part of what lies beneath a texture, or one of its levels, that it covers at a place: its alpha, interpolated.
+  // Levels have these lobes of the texture alone.
+  double coverage(std::size_t texture, const TexturePlace& place, int level = 0, std::uint32_t lobes = ~0U) const;
 
   // How a texture is shaded whose footprint is `scale` times that of the place. Levels are made when they are first
   // called for, and that may be on many threads.

@@ -9,11 +9,12 @@
 
 namespace goniochrome::render {
 
-// A packed texel: 8 floats (diffuse RGB 0; the cosine and sine of the angle from the tangent to its x axis; 0 0), then
-// 16 for each lobe: its color RGB 0, the largest channel 1; axes X Y Z and exponent n; the logarithms of its largest
-// albedo, times 2 pi/(n+1) and as it is; the map of the exponent at or below n and the share of the next; the row of
-// the horizon table likewise; the cosine and sine of the angle from the tangent to the x axis of its own.
+// A packed texel: 8 floats (diffuse RGB and alpha; the cosine and sine of the angle from the tangent to its x axis; 0
+// 0), then 16 for each lobe: its color RGB 0, the largest channel 1; axes X Y Z and exponent n; the logarithms of its
+// largest albedo, times 2 pi/(n+1) and as it is; the map of the exponent at or below n and the share of the next; the
+// row of the horizon table likewise; the cosine and sine of the angle from the tangent to the x axis of its own.
 constexpr std::size_t kTexelFloats = 8, kTexelLobeFloats = 16;
+constexpr std::size_t kTexelAlpha = 3;
 constexpr std::size_t kLobeAxes = 4, kLobeExponent = 7, kLobeEnergy = 8, kLobeAlbedo = 9, kLobeMap = 10,
                       kLobeHorizon = 12, kLobeTurn = 14;
 constexpr float kNoLobe = -1e4F;  // the logarithm of an albedo of 0

@@ -13,17 +13,27 @@ namespace {
 
 using TexelAt = std::function<brdf::LobeSurface(int column, int row)>;
 
-TextureLevel half_size(int width, int height, const TexelAt& texel, int most_lobes) {
+TextureLevel half_size(int width, int height, const TexelAt& texel, const std::vector<float>& alpha, int most_lobes) {
   TextureLevel level{std::max(width / 2, 1), std::max(height / 2, 1), {}};
+  if (!alpha.empty())
+    level.alpha.resize(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
   level.texels.resize(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
+  const auto alpha_at = [&](int column, int row) {
+    return alpha.empty() ? 1.0
+                         : alpha[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                                 static_cast<std::size_t>(column)];
+  };
   parallel_for(static_cast<std::size_t>(level.height), 4, [&](std::size_t begin, std::size_t end) {
     for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
       for (int column = 0; column < level.width; ++column) {
         brdf::LobeSurface sum;
+        double covered = 0;
         for (const auto& [y, high] : brdf::covered_texels(row, level.height, height))
           for (const auto& [x, wide] : brdf::covered_texels(column, level.width, width))
-            brdf::add_surface(sum, texel(x, y), wide * high);
-        level.texels[static_cast<std::size_t>(row * level.width + column)] = brdf::merged(std::move(sum), most_lobes);
+            brdf::add_surface(sum, texel(x, y), wide * high), covered += wide * high * alpha_at(x, y);
+        const auto at = static_cast<std::size_t>(row * level.width + column);
+        level.texels[at] = brdf::merged(std::move(sum), most_lobes);
+        if (!alpha.empty()) level.alpha[at] = static_cast<float>(covered);
       }
     }
   });
@@ -38,7 +48,7 @@ std::vector<TextureLevel> texture_levels(const brdf::SbrdfTexture& texture, std:
   int width = texture.width, height = texture.height;
   TexelAt texel = [&](int column, int row) { return brdf::lobe_surface(texture, column, row, lobes); };
   while (width > 1 || height > 1) {
-    levels.push_back(half_size(width, height, texel, most));
+    levels.push_back(half_size(width, height, texel, levels.empty() ? texture.alpha : levels.back().alpha, most));
     width = levels.back().width, height = levels.back().height;
     texel = [&levels, width](int column, int row) {
       return levels.back().texels[static_cast<std::size_t>(row * width + column)];

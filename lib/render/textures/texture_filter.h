@@ -17,6 +17,7 @@ constexpr int kMostLevelLobes = 8;
 struct TextureLevel {
   int width = 0, height = 0;
   std::vector<brdf::LobeSurface> texels;  // row by row from the top
+  std::vector<float> alpha = {};          // as SbrdfTexture has it
 };
 // Half as many texels along each side at each step, down to one texel; none of a texture of one texel. They have those
 // lobes of the texture whose bits are set.

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "base/angles.h"
 #include "render/exact.h"
 #include "render/gl/gl.h"
@@ -200,6 +202,144 @@ TEST_F(TexturedScene, OpenGlDrawsWhatTheProcessorDraws) {
       }
     }
   }
+}
+
+// A coated paint with a mirror, and a map over it.
+class Alpha : public TexturedScene {
+ protected:
+  Alpha() {
+    scene.lights = {{normalized({0.4, 0.5, 1}), {1, 0.8, 0.6}}};
+    paint::LobeFit paint;
+    paint.diffuse = {0.2, 0.02, 0.01};
+    paint.lobes = {{16, {0.3, 0.05, 0.02}, {0.1, 0.1, 0.1}}, {64, {}, {1, 1, 1}}};
+    paint.coat_index = 1.5;
+    scene.paints = {paint};
+  }
+  // The texture with so much alpha in column k as `alpha` says.
+  brdf::SbrdfTexture covering(const std::function<double(int)>& alpha) const {
+    brdf::SbrdfTexture result = texture;
+    for (int row = 0; row < texture.height; ++row) {
+      for (int column = 0; column < texture.width; ++column) {
+        const auto a = static_cast<float>(alpha(column));
+        const auto at = static_cast<std::size_t>(row * texture.width + column);
+        float* values = &result.values[at * static_cast<std::size_t>(texture.stride())];
+        for (int c = 0; c < 3; ++c) values[c] *= a;
+        for (int lobe = 0; lobe < texture.lobes; ++lobe)
+          for (int c = 0; c < 3; ++c) values[5 + 7 * lobe + c] *= a;
+        result.alpha.push_back(a);
+      }
+    }
+    return result;
+  }
+  void wear(PartSurface surface) {
+    layer = std::make_unique<SurfaceLayer>(scene, std::vector<PartSurface>{std::move(surface)},
+                                           brdf::CriticalAngle::kSlide);
+    scene.layer = layer.get();
+  }
+};
+
+// A map of alpha a shows a of the map and 1-a of the paint, whichever engine draws. Paths see lamps alone, which they
+// draw without noise. The map without alpha is the control.
+TEST_F(Alpha, AShareOfThePaintIsSeen) {
+  constexpr double kShare = 0.3;
+  const brdf::SbrdfTexture sheer = covering([](int) { return kShare; });
+  const envmap::Environment source = sloping_source();
+  const envmap::BlockTree blocks(source);
+  view.width = view.height = 48;
+  for (const char* engine : {"cpu", "gl", "integral", "path"}) {
+    const bool lamps_alone = engine == std::string("path");
+    scene.env = lamps_alone ? nullptr : &env;
+    scene.texels = engine == std::string("integral") ? &blocks : nullptr;
+    view.samples = engine == std::string("cpu") ? 4 : 1;
+    scene.layer = nullptr;
+    const Frame paint = drawn(engine, effects_of(scene));
+    std::vector<paint::LobeFit> bare = {{}};
+    std::swap(scene.paints, bare);
+    wear({&texture, 6});
+    const Frame map = drawn(engine, effects_of(scene));
+    std::swap(scene.paints, bare);
+    wear({&sheer, 6});
+    const Frame both = drawn(engine, effects_of(scene));
+    double worst = 0, control = 0;
+    for (std::size_t i = 0; i < both.picture.data.size(); ++i) {
+      const double wanted = kShare * map.picture.data[i] + (1 - kShare) * paint.picture.data[i];
+      if (i % 4 == 3) continue;
+      worst = std::max(worst, std::abs(both.picture.data[i] - wanted));
+      control = std::max(control, std::abs(map.picture.data[i] - wanted));
+    }
+    EXPECT_LT(worst, 2e-4) << engine;  // of 0 to 3; maps by the integral end at 1e-4
+    EXPECT_GT(control, 0.1) << engine;
+  }
+}
+
+// Three facets of a map, letters over them and a second, narrower map over all: the program of OpenGL shows what the
+// processor shows, and the certificate agrees. The order turned around is the control.
+TEST_F(Alpha, MapsLieOverOneAnother) {
+  const brdf::SbrdfTexture letters = covering([](int column) {
+    return column % 3 == 0 ? 0.0 : column % 3 == 1 ? 1.0 : 0.4;
+  });
+  const brdf::SbrdfTexture ground = {2, 1, 1, {0.1F,  0.05F, 0.02F, 1, 0, 0.05F, 0.04F, 0.03F, -1, -1, 1, 16,
+                                               0.02F, 0.2F,  0.3F,  1, 0, 0.02F, 0.02F, 0.02F, -1, -1, 1, 40}};
+  const brdf::SbrdfTexture film = {1, 1, 0, {0.02F, 0.1F, 0.02F, 1, 0}, {0.6F}};
+  std::vector<LaidTexture> facets(3, {&ground, 1, {Projection::kFacet, {0, 1, 0}, {}, 0.5}, true});
+  for (int facet = 0; facet < 3; ++facet) facets[static_cast<std::size_t>(facet)].laying.facet = facet;
+  facets[0].blends = false;
+  TextureLaying decal{Projection::kDecal, normalized({0.3, 0.2, 1}), {}, 1.2};
+  decal.ends = true;
+  TextureLaying spot = decal;
+  spot.width = 0.7;
+  const LaidTexture over{&letters, 1, decal, false}, last{&film, 1, spot, false};
+  for (const bool painted : {false, true}) {
+    PartSurface surface, turned;
+    if (painted) {
+      surface = {&letters, 1, nullptr, decal, {last}}, turned = {&film, 1, nullptr, spot, {over}};
+    } else {
+      scene.paints = {{}};
+      surface = {&ground, 1, nullptr, facets[0].laying, {facets[1], facets[2], over, last}};
+      turned = {&ground, 1, nullptr, facets[0].laying, {facets[1], facets[2], last, over}};
+    }
+    wear(turned);
+    view.samples = 1;
+    const Frame control = drawn("cpu", effects_of(scene));
+    wear(surface);
+    for (const int samples : {4, 1}) {
+      view.samples = samples;
+      const Frame gl = drawn("gl", effects_of(scene)), cpu = drawn("cpu", effects_of(scene));
+      double worst = 0, apart = 0;
+      for (std::size_t i = 0; i < gl.picture.data.size(); i += 4) {
+        const float *a = &gl.picture.data[i], *b = &cpu.picture.data[i], *c = &control.picture.data[i];
+        worst = std::max(worst, seen_difference({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, 1));
+        apart = std::max(apart, seen_difference({c[0], c[1], c[2]}, {b[0], b[1], b[2]}, 1));
+      }
+      EXPECT_LT(worst, 0.05) << painted << samples;
+      EXPECT_GT(apart, 5) << painted << samples;
+      if (samples > 1) continue;
+      scene.env = nullptr;
+      const Frame lit = drawn("cpu", effects_of(scene));
+      EXPECT_LT(picture_error(lit, scene, nullptr, 1, 500, 5).de00_p95, 0.05) << painted;
+      EXPECT_GT(picture_error(control, scene, nullptr, 1, 500, 5).de00_p95, 5) << painted;
+      scene.env = &env;
+    }
+  }
+}
+
+// The mean over a minified map is the mean of what its texels show over the paint: 256 samples a pixel without the
+// filter are the truth, one without it the control.
+TEST_F(Alpha, MinifiedMapsCoverTheirMean) {
+  const brdf::SbrdfTexture letters = covering([](int column) { return column % 2; });
+  wear({&letters, 40, nullptr, {Projection::kPlanar, {0, 0, 1}, {}, 2}});
+  view.camera = Camera::orbit(mesh, 0, 0, 1, 30, 1);
+  view.width = view.height = 48;
+  const auto with_filter = [&](bool filter, int samples) {
+    Effects effects = effects_of(scene);
+    effects.texture_filter = filter;
+    view.samples = samples;
+    return drawn("cpu", effects);
+  };
+  const Frame truth = with_filter(false, 256);
+  const double left = difference(truth, with_filter(true, 1)), aliased = difference(truth, with_filter(false, 1));
+  EXPECT_LT(left, 1.5);
+  EXPECT_GT(aliased, 4 * left);
 }
 
 // A floor on which a texture is laid 40 times, toward the horizon.

@@ -1,0 +1,71 @@
+#include "render/internal/samples.h"
+
+#include "render/glints.h"
+#include "render/surface_layer.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+class Samples {
+ public:
+  Samples(Sight& sight, Engine& engine, const Scene& scene, const Effects& effects, int count)
+      : sight_(sight), engine_(engine), scene_(scene), effects_(effects), gain_(1.0F / static_cast<float>(count)) {}
+
+  Result<void> shade(int first, int count, image::Image& picture) {
+    for (int i = first; i < first + count; ++i) GONIO_TRY(engine_.shade(sight_, i, gain_, i > first, picture));
+    engine_.finish(picture);
+    return {};
+  }
+  void add_glints_of(int sample, image::Image& picture) {
+    if (!engine_.info().traces_rays && effects_.extent && effects_.mirror)
+      add_glints(scene_, effects_, *sight_.gbuffer(sample), gain_, picture);
+  }
+  void add_layer(int sample, image::Image& picture) {
+    if (scene_.layer != nullptr && !engine_.shades_layer())
+      scene_.layer->add(*sight_.gbuffer(sample), sight_.places(sample), effects_, gain_, picture,
+                        !engine_.shades_textures());
+  }
+
+ private:
+  Sight& sight_;
+  Engine& engine_;
+  const Scene& scene_;
+  const Effects& effects_;
+  float gain_;
+};
+
+}  // namespace
+
+// Textures dim what lies beneath them in one sample, before it is added to the others. An engine that draws textures
+// has dimmed what it drew, so that only what comes after it is dimmed by itself.
+Result<void> take_samples(Sight& sight, Engine& engine, const Scene& scene, const Effects& effects, int first,
+                          int count, image::Image& picture) {
+  Samples samples(sight, engine, scene, effects, count);
+  const bool dims = scene.layer != nullptr && scene.layer->dims() && !engine.shades_layer();
+  const bool together = !dims || engine.shades_textures();
+  if (together) GONIO_TRY(samples.shade(first, count, picture));
+  if (!dims) {
+    for (int i = first; i < first + count; ++i) samples.add_glints_of(i, picture);
+    for (int i = first; i < first + count; ++i) samples.add_layer(i, picture);
+  }
+  image::Image one;
+  for (int i = first; dims && i < first + count; ++i) {
+    if (together) {
+      one = {picture.width, picture.height, 4, std::vector<float>(picture.data.size(), 0.0F), {}};
+    } else {
+      GONIO_TRY(samples.shade(i, 1, one));
+    }
+    samples.add_glints_of(i, one);
+    samples.add_layer(i, one);
+    if (i == first && !together) {
+      picture = one;
+      continue;
+    }
+    for (std::size_t k = 0; k < one.data.size(); ++k) picture.data[k] += one.data[k];
+  }
+  picture.channel_names = {"R", "G", "B", "A"};
+  return {};
+}
+
+}  // namespace goniochrome::render
