@@ -69,6 +69,8 @@ LafortuneLobe seen_in(const TurnedLobe& turned, double turn_rad) {
 }
 
 // The mean of two lobes: of log(n+1) and of the axes, by what they reflect; together they reflect as much.
+// brdf::merged() gives each union a frame of its own, of which a texel has one for all lobes: as the start for mixtures
+// of two brushed metals it leaves 0.16 of them, and this 0.12.
 LafortuneLobe merged(const LafortuneLobe& a, const LafortuneLobe& b) {
   const double share = brdf::lobe_energy(a) / (brdf::lobe_energy(a) + brdf::lobe_energy(b));
   const double log_n1 = share * std::log1p(a.exponent) + (1 - share) * std::log1p(b.exponent);
