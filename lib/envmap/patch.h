@@ -16,17 +16,33 @@ struct Cell {
   double column0 = 0, row0 = 0, column1 = 0, row1 = 0;
 };
 
+// Calls body(direction, weight in sr) for the points of a rule each way over a cell.
+template <class Body>
+void for_each_node(const Environment& env, const Cell& cell, const math::GaussPoints& rule, const Body& body) {
+  const double width = cell.column1 - cell.column0, height = cell.row1 - cell.row0;
+  const auto row_of = [&](int j) { return cell.row0 + rule.at[j] * height; };
+  const auto column_of = [&](int i) { return cell.column0 + rule.at[i] * width; };
+  const SphereGrid& grid = env.grid();
+  const bool is_lat_long = grid.layout() == SphereGrid::Layout::kLatLong;
+  std::array<SphereGrid::Turn, 4> longitudes;
+  for (int i = 0; is_lat_long && i < rule.count; ++i) longitudes[i] = grid.longitude(column_of(i));
+  for (int j = 0; j < rule.count; ++j) {
+    const SphereGrid::Turn polar_angle = is_lat_long ? grid.polar_angle(row_of(j)) : SphereGrid::Turn{};
+    for (int i = 0; i < rule.count; ++i) {
+      const double area = rule.weight[i] * rule.weight[j] * width * height;
+      if (is_lat_long)
+        body(SphereGrid::direction_at(polar_angle, longitudes[i]), area * grid.solid_angle_density(polar_angle));
+      else
+        body(grid.direction_at(column_of(i), row_of(j)), area * grid.solid_angle_density(column_of(i), row_of(j)));
+    }
+  }
+}
+
 // The integral of integrand(direction) over a cell, in sr, at the points of a rule each way.
 template <class Integrand>
 auto over_cell(const Environment& env, const Cell& cell, const math::GaussPoints& rule, const Integrand& integrand) {
   decltype(integrand(Vec3{})) sum{};
-  const double width = cell.column1 - cell.column0, height = cell.row1 - cell.row0;
-  for (int j = 0; j < rule.count; ++j)
-    for (int i = 0; i < rule.count; ++i) {
-      const double column = cell.column0 + rule.at[i] * width, row = cell.row0 + rule.at[j] * height;
-      const double weight = rule.weight[i] * rule.weight[j] * width * height * env.solid_angle_density(column, row);
-      sum += weight * integrand(env.direction_at(column, row));
-    }
+  for_each_node(env, cell, rule, [&](const Vec3& direction, double weight) { sum += weight * integrand(direction); });
   return sum;
 }
 

@@ -56,12 +56,22 @@ double SphereGrid::solid_angle(double column0, double row0, double column1, doub
                                face_coordinate(row1 - face));
 }
 
+SphereGrid::Turn SphereGrid::polar_angle(double row) const {
+  const double angle = kPi * row / height_;
+  return {std::sin(angle), std::cos(angle)};
+}
+
+SphereGrid::Turn SphereGrid::longitude(double column) const {
+  const double angle = 2 * kPi * (0.5 - column / width_);
+  return {std::sin(angle), std::cos(angle)};
+}
+
+double SphereGrid::solid_angle_density(const Turn& polar_angle) const {
+  return 2 * kPi / width_ * kPi / height_ * polar_angle.sine;
+}
+
 Vec3 SphereGrid::direction_at(double column, double row) const {
-  if (layout_ == Layout::kLatLong) {
-    const double theta = kPi * row / height_, longitude = 2 * kPi * (0.5 - column / width_);
-    const double ring = std::sin(theta);
-    return {ring * std::sin(longitude), std::cos(theta), ring * std::cos(longitude)};
-  }
+  if (layout_ == Layout::kLatLong) return direction_at(polar_angle(row), longitude(column));
   if (layout_ == Layout::kAngular) {
     const double u = 1 - 2 * column / width_, v = 1 - 2 * row / height_, r = std::hypot(u, v);
     if (r < 1e-12) return {0, 0, 1};
@@ -75,7 +85,7 @@ Vec3 SphereGrid::direction_at(double column, double row) const {
 // On a face at distance 1 the density of solid angle is (1 + s^2 + t^2)^(-3/2); on the disc, with the angle pi r from
 // its middle, sin(pi r) pi / r for each unit of area.
 double SphereGrid::solid_angle_density(double column, double row) const {
-  if (layout_ == Layout::kLatLong) return 2 * kPi / width_ * kPi / height_ * std::sin(kPi * row / height_);
+  if (layout_ == Layout::kLatLong) return solid_angle_density(polar_angle(row));
   if (layout_ == Layout::kAngular) {
     const double r = std::hypot(1 - 2 * column / width_, 1 - 2 * row / height_);
     if (r >= 1) return 0;

@@ -37,6 +37,18 @@ class SphereGrid {
   // d(solid angle)/d(column, row) at a point: what a quadrature over a part of a texel weighs it by.
   double solid_angle_density(double column, double row) const;
 
+  // Of a lat-long map: the polar angle of a row and the longitude of a column. A quadrature that has many points in a
+  // row or in a column finds their sines once, and then the direction and the density of solid angle from them.
+  struct Turn {
+    double sine, cosine;
+  };
+  Turn polar_angle(double row) const;
+  Turn longitude(double column) const;
+  static Vec3 direction_at(const Turn& polar_angle, const Turn& longitude) {
+    return {polar_angle.sine * longitude.sine, polar_angle.cosine, polar_angle.sine * longitude.cosine};
+  }
+  double solid_angle_density(const Turn& polar_angle) const;
+
   // A cube's continuous column, or row within a face, as the coordinate -1..1 of the face, and its derivative.
   double face_coordinate(double position) const;
   double face_slope(double position) const;

@@ -23,9 +23,9 @@ def encoded(linear):
 
 
 def strip(paint, last_deg=110, steps=12):
-    """A CSS gradient of the colors of the paint from 15 degrees (left) to `last_deg`."""
+    """A CSS background of the colors of the paint from 15 degrees (left) to `last_deg`. It ends at the border, where it would begin again."""
     angles = [15 + (last_deg - 15) * i / (steps - 1) for i in range(steps)]
-    return f"linear-gradient(90deg,{','.join(srgb(paint.lab_at(angle)) for angle in angles)})"
+    return f"linear-gradient(90deg,{','.join(srgb(paint.lab_at(angle)) for angle in angles)}) padding-box"
 
 
 def gloss_border(paint, width=3):

@@ -408,6 +408,7 @@ PY
   grep -qF '<h3>blue &lt;/script&gt; &quot;x&quot; &amp; {{title}}<small>' palette.html
   [ "$(grep -o 'border:12px [a-z]* #[0-9a-f]*' palette.html | paste -sd,)" = \
     "border:12px dashed #808080,border:12px solid #e5e5e5,border:12px solid #ebebeb,border:12px dashed #808080" ]
+  [ "$(grep -o 'linear-gradient([^;]*) padding-box;border:12px' palette.html | wc -l)" -eq 4 ]
   ! grep -q '<img' palette.html
   run book --palette --variations small.paints.xml -o x.html
   [ "$status" -eq 2 ]

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/angles.h"
 #include "base/text.h"
@@ -56,16 +57,84 @@ std::string hue_ring(const Frame& frame, const color::Xyz& white) {
   return out;
 }
 
-std::string grid(const Frame& frame) {
+using Point = std::pair<double, double>;  // px
+
+// The unit direction of the way at an angle, in px, from places that are at least `least_px` apart; none where the
+// color stays within these.
+std::optional<Point> direction(const Frame& frame, const paint::TargetCurve& curve, double at_deg, double least_px) {
+  for (double reach = 1; reach <= kLast_deg - kFirst_deg; reach += 1) {
+    const color::Lab from = curve.at(std::max(kFirst_deg, at_deg - reach)),
+                     to = curve.at(std::min(kLast_deg, at_deg + reach));
+    const double dx = frame.x(to.a) - frame.x(from.a), dy = frame.y(to.b) - frame.y(from.b);
+    const double distance = std::hypot(dx, dy);
+    if (distance >= least_px) return Point{dx / distance, dy / distance};
+  }
+  return std::nullopt;
+}
+
+// The tip and the other corners of an arrow head behind the dot of the last reading; nothing where the color stays.
+std::vector<Point> arrow_head(const Frame& frame, const paint::TargetCurve& curve) {
+  constexpr double kBeyond = 6, kLength = 14, kHalfWidth = 7, kLeastWay = 8;  // px
+  const auto along = direction(frame, curve, kLast_deg, kLeastWay);
+  if (!along) return {};
+  const auto [ux, uy] = *along;
+  const color::Lab end = curve.at(kLast_deg);
+  const double x = frame.x(end.a) + kBeyond * ux, y = frame.y(end.b) + kBeyond * uy;
+  return {{x + kLength * ux, y + kLength * uy},
+          {x - kHalfWidth * uy, y + kHalfWidth * ux},
+          {x + kHalfWidth * uy, y - kHalfWidth * ux}};
+}
+
+std::string arrow(const Frame& frame, const paint::TargetCurve& curve) {
+  std::string corners;
+  for (const auto& [x, y] : arrow_head(frame, curve)) corners += fmt::format("{:.1f},{:.1f} ", x, y);
+  return corners.empty() ? "" : fmt::format("<polygon fill=\"#333333\" points=\"{}\"/>\n", trimmed(corners));
+}
+
+// What the curve, its arrow and the readings cover, as points that stand close together.
+using Covered = std::vector<Point>;
+
+Covered covered(const Frame& frame, const paint::Paint& paint, const paint::TargetCurve& curve) {
+  Covered points;
+  for (double t = kFirst_deg; t <= kLast_deg; t += 0.5) {
+    const color::Lab lab = curve.at(t);
+    points.emplace_back(frame.x(lab.a), frame.y(lab.b));
+  }
+  const std::vector<Point> head = arrow_head(frame, curve);
+  points.insert(points.end(), head.begin(), head.end());
+  if (!paint.measurement) return points;
+  for (const paint::LabReading& row : paint.measurement->rows)
+    if (!row.geometry.out_of_plane) points.emplace_back(frame.x(row.lab.a), frame.y(row.lab.b));
+  return points;
+}
+
+// The names of the chromas stand along the diagonal that leads farthest past what is covered, or at the lower right
+// where they do not touch it.
+std::string grid(const Frame& frame, const Covered& points) {
+  constexpr double kFree = 24;  // px
+  std::vector<double> chromas = report::ticks(0, frame.range, false, 4);
+  std::erase_if(chromas, [&](double chroma) { return chroma <= 0 || chroma > 0.95 * frame.range; });
+  const auto name_at = [&](double chroma, double right, double down) {
+    const double along = 0.71 * frame.radius * chroma / frame.range;
+    return Point{frame.middle_x + right * (along + 2), frame.middle_y + down * (along + 4) + 4};
+  };
+  Point diagonal = {1, 1};
+  double freest = -1;
+  for (const auto& [right, down] : {Point{1, 1}, {-1, 1}, {1, -1}, {-1, -1}}) {
+    double nearest = kFree;
+    for (const double chroma : chromas) {
+      const auto [x, y] = name_at(chroma, right, down);
+      for (const auto& [to_x, to_y] : points) nearest = std::min(nearest, std::hypot(to_x - x, to_y - y));
+    }
+    if (nearest > freest) freest = nearest, diagonal = {right, down};
+  }
   std::string out;
-  const std::vector<double> chromas = report::ticks(0, frame.range, false, 4);
   for (const double chroma : chromas) {
-    if (chroma <= 0 || chroma > 0.95 * frame.range) continue;
-    const double radius = frame.radius * chroma / frame.range;
+    const auto [x, y] = name_at(chroma, diagonal.first, diagonal.second);
     out += fmt::format(
-        "<circle cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"{2:.1f}\" fill=\"none\" stroke=\"#dddddd\"/>\n"
-        "<text x=\"{3:.1f}\" y=\"{4:.1f}\" style=\"font-size:10px;fill:#777777\">{5}</text>\n",
-        frame.middle_x, frame.middle_y, radius, frame.middle_x + 0.71 * radius + 2, frame.middle_y + 0.71 * radius + 8,
+        "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" fill=\"none\" stroke=\"#dddddd\"/>\n"
+        "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" style=\"font-size:10px;fill:#777777\">{}</text>\n",
+        frame.middle_x, frame.middle_y, frame.radius * chroma / frame.range, x, y, diagonal.first > 0 ? "start" : "end",
         shortest(chroma));
   }
   return out + fmt::format(
@@ -91,52 +160,47 @@ std::string way(const Frame& frame, const paint::TargetCurve& curve, const color
   return edge + "\"/>\n" + colors;
 }
 
-// The unit direction of the way at an angle, in px, from places that are at least `least_px` apart; none where the
-// color stays within these.
-std::optional<std::pair<double, double>> direction(const Frame& frame, const paint::TargetCurve& curve, double at_deg,
-                                                   double least_px) {
-  for (double reach = 1; reach <= kLast_deg - kFirst_deg; reach += 1) {
-    const color::Lab from = curve.at(std::max(kFirst_deg, at_deg - reach)),
-                     to = curve.at(std::min(kLast_deg, at_deg + reach));
-    const double dx = frame.x(to.a) - frame.x(from.a), dy = frame.y(to.b) - frame.y(from.b);
-    const double distance = std::hypot(dx, dy);
-    if (distance >= least_px) return std::pair{dx / distance, dy / distance};
+// The rectangle that a name covers, in px.
+struct NameBox {
+  double x, y, half_width;  // of its middle
+  static constexpr double kHalfHeight = 6;
+
+  bool meets(const NameBox& other) const {
+    return std::fabs(x - other.x) < half_width + other.half_width && std::fabs(y - other.y) < 2 * kHalfHeight;
   }
-  return std::nullopt;
-}
+  bool holds(double at_x, double at_y, double margin) const {
+    return std::fabs(x - at_x) < half_width + margin && std::fabs(y - at_y) < kHalfHeight + margin;
+  }
+};
 
-// An arrow head behind the dot of the last reading.
-std::string arrow(const Frame& frame, const paint::TargetCurve& curve) {
-  constexpr double kBeyond = 6, kLength = 14, kHalfWidth = 7, kLeastWay = 8;  // px
-  const auto along = direction(frame, curve, kLast_deg, kLeastWay);
-  if (!along) return "";
-  const auto [ux, uy] = *along;
-  const color::Lab end = curve.at(kLast_deg);
-  const double x = frame.x(end.a) + kBeyond * ux, y = frame.y(end.b) + kBeyond * uy;
-  return fmt::format("<polygon fill=\"#333333\" points=\"{:.1f},{:.1f} {:.1f},{:.1f} {:.1f},{:.1f}\"/>\n",
-                     x + kLength * ux, y + kLength * uy, x - kHalfWidth * uy, y + kHalfWidth * ux, x + kHalfWidth * uy,
-                     y - kHalfWidth * ux);
-}
-
+// Names stand beside the way, on the side and as near as there is room for them. A name without room is left out.
 std::string readings(const Frame& frame, const paint::Paint& paint, const paint::TargetCurve& curve,
-                     const color::Xyz& white) {
-  constexpr double kBeside = 17, kApart = 14, kLeastWay = 2;  // px
+                     const Covered& points, const color::Xyz& white) {
+  constexpr double kLeastWay = 2, kCharacter = 7.5, kMargin = 4;  // px
+  constexpr double kBeside[] = {15, -15, 21, -21, 28, -28};       // px, to the right of the way
   std::string dots, names;
   if (!paint.measurement) return "";
-  double last_x = -100, last_y = -100;
+  std::vector<NameBox> taken;
   for (const paint::LabReading& row : paint.measurement->rows) {
     if (row.geometry.out_of_plane) continue;
     const double x = frame.x(row.lab.a), y = frame.y(row.lab.b);
     dots += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"5\" fill=\"{}\" stroke=\"#000000\"/>\n", x, y,
                         css(row.lab, white));
-    // Names stand beside the way, and not on it. Those that would lie on one another are left out.
     const auto [ux, uy] =
-        direction(frame, curve, paint::aspecular_angle_deg(row.geometry), kLeastWay).value_or(std::pair{0.0, 1.0});
-    const double name_x = x + kBeside * uy, name_y = y - kBeside * ux + 4;
-    if (std::hypot(name_x - last_x, name_y - last_y) < kApart) continue;
-    names += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n", name_x, name_y,
-                         shortest(row.geometry.aspecular_deg));
-    last_x = name_x, last_y = name_y;
+        direction(frame, curve, paint::aspecular_angle_deg(row.geometry), kLeastWay).value_or(Point{0, 1});
+    const std::string name = shortest(row.geometry.aspecular_deg);
+    for (const double beside : kBeside) {
+      const NameBox box = {x + beside * uy, y - beside * ux, kCharacter * static_cast<double>(name.size()) / 2};
+      const bool has_room = std::ranges::none_of(taken, [&](const NameBox& other) { return box.meets(other); }) &&
+                            std::ranges::none_of(points, [&](const Point& point) {
+                              return box.holds(point.first, point.second, kMargin);
+                            });
+      if (!has_room) continue;
+      names += fmt::format("<text class=\"angle\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n", box.x,
+                           box.y + 4, name);
+      taken.push_back(box);
+      break;
+    }
   }
   return dots + names;
 }
@@ -152,9 +216,11 @@ report::Drawing plane_drawing(const paint::Paint& paint, const paint::TargetCurv
   const double top = 30;
   const Frame frame{0.5 * width, 0.5 * (height + top), 0.5 * std::min<double>(width, height - top) - 20,
                     10 * std::ceil(1.1 * most / 10)};
+  const Covered points = covered(frame, paint, curve);
   return {width, height,
           "<text class=\"title\" x=\"12\" y=\"20\">a*b* plane, 15 to 110 deg</text>\n" + hue_ring(frame, white) +
-              grid(frame) + way(frame, curve, white) + arrow(frame, curve) + readings(frame, paint, curve, white)};
+              grid(frame, points) + way(frame, curve, white) + arrow(frame, curve) +
+              readings(frame, paint, curve, points, white)};
 }
 
 report::Drawing travel_bar(const paint::TargetCurve& curve, const color::Xyz& white, int width, int height) {

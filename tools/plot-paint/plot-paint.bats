@@ -22,6 +22,21 @@ setup() {
   grep -q '"target": "curve"' r.json
 }
 
+# A name of three characters is some 22 px wide and 11 px high.
+@test "the names of angles in the a*b* plane do not lie on one another" {
+  mkdir plane
+  plot-paint -q fitted.xml --pages plane
+  for page in plane/*.svg; do
+    grep 'class="angle"' "$page" | sed 's/.* x="\([^"]*\)" y="\([^"]*\)".*>\(.*\)<.*/\1 \2 \3/' >names.txt || true
+    awk -v page="$page" '{ for (i = 1; i < NR; ++i)
+        if ((dx = $1 - x[i]) * dx < (3.75 * (length($3) + size[i])) ^ 2 - 1 && (dy = $2 - y[i]) * dy < 120) {
+          print page ": " $3 " lies on another name"; bad = 1
+        }
+      x[NR] = $1; y[NR] = $2; size[NR] = length($3) } END { exit bad }' names.txt
+  done
+  [ "$(grep -c 'class="angle"' plane/candy_red.svg)" -ge 5 ]
+}
+
 @test "several paints make a sheet, and --pages makes a page for each" {
   plot-paint -q --paint candy_red --paint jet_black fitted.xml -o sheet.svg
   xmllint --noout sheet.svg

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/clock.h"
+#include "base/heap.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "contact_sheet.h"
@@ -236,6 +237,7 @@ Result<void> check_picture(const Options& options) {
 }  // namespace
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
+  keep_freed_memory();  // grids, moments and maps of some megabytes follow each other
   GONIO_TRY(check_picture(options));
   GONIO_ASSIGN(const Wanted wanted, wanted_lobes(options));
   const prefilter::PrefilterRequest& request = wanted.request;

@@ -1,6 +1,7 @@
 #include "prefilter/internal/lobe_patch.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -23,8 +24,21 @@ struct Task {
   Vec3 d;
   const ZonalKernel& kernel;
   double relative;
-  double edge_radius;  // cells that the edge cuts are quartered down to this, in radians
+  double edge_radius;         // cells that the edge cuts are quartered down to this, in radians
+  const CosineKernel* power;  // the kernel, if its values may be found a vector at a time; else null
 };
+
+// max(0, cos)^E at the points of a rule each way, all of them in one sum of powers.
+double powers_over_cell(const Task& task, const Cell& cell, const math::GaussPoints& rule) {
+  constexpr std::size_t kMost = 16;
+  std::array<double, kMost + rows::kPadding> cosines{}, weights{};
+  std::size_t count = 0;
+  envmap::for_each_node(task.env, cell, rule, [&](const Vec3& direction, double weight) {
+    cosines[count] = dot(task.d, direction), weights[count] = weight;
+    ++count;
+  });
+  return rows::sum_of_powers(weights.data(), cosines.data(), count, 0, 1, task.power->exponent());
+}
 
 double over_edge_cell(const Task& task, const Cell& cell) {
   const double column = (cell.column0 + cell.column1) / 2, row = (cell.row0 + cell.row1) / 2;
@@ -70,7 +84,8 @@ double integrate(const Task& task, const Cell& cell, int depth) {
   const int points = rule_for(2 * radius * task.kernel.variation(theta + radius), task.relative, most);
   // A lat-long cell that is large itself bends; its density must be smooth over it, too.
   if (radius > 0.5 || (points == 0 && depth < kDeepest)) return split();
-  return envmap::over_cell(task.env, cell, math::kGaussPoints[std::max(points, radius > 0.05 ? 4 : 2) - 1], lobe);
+  const math::GaussPoints& rule = math::kGaussPoints[std::max(points, radius > 0.05 ? 4 : 2) - 1];
+  return task.power ? powers_over_cell(task, cell, rule) : envmap::over_cell(task.env, cell, rule, lobe);
 }
 
 // Where a sharp cosine lobe has fallen to kNothing: cos^E is below exp(-E angle^2/2).
@@ -164,8 +179,9 @@ double lobe_over_cell(const Environment& env, const Cell& cell, const Vec3& d, c
   // The reference asks for more digits, and keeps a method of its own.
   constexpr double kLeastRelative = 1e-8, kWidths = 0.5, kSharp = 30;
   const double sharpness = kernel.sharpness();
-  if (env.layout() == Environment::Layout::kLatLong && relative >= kLeastRelative && sharpness > kSharp &&
-      2 * radius * sharpness > kWidths && dynamic_cast<const CosineKernel*>(&kernel)) {
+  const CosineKernel* power = relative >= kLeastRelative ? dynamic_cast<const CosineKernel*>(&kernel) : nullptr;
+  if (env.layout() == Environment::Layout::kLatLong && power && sharpness > kSharp &&
+      2 * radius * sharpness > kWidths) {
     const double theta =
         envmap::angle_between(env.direction_at((cell.column0 + cell.column1) / 2, (cell.row0 + cell.row1) / 2), d);
     if (theta - radius > reach_rad(sharpness)) return 0;
@@ -173,7 +189,7 @@ double lobe_over_cell(const Environment& env, const Cell& cell, const Vec3& d, c
       return sharp_lobe_over_texel(env, static_cast<int>(cell.column0), static_cast<int>(cell.row0), d,
                                    kernel.exponent(), relative);
   }
-  return integrate({env, d, kernel, relative, edge_radius}, cell, 0);
+  return integrate({env, d, kernel, relative, edge_radius, power}, cell, 0);
 }
 
 }  // namespace goniochrome::prefilter

@@ -249,23 +249,28 @@ void CutBandWeights(const CutTexels& cut, const SecondIntegral& band, float* wei
   }
 }
 
-// A lane holds one channel in every third vector. Floats add up kStripsAsFloats strips, which rounds by some 1e-7 of
-// what these have; doubles add up the rest.
-void Strips(const float* rgb, const std::size_t* at, const float* weights, std::size_t strips, double sum[3]) {
+// A lane holds one channel in every third vector. The weights of a vector of texels are spread over three vectors of
+// their channels. Floats add up kStripsAsFloats strips, which rounds by some 1e-7 of what these have; doubles add up
+// the rest.
+void Strips(const float* rgb, const int* at, const float* weights, std::size_t strips, double sum[3]) {
   constexpr std::size_t kStripsAsFloats = 16;
   const hn::CappedTag<float, kStrip> d;
   const std::size_t lanes = hn::Lanes(d);
+  alignas(64) std::int32_t texel[3 * kStrip];
+  for (std::size_t i = 0; i < 3 * lanes; ++i) texel[i] = static_cast<std::int32_t>(i / 3);
+  const auto to_first = hn::SetTableIndices(d, texel), to_second = hn::SetTableIndices(d, texel + lanes),
+             to_third = hn::SetTableIndices(d, texel + 2 * lanes);
   double exact[3 * kStrip] = {};
   for (std::size_t begin = 0; begin < strips; begin += kStripsAsFloats) {
     auto first = hn::Zero(d), second = first, third = first;
-    for (std::size_t i = begin; i < std::min(strips, begin + kStripsAsFloats); ++i) {
-      const float *from = rgb + at[i], *weight = weights + 3 * kStrip * i;
-      for (std::size_t v = 0; v < 3 * kStrip; v += 3 * lanes) {
-        first = hn::MulAdd(hn::LoadU(d, weight + v), hn::LoadU(d, from + v), first);
-        second = hn::MulAdd(hn::LoadU(d, weight + v + lanes), hn::LoadU(d, from + v + lanes), second);
-        third = hn::MulAdd(hn::LoadU(d, weight + v + 2 * lanes), hn::LoadU(d, from + v + 2 * lanes), third);
+    for (std::size_t i = begin; i < std::min(strips, begin + kStripsAsFloats); ++i)
+      for (std::size_t v = 0; v < kStrip; v += lanes) {
+        const auto weight = hn::LoadU(d, weights + kStrip * i + v);
+        const float* from = rgb + 3 * (static_cast<std::size_t>(at[i]) + v);
+        first = hn::MulAdd(hn::TableLookupLanes(weight, to_first), hn::LoadU(d, from), first);
+        second = hn::MulAdd(hn::TableLookupLanes(weight, to_second), hn::LoadU(d, from + lanes), second);
+        third = hn::MulAdd(hn::TableLookupLanes(weight, to_third), hn::LoadU(d, from + 2 * lanes), third);
       }
-    }
     alignas(64) float part[3 * kStrip];
     hn::StoreU(first, d, part), hn::StoreU(second, d, part + lanes), hn::StoreU(third, d, part + 2 * lanes);
     for (std::size_t i = 0; i < 3 * lanes; ++i) exact[i] += static_cast<double>(part[i]);
@@ -379,7 +384,7 @@ void cut_band_weights(const CutTexels& cut, const SecondIntegral& band, float* w
   HWY_DYNAMIC_DISPATCH(CutBandWeights)(cut, band, weights);
 }
 
-void add_strips(const float* rgb, const std::size_t* at, const float* weights, std::size_t strips, double sum[3]) {
+void add_strips(const float* rgb, const int* at, const float* weights, std::size_t strips, double sum[3]) {
   HWY_DYNAMIC_DISPATCH(Strips)(rgb, at, weights, strips, sum);
 }
 

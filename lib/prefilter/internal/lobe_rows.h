@@ -55,10 +55,10 @@ void lat_long_band_weights(const double* sine, const double* cosine, const LatLo
 // The same of the cut texels.
 void cut_band_weights(const CutTexels& cut, const SecondIntegral& band, float* weights);
 
-// A strip is kStrip neighboring texels of a row. Adds the sum over strips of the floats from rgb[at[i]] on, each times
-// a weight of its own, to sum[c].
+// A strip is kStrip neighboring texels of a row. Adds the sum over strips of the texels from rgb[3 at[i]] on, each
+// times the weight of its own, of which there are kStrip to a strip, to sum[c].
 constexpr std::size_t kStrip = 16;
-void add_strips(const float* rgb, const std::size_t* at, const float* weights, std::size_t strips, double sum[3]);
+void add_strips(const float* rgb, const int* at, const float* weights, std::size_t strips, double sum[3]);
 
 // A row of a cube's face at the height t, `down` high: directions (p + q s[j]) / n with n^2 = m + s[j]^2, where p grows
 // by r for each unit of t; texels are width[j] wide.

@@ -12,31 +12,29 @@
 namespace goniochrome::prefilter {
 
 void Strips::add(int row, int column, const float* weights, std::size_t columns) {
-  constexpr std::size_t kFloats = 3 * rows::kStrip;
   for (std::size_t begin = 0; begin < columns; begin += rows::kStrip) {
-    const std::size_t at = kFloats * places_.size();
-    if (at + kFloats > forward_.size()) forward_.resize(2 * (at + kFloats)), backward_.resize(2 * (at + kFloats));
-    places_.push_back({row, column + static_cast<int>(begin)});
-    float *forward = &forward_[at], *backward = &backward_[at];
-    for (std::size_t i = 0; i < rows::kStrip; ++i) {
-      const float weight = begin + i < columns ? weights[begin + i] : 0;
-      std::fill_n(forward + 3 * i, 3, weight);
-      std::fill_n(backward + 3 * (rows::kStrip - 1 - i), 3, weight);
-    }
+    const std::size_t at = rows::kStrip * columns_.size(), count = std::min(columns - begin, rows::kStrip);
+    if (at + rows::kStrip > forward_.size())
+      forward_.resize(2 * (at + rows::kStrip)), backward_.resize(2 * (at + rows::kStrip));
+    row_starts_.push_back(row * stride_), columns_.push_back(column + static_cast<int>(begin));
+    float *const forward = &forward_[at], *const end = forward + rows::kStrip;
+    std::fill(std::copy_n(weights + begin, count, forward), end, 0.0F);
+    std::reverse_copy(forward, end, &backward_[at]);
   }
 }
 
 StripMap::StripMap(const envmap::Environment& env, const envmap::Clip& clip)
     : width_(env.width()),
       height_(env.height()),
-      stride_(static_cast<std::size_t>(env.width()) + rows::kStrip),
-      rgb_(3 * stride_ * static_cast<std::size_t>(env.height())) {
+      stride_(env.width() + static_cast<int>(rows::kStrip)),
+      rgb_(3 * static_cast<std::size_t>(stride_) * static_cast<std::size_t>(env.height())) {
+  const std::size_t stride = static_cast<std::size_t>(stride_);
   parallel_for(static_cast<std::size_t>(height_), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row)
-      for (std::size_t column = 0; column < stride_; ++column) {
+      for (std::size_t column = 0; column < stride; ++column) {
         const std::array<float, 3> left =
             clip.left_of(env.radiance(static_cast<int>(column) % width_, static_cast<int>(row)));
-        std::copy(left.begin(), left.end(), &rgb_[3 * (row * stride_ + column)]);
+        std::copy(left.begin(), left.end(), &rgb_[3 * (row * stride + column)]);
       }
   });
 }
@@ -45,8 +43,8 @@ std::vector<Vec3> StripMap::sums(const std::vector<Vec3>& directions, const Weig
   const std::vector<Orbit> orbits = orbits_of(directions);
   std::vector<Vec3> result(directions.size());
   parallel_for(orbits.size(), 16, [&](std::size_t begin, std::size_t end) {
-    Strips strips;
-    std::vector<std::size_t> at;
+    Strips strips(stride_);
+    std::vector<int> at;
     for (std::size_t i = begin; i < end; ++i) {
       strips.clear();
       weigh(orbits[i].seat, strips);
@@ -92,17 +90,22 @@ std::vector<StripMap::Orbit> StripMap::orbits_of(const std::vector<Vec3>& direct
   return orbits;
 }
 
-// Column j of the seat is column shift + j of the member, or shift - j where the columns run the other way.
-Vec3 StripMap::sum_for(const Member& member, const Strips& strips, std::vector<std::size_t>& at) const {
-  const int last = static_cast<int>(rows::kStrip) - 1;
-  at.resize(strips.places_.size());
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const auto [row, begin] = strips.places_[i];
-    int column = member.reversed ? member.shift - begin - last : member.shift + begin;
-    while (column < 0) column += width_;
-    while (column >= width_) column -= width_;
-    const int down = member.below ? height_ - 1 - row : row;
-    at[i] = 3 * (static_cast<std::size_t>(down) * stride_ + static_cast<std::size_t>(column));
+// Column j of the seat is column shift + j of the member, or shift - j where the columns run the other way. The loop
+// has no branches, so that compilers take several strips at a time.
+Vec3 StripMap::sum_for(const Member& member, const Strips& strips, std::vector<int>& at) const {
+  const int along = member.reversed ? -1 : 1, down = member.below ? -1 : 1;
+  const int first_start = member.below ? (height_ - 1) * stride_ : 0;
+  int first_column = member.reversed ? member.shift - static_cast<int>(rows::kStrip) + 1 : member.shift;
+  while (first_column < 0) first_column += width_;
+  const std::size_t count = strips.columns_.size();
+  at.resize(count);
+  const int *const starts = strips.row_starts_.data(), *const columns = strips.columns_.data();
+  int* const to = at.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    int column = first_column + along * columns[i];
+    column += column < 0 ? width_ : 0;
+    column -= column >= width_ ? width_ : 0;
+    to[i] = first_start + down * starts[i] + column;
   }
   double total[3] = {0, 0, 0};
   rows::add_strips(rgb_.data(), at.data(), (member.reversed ? strips.backward_ : strips.forward_).data(), at.size(),

@@ -17,23 +17,23 @@ namespace goniochrome::prefilter {
 // Some texels and their weights, as runs within rows that are cut into strips of equal length.
 class Strips {
  public:
-  void clear() { places_.clear(); }
+  void clear() { row_starts_.clear(), columns_.clear(); }
   // The texels of a row from `column` on, which do not reach beyond its end.
   void add(int row, int column, const float* weights, std::size_t columns);
 
  private:
   friend class StripMap;
-  struct Place {
-    int row, column;
-  };
-  std::vector<Place> places_;  // of the first texel of each strip
-  // Each weight three times, once for each channel; `backward_` has every strip from its last texel to its first.
+  explicit Strips(int stride) : stride_(stride) {}
+
+  int stride_;                             // texels from one row of the map to the next
+  std::vector<int> row_starts_, columns_;  // of the first texel of each strip
+  // The weights of the texels; `backward_` has every strip from its last texel to its first.
   std::vector<float> forward_, backward_;
 };
 
 class StripMap {
  public:
-  // What the clip leaves of a lat-long map.
+  // What the clip leaves of a lat-long map, which has fewer than 2^31 texels.
   StripMap(const envmap::Environment& env, const envmap::Clip& clip);
 
   // A direction of the northern hemisphere at the place `column` of the first half of the first column, continuously.
@@ -59,10 +59,9 @@ class StripMap {
     std::vector<Member> members;
   };
   std::vector<Orbit> orbits_of(const std::vector<Vec3>& directions) const;
-  Vec3 sum_for(const Member& member, const Strips& strips, std::vector<std::size_t>& at) const;
+  Vec3 sum_for(const Member& member, const Strips& strips, std::vector<int>& at) const;
 
-  int width_ = 0, height_ = 0;
-  std::size_t stride_ = 0;
+  int width_ = 0, height_ = 0, stride_ = 0;
   std::vector<float> rgb_;  // rows of stride_ texels; the first of a row follow its last once more
 };
 
