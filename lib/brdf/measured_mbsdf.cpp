@@ -4,6 +4,7 @@
 
 #include "base/angles.h"
 #include "brdf/internal/measured_formats.h"
+#include "color/acescg.h"
 
 namespace goniochrome::brdf {
 

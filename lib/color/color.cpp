@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "color/acescg.h"
 #include "math/elementary.h"
 
 namespace goniochrome::color {

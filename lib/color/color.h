@@ -52,9 +52,6 @@ Lab lab_from_rgb(const Rgb& rgb, const Xyz& white);
 // Linear Rec.709 <-> linear Rec.2020, both D65.
 Rgb rec2020_from_rec709(const Rgb& rec709);
 Rgb rec709_from_rec2020(const Rgb& rec2020);
-// Linear ACEScg, whose white is that of ACES: colors are adapted to it and from it.
-Rgb rec2020_from_acescg(const Rgb& acescg);
-Rgb acescg_from_rec2020(const Rgb& rec2020);
 
 // Color differences. CIEDE2000 is symmetric to the last bit (Sharma, Wu, Dalal 2005).
 double delta_e_76(const Lab& x, const Lab& y);

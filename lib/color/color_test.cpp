@@ -11,6 +11,7 @@
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "base/text.h"
+#include "color/acescg.h"
 
 namespace goniochrome::color {
 namespace {

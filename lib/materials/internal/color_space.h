@@ -1,7 +1,7 @@
 // The linear spaces that files for other renderers are in.
 #pragma once
 
-#include "color/color.h"
+#include "color/acescg.h"
 
 namespace goniochrome::materials {
 
