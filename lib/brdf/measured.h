@@ -28,6 +28,7 @@ struct MeasuredTraits {
   std::size_t negative = 0, zero = 0;      // of these
   double negative_rms = 0;                 // 1/sr, of the negative ones, where they are noise and not a mark
   bool symmetric = false;                  // the format stores f(a,b) and f(b,a) in one place
+  bool beyond_rec709 = false;              // below 0 in Rec.709 are colors outside of it, and no noise
   bool scattered = false;                  // the file lists directions, which samples() returns; else it is a grid
   std::vector<std::string> findings = {};  // oddities worth a warning
 };

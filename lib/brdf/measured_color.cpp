@@ -78,8 +78,9 @@ Result<MeasuredColor> measured_color(const MeasuredBrdf& brdf, const MeasuredCol
     }
     MeasuredReading reading{geometry, {}, {}, value.gap_deg, value.outside_deg};
     for (double& f : value.f) {
-      reading.negative = reading.negative || f < 0;
-      f = kPi * std::max(f, 0.0);
+      const bool noise = f < 0 && !brdf.traits().beyond_rec709;
+      reading.negative = reading.negative || noise;
+      f = noise ? 0 : kPi * f;
     }
     reading.factors = value.f;
     const color::Xyz xyz = color.xyz(value.f);

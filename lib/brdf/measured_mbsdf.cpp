@@ -4,6 +4,7 @@
 
 #include "base/angles.h"
 #include "brdf/internal/measured_formats.h"
+#include "color/acescg.h"
 
 namespace goniochrome::brdf {
 
@@ -55,6 +56,17 @@ class MbsdfBrdf final : public MeasuredBrdf {
   Grid grid_;
 };
 
+// A line of the header, which files of paint-export have; others say nothing of their colors.
+constexpr std::string_view kAcescg = "\ncolorspace=\"acescg\"\n";
+
+void turn_into_rec709(Grid& grid) {
+  for (std::size_t i = 0; i < grid.values.size(); i += 3) {
+    const color::Rgb rgb = color::rec709_from_rec2020(
+        color::rec2020_from_acescg({grid.values[i], grid.values[i + 1], grid.values[i + 2]}));
+    for (int c = 0; c < 3; ++c) grid.values[i + static_cast<std::size_t>(c)] = static_cast<float>(rgb[c]);
+  }
+}
+
 // Viewer rows that repeat their neighbor for every light, and are no constants, were copied, not measured.
 void find_copied_rows(const Grid& grid, MeasuredTraits& traits) {
   const auto is_copy = [&](std::size_t view) {
@@ -103,12 +115,15 @@ Result<MeasuredPointer> read_mbsdf(const std::string& path, std::string_view byt
   MeasuredTraits traits{.format = "mbsdf"};
   grid.values.resize(count);
   std::memcpy(grid.values.data(), data->data(), data->size());
+  const bool acescg = grid.channels == 3 && bytes.substr(0, found).find(kAcescg) != std::string_view::npos;
   double negative_square = 0;
   for (std::size_t i = 0; i < count; ++i) {
     if (!std::isfinite(grid.values[i])) return input_error("{}: value {} is not finite", path, i);
     count_sample(grid.values[i], traits, negative_square);
   }
   if (traits.negative) traits.negative_rms = std::sqrt(negative_square / static_cast<double>(traits.negative));
+  traits.beyond_rec709 = acescg;
+  if (acescg) turn_into_rec709(grid);
   find_copied_rows(grid, traits);
   return MeasuredPointer(std::make_unique<MbsdfBrdf>(std::move(traits), std::move(grid)));
 }

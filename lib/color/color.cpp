@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "color/acescg.h"
 #include "math/elementary.h"
 
 namespace goniochrome::color {
@@ -66,6 +67,17 @@ constexpr Xyz kWorkingWhite = xyz(xyz_of(kWhite));
 constexpr Matrix kBradford = {Vec3{0.8951, 0.2664, -0.1614}, Vec3{-0.7502, 1.7135, 0.0367},
                               Vec3{0.0389, -0.0685, 1.0296}};
 constexpr Matrix kBradfordInverse = inverse(kBradford);
+
+// [S-2014-004], the primaries AP1 and the white of ACES, to which colors are adapted by Bradford's matrix.
+constexpr Chromaticity kAcesWhite = {0.32168, 0.33767};
+constexpr Matrix kXyzFromAcescg = rgb_to_xyz({0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, kAcesWhite);
+constexpr Matrix between_whites(const Vec3& from, const Vec3& to) {
+  const Vec3 was = kBradford * from, is = kBradford * to;
+  const Matrix scale = {Vec3{is.x / was.x, 0, 0}, Vec3{0, is.y / was.y, 0}, Vec3{0, 0, is.z / was.z}};
+  return kBradfordInverse * (scale * kBradford);
+}
+constexpr Matrix k2020FromAcescg = k2020FromXyz * (between_whites(xyz_of(kAcesWhite), xyz_of(kWhite)) * kXyzFromAcescg);
+constexpr Matrix kAcescgFrom2020 = inverse(k2020FromAcescg);
 
 // White points as CIE 15 and ASTM E308 print them (X and Z for Y = 100), for the 2 and the 10 deg observer.
 struct White {
@@ -143,6 +155,14 @@ Rgb rec2020_from_rec709(const Rgb& rec709) {
 
 Rgb rec709_from_rec2020(const Rgb& rec2020) {
   return k709From2020 * rec2020;
+}
+
+Rgb rec2020_from_acescg(const Rgb& acescg) {
+  return k2020FromAcescg * acescg;
+}
+
+Rgb acescg_from_rec2020(const Rgb& rec2020) {
+  return kAcescgFrom2020 * rec2020;
 }
 
 // From CIE 1976: L* = 116 Y^(1/3) - 16 gives 116/3 Y^(-2/3); the linear branch gives (29/3)^3.

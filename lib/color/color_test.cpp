@@ -11,6 +11,7 @@
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "base/text.h"
+#include "color/acescg.h"
 
 namespace goniochrome::color {
 namespace {
@@ -19,6 +20,20 @@ const Xyz kD65_10 = *white_point({"D65", 10});
 
 double difference(const Lab& x, const Lab& y) {
   return std::max({std::abs(x.L - y.L), std::abs(x.a - y.a), std::abs(x.b - y.b)});
+}
+
+// The matrix of S-2014-004 has XYZ relative to the white of ACES; the control leaves the whites apart.
+TEST(Acescg, IsThatOfTheStandard) {
+  const Xyz aces_white{0.9526460746, 1, 1.0088251844}, d65 = xyz_d65_from_rgb({1, 1, 1});
+  const Rgb acescg = acescg_from_rec2020({0.2, 0.5, 0.1});
+  const Xyz xyz = adapted(xyz_d65_from_rgb({0.2, 0.5, 0.1}), d65, aces_white), off = xyz_d65_from_rgb({0.2, 0.5, 0.1});
+  const auto red = [](const Xyz& c) { return 1.6410233797 * c.X - 0.3248032942 * c.Y - 0.2364246952 * c.Z; };
+  EXPECT_NEAR(acescg.x, red(xyz), 1e-7);
+  EXPECT_GT(std::abs(acescg.x - red(off)), 1e-3);
+  const Rgb back = rec2020_from_acescg(acescg);
+  EXPECT_NEAR(back.x, 0.2, 1e-12);
+  EXPECT_NEAR(back.y, 0.5, 1e-12);
+  EXPECT_NEAR(back.z, 0.1, 1e-12);
 }
 
 TEST(Color, WhitePointsHaveThePublishedChromaticity) {

@@ -7,9 +7,9 @@
 namespace goniochrome::materials {
 
 std::span<const Target* const> targets() {
-  static constexpr std::array<const Target*, 12> kTargets = {
-      &kRgl,     &kRglSpectral, &kMdl,  &kRadiance, &kOpenMaterial, &kMaterialX, &kStandardSurface,
-      &kOpenPbr, &kOpenPbrUsd,  &kGltf, &kUsd,      &kEnterprise};
+  static constexpr std::array<const Target*, 13> kTargets = {
+      &kRgl,     &kRglSpectral, &kMdl,  &kMdlAcescg, &kRadiance,  &kOpenMaterial, &kMaterialX, &kStandardSurface,
+      &kOpenPbr, &kOpenPbrUsd,  &kGltf, &kUsd,       &kEnterprise};
   return kTargets;
 }
 

@@ -43,7 +43,8 @@ struct Naming {
 struct Material {
   std::string bytes;  // of the file
   Shown shown;
-  std::string companion = {};  // bytes of the second file, of targets that have one
+  std::string companion = {};              // bytes of the second file, of targets that have one
+  std::vector<std::string> left_out = {};  // what of the paint has no place in this target, as left_out() words it
 };
 
 struct Target {
@@ -56,7 +57,7 @@ struct Target {
   std::size_t at_once = 16;         // files to make and hold side by side; large ones are fewer
 };
 extern const Target kRgl, kRglSpectral, kMaterialX, kGltf, kUsd, kStandardSurface, kOpenPbr, kOpenPbrUsd, kMdl,
-    kRadiance, kEnterprise, kOpenMaterial;
+    kMdlAcescg, kRadiance, kEnterprise, kOpenMaterial;
 
 // All targets, in the order in which help names them.
 std::span<const Target* const> targets();

@@ -57,6 +57,33 @@ TEST(Material, AGraphKeepsColorsOutsideOfRec709) {
   EXPECT_LE(graph->shown.de00_mean, 2);
 }
 
+// A table cannot hold light below 0. In Rec.709 such a blue is cut, and that is told; ACEScg has it.
+TEST(Material, ATableOfMdlInAcescgHasColorsOutsideOfRec709) {
+  const paint::Paint paint =
+      paint_for_test("blue", {0.001, 0.01, 0.04}, {{6, {0, 0.02, 0.15}, {}}, {20, {0, 0.03, 0.3}, {}}}, 1.5);
+  const auto narrow = kMdl.material(paint, {"blue", "blue", "test", {}}),
+             wide = kMdlAcescg.material(paint, {"blue", "blue", "test", {}});
+  ASSERT_TRUE(narrow.ok() && wide.ok());
+  EXPECT_LE(wide->shown.de00_mean, 0.3);
+  EXPECT_TRUE(wide->left_out.empty());
+  EXPECT_GT(narrow->shown.de00_mean, 3);
+  EXPECT_EQ(narrow->left_out, std::vector<std::string>{"the part of its colors outside of Rec.709"});
+}
+
+// Gloss counts by the light alone, and weights by views by the viewer: both are tables of their own.
+TEST(Material, ATableOfMdlHoldsGlossAndViews) {
+  paint::Paint paint = satin_for_test();
+  paint::LobeFit& lobes = *paint.lobes;
+  for (const double view_deg : {0.0, 60.0}) {
+    paint::ViewLobes view{view_deg, lobes.diffuse, lobes.lobes};
+    for (paint::Lobe& lobe : view.lobes) lobe.directional_diffuse = (1 + view_deg / 30) * lobe.directional_diffuse;
+    lobes.views.push_back(view);
+  }
+  const auto table = kMdl.material(paint, {"satin", "satin", "test", {}});
+  ASSERT_TRUE(table.ok());
+  EXPECT_LE(table->shown.de00_mean, 0.3);
+}
+
 // A surface has to have a node, also where nothing is reflected.
 TEST(Material, AGraphOfBlackHasANode) {
   const auto graph =

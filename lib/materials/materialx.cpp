@@ -25,9 +25,8 @@ std::string numbers(const color::Rgb& rgb) {
 class Document {
  public:
   Document(const Naming& naming, ColorSpace space) : naming_(naming) {
-    text_ = "<?xml version=\"1.0\"?>\n<materialx version=\"1.38\" colorspace=\"" +
-            std::string(space == ColorSpace::kRec709 ? "lin_rec709" : "acescg") + "\" doc=\"" +
-            xml_escaped(naming.provenance) + "\">\n";
+    text_ = "<?xml version=\"1.0\"?>\n<materialx version=\"1.38\" colorspace=\"" + std::string(name_of(space)) +
+            "\" doc=\"" + xml_escaped(naming.provenance) + "\">\n";
   }
   // Begins a node; returns its name.
   std::string begin(const std::string& kind, const std::string& what, const std::string& type = "BSDF") {

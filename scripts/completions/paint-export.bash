@@ -1,7 +1,7 @@
 _paint_export() {
   local word=${COMP_WORDS[COMP_CWORD]}
   case ${COMP_WORDS[COMP_CWORD-1]} in
-    --to|-t) COMPREPLY=($(compgen -W "rgl rgl-spectral mdl radiance openmaterial materialx standard-surface openpbr openpbr-usda gltf usda enterprise" -- "$word")); return ;;
+    --to|-t) COMPREPLY=($(compgen -W "rgl rgl-spectral mdl mdl-acescg radiance openmaterial materialx standard-surface openpbr openpbr-usda gltf usda enterprise" -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;

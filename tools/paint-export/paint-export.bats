@@ -107,9 +107,30 @@ PY
   done
 }
 
-@test "a graph of MaterialX reads back as told, within 1 dE00 in the mean over the six" {
+# A table has no light below 0, and a renderer that works in Rec.709 no other primaries.
+@test "a table of MDL in ACEScg holds a paint that one in Rec.709 cuts, and says so" {
+  /usr/bin/python3 -c 'import numpy' 2>/dev/null || skip "python3-numpy is not there"
+  fit-paint -q -b "$TESTDATA/b7.basis.xml" --satin none "$TESTDATA/paints.paints.xml#candy_blue" -o blue.xml
+  for target in mdl mdl-acescg; do
+    run --separate-stderr paint-export --to $target blue.xml -o $target.mdl --report $target.json
+    [ "$status" -eq 0 ]
+    read -r mean worst < <(/usr/bin/python3 "$readers/compare.py" blue.xml candy_blue $target.mdl)
+    jq -e --argjson mean "$mean" --argjson worst "$worst" \
+      '.results.paints[0] | (.de00_mean - $mean | fabs) <= 0.05 + 0.1 * .de00_mean and (.de00_max - $worst | fabs) <= 0.05 + 0.1 * .de00_max' $target.json
+    [ $target = mdl-acescg ] || [[ "$stderr" = *"candy_blue: the part of its colors outside of Rec.709 is left out"* ]]
+  done
+  jq -e '.results.paints[0] | .de00_mean < 4 and (.left_out | length) == 1' mdl.json
+  jq -e '.results.paints[0] | .de00_mean < 0.3 and (.left_out | length) == 0' mdl-acescg.json
+  grep -F 'works in ACEScg' mdl-acescg.mdl
+  # Our own reader knows the space of the table.
+  paint-convert -q mdl-acescg.mbsdf --to csv -o - | tail -n +2 | cut -d, -f2,5-7 | sort >table.csv
+  paint-convert -q --illuminant D65 --observer 2 blue.xml --to csv -o - | tail -n +2 | cut -d, -f2,5-7 | sort >paint.csv
+  join -t, table.csv paint.csv | tee /dev/stderr | awk -F, '{ ++n; for (i = 2; i <= 4; ++i) { d = $i - $(i + 3); if (d * d > 16) exit 1 } } END { exit !n }'
+}
+
+@test "a graph of MaterialX reads back as told, within 1 dE00 for each of the six" {
   read_back materialx mtlx
-  awk '{ sum += $4 } END { print sum / NR; exit !(sum / NR <= 1) }' both
+  awk '{ print $1, $4 } $4 > 1 { exit 1 }' both
   xmllint --noout ./*.mtlx
 }
 
@@ -160,7 +181,7 @@ PY
 
 @test "the tree for Radiance reads back as told" {
   read_back radiance xml
-  awk '{ sum += $2 } $2 > 0.5 { exit 1 } END { exit !(sum / NR <= 0.3) }' both
+  awk '{ sum += $2 } $2 > 0.35 { exit 1 } END { exit !(sum / NR <= 0.3) }' both
   xmllint --noout --huge ./*.xml
 }
 

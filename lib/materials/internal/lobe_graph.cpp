@@ -16,9 +16,12 @@ namespace {
 constexpr std::array kAlphas = {0.02, 0.03, 0.045, 0.065, 0.09, 0.12, 0.16, 0.21, 0.28, 0.37, 0.5, 0.7, 1.0};
 
 constexpr Facets kEven = {1, 1, 5}, kFalling = {1, 0, 0.5}, kGlossy = {0.04, 1, 5};
+// Facets for paints that the others leave farther away.
+constexpr std::array kMoreFacets = {Facets{1, 0, 0.25}, Facets{1, 0, 1}, Facets{1, 0, 2}, Facets{1, 0, 5}};
 
 constexpr int kSteps = 4;  // ten lower the mean by 0.3 % more
 constexpr double kLarge_de00 = 1;
+constexpr double kWanted_de00 = 1;  // at compared_geometries(), in the mean
 
 // Gloss lobes of this exponent and more are the coat's, and wider ones are fitted as lobes.
 constexpr double kCoatExponent = 500;
@@ -121,7 +124,8 @@ std::vector<FitSample> picture_samples(const paint::LobeFit& lobes) {
 // All nodes that a base may have, and what each is at the directions of picture_samples(), sample by sample. Nodes of
 // gloss are for paints that have gloss beside the coat's.
 struct Offered {
-  std::vector<BaseNode> nodes;
+  std::vector<BaseNode> nodes;  // the first `usual` of them for every paint, the others where these do not do
+  std::size_t usual = 0;
   std::vector<double> values;
 };
 
@@ -133,6 +137,10 @@ Offered offers_at(const std::vector<FitSample>& samples, bool glossy) {
     for (const Facets& facets : {kEven, kFalling, kGlossy})
       for (const double alpha : kAlphas)
         if (glossy || facets.color0 > 0.5) list.nodes.push_back({BaseNode::Kind::kLobe, alpha, facets, widened, {}});
+  list.usual = list.nodes.size();
+  for (const bool widened : {false, true})
+    for (const Facets& facets : kMoreFacets)
+      for (const double alpha : kAlphas) list.nodes.push_back({BaseNode::Kind::kLobe, alpha, facets, widened, {}});
   for (const FitSample& sample : samples)
     for (const BaseNode& node : list.nodes) list.values.push_back(node.value(sample.light, sample.view));
   return list;
@@ -158,7 +166,6 @@ class Problem {
         graph_(graph) {
     const auto known = color::white_point(paint::condition_of(paint));
     white_ = known.ok() ? *known : color::Xyz{1, 1, 1};
-    columns_ = kTintParts * offers_.nodes.size();
     constexpr double kOutside = -1e-4;
     for (const FitSample& sample : samples_) {
       const color::Rgb rgb = kPi * color::rec709_from_rec2020(sample.f);
@@ -169,65 +176,26 @@ class Problem {
       target_.push_back(into_space(graph_.space, sample.f) -
                         color::Rgb{coat.reflected, coat.reflected, coat.reflected});
       reflected_.push_back(coat.reflected);
-      const auto parts = tint_parts(sample.view.z);
-      const std::size_t row = target_.size() - 1;
-      for (std::size_t c = 0; c < columns_; ++c)
-        values_.push_back(coat.left * parts[c % kTintParts] *
-                          offers_.values[row * offers_.nodes.size() + c / kTintParts]);
+      left_.push_back(coat.left);
     }
+    for (const FitSample& sample : samples_) wanted_.push_back(color::lab_from_rgb(kPi * sample.f, white_));
   }
 
-  // Each channel by itself; an error counts by what it makes of the lightness.
-  void choose() {
-    const int rows = static_cast<int>(samples_.size());
-    math::Matrix m(rows, static_cast<int>(columns_));
-    std::array<std::vector<double>, 3> b;
-    for (int row = 0; row < rows; ++row) {
-      const auto i = static_cast<std::size_t>(row);
-      constexpr double kDarkest = 0.003;  // L* of 3: below, differences are of the instruments
-      const double luminance = kPi * color::xyz_d65_from_rgb(samples_[i].f).Y;
-      const double weight = std::sqrt(samples_[i].weight) * std::pow(std::max(luminance, kDarkest), -2.0 / 3);
-      for (std::size_t c = 0; c < columns_; ++c) m(row, static_cast<int>(c)) = weight * value(i, c);
-      for (int c = 0; c < 3; ++c) b[c].push_back(weight * target_[i][c]);
-    }
-    for (int c = 0; c < 3; ++c) x_[c] = math::nnls(m, b[c]).x;
-  }
-
-  // Steps of Gauss and Newton over the columns that are chosen, toward the least sum of Huber's function of the color
-  // difference, which is its square up to kLarge_de00 and a straight line beyond: so the mean counts, and a few
-  // directions that no graph can reach do not spoil the others.
-  void refine() {
-    std::vector<std::array<std::size_t, 2>> active;  // channel, column
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t k = 0; k < columns_; ++k)
-        if (x_[c][k] > 0) active.push_back({c, k});
-    std::vector<color::Lab> wanted;
-    for (const FitSample& sample : samples_) wanted.push_back(color::lab_from_rgb(kPi * sample.f, white_));
-    double best = sum(wanted);
-    if (active.empty()) return;
-    for (int step = 0; step < kSteps; ++step) {
-      const std::vector<double> found = step_from_here(active, wanted);
-      const auto old = x_;
-      double now = best;
-      for (double share = 1; share > 0.1 && now >= best; share /= 2) {
-        for (std::size_t k = 0; k < active.size(); ++k) {
-          const auto [c, column] = active[k];
-          x_[c][column] = std::lerp(old[c][column], found[k], share);
-        }
-        now = sum(wanted);
-      }
-      if (now >= best) {
-        x_ = old;
-        break;
-      }
-      best = now;
-    }
+  // The nodes for every paint first, then more of them one by one, and where neither is near enough all at once.
+  void solve() {
+    attempt(kTintParts * offers_.usual);
+    constexpr double kWithinReach_de00 = 1.5;  // from farther away, the second attempt comes nearer by 5 % at most
+    if (const double mean = mean_compared(); mean <= kWanted_de00 || mean > kWithinReach_de00) return;
+    const double first = best_;
+    const auto weights = x_;
+    attempt(kTintParts * offers_.nodes.size());
+    if (best_ >= first) x_ = weights;
   }
 
   void write() {
     std::vector<BaseNode> nodes = offers_.nodes;
     for (int c = 0; c < 3; ++c)
-      for (std::size_t k = 0; k < columns_; ++k) nodes[k / kTintParts].tints[k % kTintParts][c] = x_[c][k];
+      for (std::size_t k = 0; k < x_[c].size(); ++k) nodes[k / kTintParts].tints[k % kTintParts][c] = x_[c][k];
     constexpr double kLeast = 1e-5;
     for (const BaseNode& node : nodes)
       if (node.brightest() > kLeast) graph_.base.push_back(node);
@@ -236,30 +204,153 @@ class Problem {
   }
 
  private:
-  double value(std::size_t sample, std::size_t column) const { return values_[sample * columns_ + column]; }
+  using Column = std::array<std::size_t, 2>;  // channel, column
+
+  // Weights for the first columns channel by channel, then steps of Gauss and Newton toward the least sum of Huber's
+  // function of the color difference, which is its square up to kLarge_de00 and a straight line beyond: so the mean
+  // counts, and a few directions that no graph can reach do not spoil the others.
+  void attempt(std::size_t columns) {
+    choose(columns);
+    active_.clear();
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t k = 0; k < x_[c].size(); ++k)
+        if (x_[c][k] > 0) active_.push_back({c, k});
+    best_ = sum();
+    if (active_.empty()) return;
+    descend(kSteps);
+    widen();
+  }
+
+  // Weights for so many columns, each channel by itself.
+  void choose(std::size_t columns) {
+    add_values(columns);
+    const int rows = static_cast<int>(samples_.size());
+    math::Matrix m(rows, static_cast<int>(columns));
+    std::array<std::vector<double>, 3> b;
+    for (int row = 0; row < rows; ++row) {
+      const auto i = static_cast<std::size_t>(row);
+      const double weight = lightness_weight(i);
+      for (std::size_t c = 0; c < columns; ++c) m(row, static_cast<int>(c)) = weight * value(i, c);
+      for (int c = 0; c < 3; ++c) b[c].push_back(weight * target_[i][c]);
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      x_[c] = math::nnls(m, b[c]).x;
+      x_[c].resize(values_.size());
+    }
+  }
+
+  // Gives a graph that is still farther away than kWanted_de00 more columns out of all that are offered: again and
+  // again those that bring it nearer most quickly, until it is near enough or that helps no more.
+  void widen() {
+    constexpr double kLeastGain = 0.002;
+    constexpr int kRounds = 12;
+    for (int round = 0; round < kRounds && mean_compared() > kWanted_de00; ++round) {
+      add_values(kTintParts * offers_.nodes.size());
+      const double before = best_;
+      add_columns();
+      descend(kSteps);
+      if (best_ > (1 - kLeastGain) * before) break;
+    }
+  }
+
+  // What a column of weight 1 shows at a sample.
+  double value(std::size_t sample, std::size_t column) const { return values_[column][sample]; }
+
+  // The first `count` columns, as far as they are not there.
+  void add_values(std::size_t count) {
+    const std::size_t from = values_.size();
+    if (count <= from) return;
+    values_.resize(count, std::vector<double>(samples_.size()));
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const auto parts = tint_parts(samples_[i].view.z);
+      for (std::size_t c = from; c < count; ++c)
+        values_[c][i] = left_[i] * parts[c % kTintParts] * offers_.values[i * offers_.nodes.size() + c / kTintParts];
+    }
+    for (std::vector<double>& weights : x_) weights.resize(count);
+  }
+
+  // An error of this light counts by what it makes of the lightness.
+  double lightness_weight(std::size_t sample) const {
+    constexpr double kDarkest = 0.003;  // L* of 3: below, differences are of the instruments
+    const double luminance = kPi * color::xyz_d65_from_rgb(samples_[sample].f).Y;
+    return std::sqrt(samples_[sample].weight) * std::pow(std::max(luminance, kDarkest), -2.0 / 3);
+  }
+
+  // Steps of Gauss and Newton over the active columns.
+  void descend(int steps) {
+    for (int step = 0; step < steps; ++step) {
+      const std::vector<double> found = step_from_here();
+      const auto old = x_;
+      double now = best_;
+      for (double share = 1; share > 0.1 && now >= best_; share /= 2) {
+        for (std::size_t k = 0; k < active_.size(); ++k) {
+          const auto [c, column] = active_[k];
+          x_[c][column] = std::lerp(old[c][column], found[k], share);
+        }
+        now = sum();
+      }
+      if (now >= best_) {
+        x_ = old;
+        break;
+      }
+      best_ = now;
+    }
+  }
+
+  // The mean difference at compared_geometries(), which are the last samples.
+  double mean_compared() const {
+    const std::size_t count = compared_geometries().size();
+    double total = 0;
+    for (std::size_t i = samples_.size() - count; i < samples_.size(); ++i) total += length(apart_at(i, shown(i)));
+    return total / static_cast<double>(count);
+  }
+
+  // Active columns without weight give way to the kAdded ones along which the sum falls most steeply, relative to what
+  // they do to the lightness.
+  void add_columns() {
+    constexpr std::size_t kAdded = 8;
+    std::erase_if(active_, [&](const Column& at) { return !(x_[at[0]][at[1]] > 0); });
+    std::array<std::vector<double>, 3> slopes;
+    std::vector<double> square;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const color::Rgb now = shown(i);
+      const Vec3 apart = apart_at(i, now);
+      for (int c = 0; c < 3; ++c)
+        slopes[static_cast<std::size_t>(c)].push_back(huber_weight(i, apart) * dot(apart, slope_at(i, now, apart, c)));
+      square.push_back(lightness_weight(i) * lightness_weight(i));
+    }
+    std::vector<std::pair<double, Column>> offers;
+    for (std::size_t k = 0; k < values_.size(); ++k) {
+      double size = 0;
+      std::array<double, 3> slope{};
+      for (std::size_t i = 0; i < samples_.size(); ++i) {
+        const double v = value(i, k);
+        size += square[i] * v * v;
+        for (std::size_t c = 0; c < 3; ++c) slope[c] += slopes[c][i] * v;
+      }
+      for (std::size_t c = 0; c < 3; ++c)
+        if (slope[c] < 0 && size > 0 && !(x_[c][k] > 0)) offers.push_back({slope[c] / std::sqrt(size), {c, k}});
+    }
+    std::ranges::sort(offers);
+    for (std::size_t n = 0; n < std::min(kAdded, offers.size()); ++n) active_.push_back(offers[n].second);
+  }
 
   // The weights of the active columns for which the differences, taken as straight in the colors from here, are least.
-  std::vector<double> step_from_here(const std::vector<std::array<std::size_t, 2>>& active,
-                                     const std::vector<color::Lab>& wanted) const {
+  std::vector<double> step_from_here() const {
     const int rows = static_cast<int>(3 * samples_.size());
-    math::Matrix m(rows, static_cast<int>(active.size()));
+    math::Matrix m(rows, static_cast<int>(active_.size()));
     std::vector<double> b(static_cast<std::size_t>(rows));
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       const color::Rgb now = shown(i);
-      const Vec3 apart = apart_at(wanted[i], i, now);
+      const Vec3 apart = apart_at(i, now);
       std::array<Vec3, 3> slopes;
-      for (int c = 0; c < 3; ++c) {
-        color::Rgb moved = now;
-        const double d = 1e-4 * (now.x + now.y + now.z) + 1e-7;
-        moved[c] += d;
-        slopes[static_cast<std::size_t>(c)] = (1 / d) * (apart_at(wanted[i], i, moved) - apart);
-      }
-      const double weight = std::sqrt(samples_[i].weight * kLarge_de00 / std::max(kLarge_de00, length(apart)));
+      for (int c = 0; c < 3; ++c) slopes[static_cast<std::size_t>(c)] = slope_at(i, now, apart, c);
+      const double weight = std::sqrt(huber_weight(i, apart));
       for (int e = 0; e < 3; ++e) {
         const int row = static_cast<int>(3 * i) + e;
         double at_zero = -apart[e];
-        for (std::size_t k = 0; k < active.size(); ++k) {
-          const auto [c, column] = active[k];
+        for (std::size_t k = 0; k < active_.size(); ++k) {
+          const auto [c, column] = active_[k];
           const double slope = slopes[c][e] * value(i, column);
           m(row, static_cast<int>(k)) = weight * slope;
           at_zero += slope * x_[c][column];
@@ -270,23 +361,34 @@ class Problem {
     return math::nnls(m, b).x;
   }
 
+  // What the square of a difference counts for in Huber's function.
+  double huber_weight(std::size_t sample, const Vec3& apart) const {
+    return samples_[sample].weight * kLarge_de00 / std::max(kLarge_de00, length(apart));
+  }
+
+  // How apart_at() changes with one channel of what the base shows.
+  Vec3 slope_at(std::size_t sample, const color::Rgb& now, const Vec3& apart, int channel) const {
+    color::Rgb moved = now;
+    const double d = 1e-4 * (now.x + now.y + now.z) + 1e-7;
+    moved[channel] += d;
+    return (1 / d) * (apart_at(sample, moved) - apart);
+  }
+
   // What the graph shows of its base, in its own space.
   color::Rgb shown(std::size_t sample) const {
     color::Rgb f;
-    for (int c = 0; c < 3; ++c)
-      for (std::size_t k = 0; k < columns_; ++k) f[c] += x_[c][k] * value(sample, k);
+    for (const auto& [c, k] : active_) f[static_cast<int>(c)] += x_[c][k] * value(sample, k);
     return f;
   }
-  Vec3 apart_at(const color::Lab& wanted, std::size_t sample, const color::Rgb& base) const {
+  Vec3 apart_at(std::size_t sample, const color::Rgb& base) const {
     const double r = reflected_[sample];
     return color::delta_e_2000_vector(
-        wanted, color::lab_from_rgb(kPi * from_space(graph_.space, base + color::Rgb{r, r, r}), white_));
+        wanted_[sample], color::lab_from_rgb(kPi * from_space(graph_.space, base + color::Rgb{r, r, r}), white_));
   }
-  double sum(const std::vector<color::Lab>& wanted) const {
+  double sum() const {
     double total = 0;
     for (std::size_t i = 0; i < samples_.size(); ++i) {
-      const Vec3 apart = apart_at(wanted[i], i, shown(i));
-      const double d = length(apart);
+      const double d = length(apart_at(i, shown(i)));
       total += samples_[i].weight * (d > kLarge_de00 ? kLarge_de00 * (2 * d - kLarge_de00) : d * d);
     }
     return total;
@@ -296,25 +398,14 @@ class Problem {
   const Offered& offers_;
   LobeGraph& graph_;
   color::Xyz white_;
-  std::size_t columns_ = 0;
-  std::vector<double> values_, reflected_;
+  std::vector<std::vector<double>> values_;  // column by column
+  std::vector<double> left_, reflected_;     // of the coat
   std::vector<color::Rgb> target_;
+  std::vector<color::Lab> wanted_;
   std::array<std::vector<double>, 3> x_;
+  std::vector<Column> active_;  // all columns that have a weight, and some that may get one
+  double best_ = 0;
 };
-
-// From XYZ relative to the white of ACES to ACEScg, and back [S-2014-004].
-constexpr std::array<Vec3, 3> kAcescgFromXyz = {Vec3{1.6410233797, -0.3248032942, -0.2364246952},
-                                                Vec3{-0.6636628587, 1.6153315917, 0.0167563477},
-                                                Vec3{0.0117218943, -0.0082844420, 0.9883948585}};
-constexpr std::array<Vec3, 3> kXyzFromAcescg = {Vec3{0.6624541811, 0.1340042065, 0.1561876870},
-                                                Vec3{0.2722287168, 0.6740817658, 0.0536895174},
-                                                Vec3{-0.0055746495, 0.0040607335, 1.0103391003}};
-constexpr color::Xyz kAcesWhite = {0.9526460746, 1, 1.0088251844};
-
-const color::Xyz& white_d65() {
-  static const color::Xyz white = color::xyz_d65_from_rgb({1, 1, 1});
-  return white;
-}
 
 }  // namespace
 
@@ -352,26 +443,12 @@ double BaseNode::brightest() const {
   return most;
 }
 
-color::Rgb into_space(ColorSpace space, const color::Rgb& rec2020) {
-  if (space == ColorSpace::kRec709) return color::rec709_from_rec2020(rec2020);
-  const color::Xyz xyz = color::adapted(color::xyz_d65_from_rgb(rec2020), white_d65(), kAcesWhite);
-  const Vec3 v = {xyz.X, xyz.Y, xyz.Z};
-  return {dot(kAcescgFromXyz[0], v), dot(kAcescgFromXyz[1], v), dot(kAcescgFromXyz[2], v)};
-}
-
-color::Rgb from_space(ColorSpace space, const color::Rgb& rgb) {
-  if (space == ColorSpace::kRec709) return color::rec2020_from_rec709(rgb);
-  const color::Xyz xyz = {dot(kXyzFromAcescg[0], rgb), dot(kXyzFromAcescg[1], rgb), dot(kXyzFromAcescg[2], rgb)};
-  return color::rgb_from_xyz_d65(color::adapted(xyz, kAcesWhite, white_d65()));
-}
-
 LobeGraph nearest_graph(const paint::Paint& paint) {
   LobeGraph graph;
   set_coats(*paint.lobes, graph);
   const CoatModel coats(graph);
   Problem problem(paint, coats, graph);
-  problem.choose();
-  problem.refine();
+  problem.solve();
   problem.write();
   return graph;
 }

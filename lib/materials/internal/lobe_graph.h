@@ -8,6 +8,7 @@
 
 #include "base/vec3.h"
 #include "color/color.h"
+#include "materials/internal/color_space.h"
 #include "materials/internal/shown.h"
 
 namespace goniochrome::materials {
@@ -41,11 +42,6 @@ struct BaseNode {
 struct CoatNode {
   double weight, alpha, index;
 };
-
-// The linear space that the colors of a document are in.
-enum class ColorSpace { kRec709, kAcescg };
-color::Rgb into_space(ColorSpace space, const color::Rgb& rec2020);
-color::Rgb from_space(ColorSpace space, const color::Rgb& rgb);
 
 struct LobeGraph {
   ColorSpace space = ColorSpace::kRec709;

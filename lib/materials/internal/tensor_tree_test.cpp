@@ -34,18 +34,19 @@ double largest_error(const TensorTree& tree, double turn_rad) {
   return worst;
 }
 
-// A leaf has a range of 1 in lightness and in both chromaticities, so that no direction is farther from its mean than
-// the three together. What is looked up does not depend on where the light stands around the normal.
+// A leaf has a range of 1/2 in lightness and in both chromaticities, so that no direction is farther from its mean than
+// the three together; at the rim of the disc a finest cell has 0.2 more. What is looked up does not depend on where the
+// light stands around the normal.
 TEST(TensorTree, KeepsTheColorOfEveryDirection) {
   const TensorTree tree(smooth);
-  for (const double turn_rad : {0.0, 1.0, 2.5, kPi}) EXPECT_LE(largest_error(tree, turn_rad), 1.8);
+  for (const double turn_rad : {0.0, 1.0, 2.5, kPi}) EXPECT_LE(largest_error(tree, turn_rad), 1.2);
 }
 
 // Leaves that are merged have the mean of their cells, so that light is neither lost nor made.
 TEST(TensorTree, KeepsTheLight) {
   const TensorTree tree(smooth);
   constexpr int kPlaces = 400;
-  const Vec3 light = direction(40 * kDegree, kPi);
+  const Vec3 light = direction(std::asin(1 - 91.0 / 256), kPi);  // 40.1 deg, in the middle of the finest cells
   double is = 0, was = 0;
   for (int i = 0; i < kPlaces; ++i)
     for (int j = 0; j < kPlaces; ++j) {
@@ -54,7 +55,7 @@ TEST(TensorTree, KeepsTheLight) {
       const Vec3 view{x, y, std::sqrt(1 - x * x - y * y)};
       is += tree.at(light, view).Y, was += smooth(light, view).Y;
     }
-  EXPECT_NEAR(is / was, 1, 2e-3);
+  EXPECT_NEAR(is / was, 1, 1.5e-3);
 }
 
 TEST(TensorTree, AnEvenColorIsAFewLeaves) {

@@ -7,6 +7,7 @@ import struct
 import numpy
 
 from facets import dielectric
+from materialx import REC709_FROM_ACESCG
 
 
 def table(path):
@@ -16,7 +17,8 @@ def table(path):
     place = data.index(b"MBSDF_DATA_REFLECTION=\n") + len(b"MBSDF_DATA_REFLECTION=\n")
     kind, theta, phi = struct.unpack_from("<3I", data, place)
     assert kind == 1 and len(data) == place + 12 + theta * theta * phi * 12
-    return numpy.frombuffer(data, "<f4", -1, place + 12).reshape(theta, theta, phi, 3).astype(float)
+    values = numpy.frombuffer(data, "<f4", -1, place + 12).reshape(theta, theta, phi, 3).astype(float)
+    return values @ REC709_FROM_ACESCG.T if b'\ncolorspace="acescg"\n' in data[:place] else values
 
 
 def looked_up(values, light, view):
