@@ -6,6 +6,8 @@
 #include <memory>
 #include <type_traits>
 
+#include "base/large_pages.h"
+
 namespace goniochrome {
 
 template <class T>
@@ -14,7 +16,9 @@ class UnsetArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
   UnsetArray() = default;
-  explicit UnsetArray(std::size_t size) : data_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {}
+  explicit UnsetArray(std::size_t size) : data_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {
+    prefer_large_pages(data_.get(), size * sizeof(T));
+  }
 
   std::size_t size() const { return size_; }
   T* data() { return data_.get(); }

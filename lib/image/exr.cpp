@@ -25,11 +25,13 @@
 #include <stdexcept>
 
 #include "base/file.h"
+#include "base/large_pages.h"
 #include "base/parallel.h"
 #include "image/exr.h"
 #include "image/image.h"
 #include "image/internal/exr.h"
 #include "image/internal/exr_header.h"
+#include "image/internal/exr_rows.h"
 
 namespace goniochrome::image {
 
@@ -119,6 +121,11 @@ std::vector<std::string> wanted_channels(const Imf::ChannelList& list, const std
   return names;
 }
 
+// Makes the library's own pool of threads, once and only if it helps.
+void use_threads() {
+  if (Imf::globalThreadCount() == 0 && threads() > 1) Imf::setGlobalThreadCount(threads());
+}
+
 // Throws if the file ends before the last scan lines of a part: those of one that is passed over must be there as well.
 void expect_last_line(Imf::MultiPartInputFile& file, int index, const Imath::Box2i& window) {
   if (file.header(index).hasTileDescription()) return;
@@ -154,16 +161,22 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
   if (samples > kMostSamples || samples / most_samples_a_byte(header.compression()) > file_bytes)
     return input_error("{}: {} x {} pixels are too many for a file of {} bytes", where, image.width, image.height,
                        file_bytes);
-  image.data.resize(samples);
+  resize_on_large_pages(image.data, samples);
 
   part.type = PixelType::kHalf;
+  for (const std::string& name : image.channel_names)
+    if (header.channels()[name.c_str()].type != Imf::HALF) part.type = PixelType::kFloat;
+  if (has_rows(header)) {
+    read_rows(file, index, image);
+    return part;
+  }
+  use_threads();
   Imf::FrameBuffer buffer;
   const std::size_t x_stride = sizeof(float) * image.channels, y_stride = x_stride * image.width;
   for (int c = 0; c < image.channels; ++c) {
     const Imf::Channel& channel = header.channels()[image.channel_names[c].c_str()];
     if (channel.xSampling != 1 || channel.ySampling != 1)
       return input_error("{}: channel {} is subsampled: convert it to full resolution", where, image.channel_names[c]);
-    if (channel.type != Imf::HALF) part.type = PixelType::kFloat;
     buffer.insert(image.channel_names[c],
                   Imf::Slice::Make(Imf::FLOAT, image.data.data() + c, window, x_stride, y_stride));
   }
@@ -173,16 +186,10 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
   return part;
 }
 
-// Makes the library's own pool of threads, once and only if it helps.
-void use_threads() {
-  if (Imf::globalThreadCount() == 0 && threads() > 1) Imf::setGlobalThreadCount(threads());
-}
-
 }  // namespace
 
 Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name,
                                            const ExrWanted& wanted) {
-  use_threads();
   // The library itself tells that a file is no EXR file at all.
   if (is_exr(content) && !is_sound_exr_header(content))
     return input_error("{}: its header is damaged or cut off", name);

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/angles.h"
+#include "base/large_pages.h"
 #include "base/parallel.h"
 #include "paint/geometry.h"
 
@@ -102,7 +103,8 @@ Result<Gbuffer> gbuffer_of(const image::AovFile& buffers) {
                        buffers.has_rays ? "parts" : "rays");
   const image::Image& image = buffers.image;
   Gbuffer gbuffer{image.width, image.height, {}, {buffers.corner, buffers.right, buffers.down}};
-  gbuffer.data.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4);
+  resize_on_large_pages(gbuffer.data,
+                        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4);
   const auto take_row = [&](int y) -> Result<void> {
     float* to = &gbuffer.data[4 * gbuffer.index(0, y)];
     for (int x = 0; x < image.width; ++x, to += 4) {

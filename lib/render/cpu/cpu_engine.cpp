@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/large_pages.h"
 #include "base/parallel.h"
 #include "render/internal/map_cost.h"
 
@@ -40,16 +41,23 @@ void put_forms(const ProductForms& forms, const float* rgb, float* to) {
   for (int form = 0; form < forms.count; ++form) to[form] = static_cast<float>(forms.of(form, color));
 }
 
-std::vector<float> interleaved(const std::vector<envmap::MapPointer>& maps, const ProductForms& forms,
-                               std::size_t stride) {
+UnsetArray<float> interleaved(const std::vector<envmap::MapPointer>& maps, const ProductForms& forms,
+                              std::size_t stride) {
   const std::size_t wide = static_cast<std::size_t>(maps.front()->size) + 2, texels = wide * wide;
-  std::vector<float> data(6 * texels * stride + kBlock, 0.0F);  // the last texel is read by the block
+  UnsetArray<float> data(6 * texels * stride + kBlock);  // the last texel is read by the block
+  std::fill_n(&data[6 * texels * stride], kBlock, 0.0F);
   parallel_for(6 * maps.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t job = begin; job < end; ++job) {
       const std::size_t face = job / maps.size(), map = job % maps.size();
       const std::vector<float> texel = bordered_face(*maps[map], static_cast<int>(face));
       float* to = &data[face * texels * stride + floats_of(forms) * map];
-      for (std::size_t i = 0; i < texels; ++i) put_forms(forms, &texel[3 * i], to + i * stride);
+      // Floats that hold no form have the weight 0, and must be numbers for that. The last map clears those behind it.
+      const auto forms_here = static_cast<std::size_t>(forms.count);
+      const std::size_t floats = map + 1 < maps.size() ? floats_of(forms) : stride - floats_of(forms) * map;
+      for (std::size_t i = 0; i < texels; ++i) {
+        put_forms(forms, &texel[3 * i], to + i * stride);
+        std::fill_n(to + i * stride + forms_here, floats - forms_here, 0.0F);
+      }
     }
   });
   return data;
@@ -109,24 +117,24 @@ const EngineInfo CpuEngine::kInfo = {
     .make = [](Sight&) -> std::unique_ptr<Engine> { return std::make_unique<CpuEngine>(); }};
 
 InterleavedMaps CpuEngine::Stack::maps() const {
-  return {shape.size, blocks, texel_floats, texels.data()};
+  return {shape.size, blocks, texel_floats, texels != nullptr ? texels->data() : nullptr};
 }
 
 CpuEngine::Stack CpuEngine::interleaved(const MapClass& maps, MapUse use, const ProductForms& forms) {
   const std::size_t blocks = blocks_of(maps.maps.size(), forms);
   const std::size_t stride = maps.maps.size() == 1 ? floats_of(forms) : blocks * kBlock;
-  return {{maps.size, maps.slots, {}, maps.shifted},
-          use,
-          static_cast<int>(blocks),
-          static_cast<int>(stride),
-          render::interleaved(maps.maps, forms, stride)};
+  return {maps, use, static_cast<int>(blocks), static_cast<int>(stride),
+          std::make_shared<const UnsetArray<float>>(render::interleaved(maps.maps, forms, stride))};
 }
 
 // The maps of a scene that can be loaded, for the effects that were loaded.
 void CpuEngine::stack(const SceneMaps& maps) {
   stacks_.clear();
   const auto add = [&](const MapClass& of, MapUse use) {
-    if (of.size > 0) stacks_.push_back(interleaved(of, use, forms_));
+    if (of.size == 0) return;
+    const auto same = std::ranges::find_if(
+        other_stacks_, [&](const Stack& other) { return other.use == use && other.shape.maps == of.maps; });
+    stacks_.push_back(same != other_stacks_.end() ? *same : interleaved(of, use, forms_));
   };
   add(maps.diffuse, MapUse::kNormal);
   for (const MapClass& lobes : maps.lobes) add(lobes, MapUse::kTilted);
@@ -326,7 +334,8 @@ void CpuEngine::shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, f
 
 void CpuEngine::shade(const Gbuffer& gbuffer, float gain, bool add, image::Image& rgba) const {
   rgba.width = gbuffer.width, rgba.height = gbuffer.height, rgba.channels = 4;
-  rgba.data.resize(static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height) * 4);
+  resize_on_large_pages(rgba.data,
+                        static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height) * 4);
   parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
       shade_row(gbuffer, static_cast<int>(y), gain, add, rgba.pixel(0, static_cast<int>(y)));

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/unset_array.h"
 #include "image/image.h"
 #include "render/cpu/cpu_kernel.h"
 #include "render/cpu/tilt_kernel.h"
@@ -44,11 +45,11 @@ class CpuEngine : public Engine {
 
  private:
   struct Stack {
-    MapClass shape;  // without its maps
+    MapClass shape;
     MapUse use = MapUse::kMirror;
     InterleavedMaps maps() const;
     int blocks = 0, texel_floats = 0;
-    std::vector<float> texels;
+    std::shared_ptr<const UnsetArray<float>> texels;  // maps without bright spots may be those with them
   };
   static Stack interleaved(const MapClass& maps, MapUse use, const ProductForms& forms);
   void stack(const SceneMaps& maps);

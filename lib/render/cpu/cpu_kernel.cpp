@@ -409,6 +409,7 @@ HWY_INLINE void add_disc(const CpuShading& s, int light, const PointArrays& poin
     const Direction r = frame.r(i), to_disc = {hn::Sub(r.x, l.x), hn::Sub(r.y, l.y), hn::Sub(r.z, l.z)};
     hn::Store(hn::Sqrt(dot(to_disc, to_disc)), f, apart + i);
   }
+  if (std::none_of(cosine, cosine + count, [&](float c) { return c > -disc.sine; })) return;
   for (int i = 0; i < count; ++i) {
     view.irradiance[i] = cosine[i];
     float part = 1;
