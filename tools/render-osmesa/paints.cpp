@@ -42,6 +42,22 @@ std::string nearest_of(const std::string& wanted, const std::vector<std::string>
   return fmt::format("did you mean \"{}\"? ", *nearest);
 }
 
+// The place in `names` of the paint that FILE#NAME means, where NAME may be a pattern that one name meets.
+Result<std::size_t> place_of(const std::string& file, const std::string& name, const std::vector<std::string>& names) {
+  const auto same = std::find(names.begin(), names.end(), name);
+  if (same != names.end()) return static_cast<std::size_t>(same - names.begin());
+  formats::NameChoice choice(name);
+  std::vector<std::size_t> places;
+  std::vector<std::string> met;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (choice.takes(names[i])) places.push_back(i), met.push_back(names[i]);
+  if (places.size() == 1) return places.front();
+  if (places.empty())
+    return usage_error("{} holds no paint \"{}\": {}it holds {}", file, name, nearest_of(name, names), listed(names));
+  return usage_error("{}#{} means {} paints, and one is wanted: write {}#NAME for one of them: {}", file, name,
+                     places.size(), file, listed(met));
+}
+
 // A file that is named beside another one.
 std::string path_beside(const std::string& file, const std::string& name) {
   return (std::filesystem::path(file).parent_path() / name).string();
@@ -84,11 +100,8 @@ class PaintShelf {
           "-o '{{name}}.png', or --sheet 3x3: it holds {}",
           file, paints.size(), file, listed(names));
     }
-    const auto found = std::find(names.begin(), names.end(), *name);
-    if (found == names.end())
-      return usage_error("{} holds no paint \"{}\": {}it holds {}", file, *name, nearest_of(*name, names),
-                         listed(names));
-    return with_lobes(paints[static_cast<std::size_t>(found - names.begin())], fitter(), file);
+    GONIO_ASSIGN(const std::size_t place, place_of(file, *name, names));
+    return with_lobes(paints[place], fitter(), file);
   }
 
   // The color map that the paint of a reference names, relative to its file; null where it names none.

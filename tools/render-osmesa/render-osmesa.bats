@@ -197,6 +197,9 @@ refused() {
   refused 2 'no part or material "midle": did you mean "middle"? its parts are left, middle, right; its materials are lacquer, glass' \
     --mesh panels.obj $light --part midle=paints.xml#red
   refused 2 'holds no paint "rde": did you mean "red"? it holds red, green, white, bare' --mesh panels.obj $light -p paints.xml#rde
+  refused 2 'paints.xml#*e* means 4 paints, and one is wanted: write paints.xml#NAME for one of them: red, green' \
+    --mesh panels.obj $light --part 'middle=paints.xml#*e*'
+  render-osmesa -q --size 32x32 --mesh panels.obj $light -p paints.xml#red --part 'middle=paints.xml#gr*' -o one.exr
   refused 2 'holds 4 paints: write paints.xml#NAME' --mesh panels.obj $light -p paints.xml
   refused 2 'write PART=FILE.xml#PAINT' --mesh panels.obj $light --part paints.xml
   refused 3 '"bare" has no lobes: give --basis BASIS.xml to fit it here, or fit it first, as in `fit-paint paints.xml' --mesh panels.obj $light -p paints.xml#bare
