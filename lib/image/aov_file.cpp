@@ -123,6 +123,14 @@ std::string drawn_by_rays(const ImagePart& picture) {
   return file.drawn_by_rays;
 }
 
+std::optional<std::vector<std::string>> left_out(const ImagePart& picture) {
+  const auto plan = attribute_or<std::string>(picture.attributes, "goniochrome:plan", "");
+  if (plan.empty()) return std::nullopt;
+  AovFile file;
+  take_plan(plan, file);
+  return file.left_out;
+}
+
 Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::string>& channels) {
   GONIO_ASSIGN(auto read, read_exr(path, {.part = {}, .channels = channels}));
   const Attributes& attributes = read.front().attributes;

@@ -58,6 +58,8 @@ struct AovFile {
 
 // AovFile::drawn_by_rays of a picture that was read without its buffers; "" where it does not tell.
 std::string drawn_by_rays(const ImagePart& picture);
+// AovFile::left_out of such a picture; nothing where it does not tell.
+std::optional<std::vector<std::string>> left_out(const ImagePart& picture);
 
 // The file, or of its picture and buffers only the channels named, in that order and as far as it has them. Error: it
 // is not an EXR file, or its header is not one that render-osmesa writes.

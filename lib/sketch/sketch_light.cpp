@@ -15,6 +15,7 @@
 #include "render/glints.h"
 #include "render/spots.h"
 #include "render/unit_weights.h"
+#include "sketch/internal/traced_point.h"
 
 namespace goniochrome::sketch {
 
@@ -252,6 +253,23 @@ Result<SketchLight> lamp_light(const image::AovFile& buffers, const formats::Bas
   return light_by(buffers, nullptr, basis);
 }
 
+namespace {
+
+// Adds to the columns what a point gathers, times its share; `factors` of each point's bounced light, or null.
+void add_point(const render::LobeTransport& t, std::size_t point, const std::vector<color::Rgb>* factors, double share,
+               Vec3* columns) {
+  const double gloss = 1 / brdf::fresnel_dielectric(std::cos(kGloss_deg * kDegree), brdf::kCoatIndex);
+  for (std::size_t k = 0; k < t.columns.count(); ++k) {
+    const color::Rgb direct = t.light(point, k, false);
+    color::Rgb bounced = t.light(point, k) - direct;
+    if (factors != nullptr) bounced = (*factors)[point] * bounced;
+    const bool scaled = t.columns.is_gloss(k) && k != t.columns.mirror();
+    columns[k] += (scaled ? share * gloss : share) * (direct + bounced);
+  }
+}
+
+}  // namespace
+
 Result<std::optional<SketchTransport>> SketchTransport::of(const image::AovFile& buffers) {
   GONIO_ASSIGN(auto read, render::transport_of(buffers));
   if (!read) return std::optional<SketchTransport>();
@@ -262,24 +280,30 @@ Result<std::optional<SketchTransport>> SketchTransport::of(const image::AovFile&
 }
 
 // The columns of a transport are those of the search; its gloss has the coat's reflectance in it, the search's has it
-// relative to that of the reading.
-SketchLight SketchTransport::light() const {
+// relative to that of the reading. A column that bends by d from pixel to pixel is, in the mean over samples of the
+// variance v about the center, off by v d/2 from what it is there.
+SketchLight SketchTransport::light(int samples) const {
   formats::Basis basis;
   basis.name = "transport", basis.exponents = transport_->columns.exponents, basis.mirror = true;
-  const auto shade = [transport = transport_, factors = factors_](std::uint32_t place, Vec3* out) {
+  double bend = 0;
+  for (const auto& [dx, dy] : render::sample_shifts(samples)) bend += 0.5 * dx * dx / samples;
+  const auto shade = [transport = transport_, factors = factors_, bend](std::uint32_t place, Vec3* out) {
     const render::LobeTransport& t = *transport;
-    const double gloss = 1 / brdf::fresnel_dielectric(std::cos(kGloss_deg * kDegree), brdf::kCoatIndex);
     std::fill_n(out, t.columns.count(), Vec3{});
-    const auto found = std::ranges::lower_bound(t.places, place);
-    if (found == t.places.end() || *found != place) return;
-    const auto point = static_cast<std::size_t>(found - t.places.begin());
-    for (std::size_t k = 0; k < t.columns.count(); ++k) {
-      const color::Rgb direct = t.light(point, k, false);
-      color::Rgb bounced = t.light(point, k) - direct;
-      if (factors) bounced = (*factors)[point] * bounced;
-      const bool scaled = t.columns.is_gloss(k) && k != t.columns.mirror();
-      out[k] = (scaled ? gloss : 1) * (direct + bounced);
+    const int x = static_cast<int>(place) % t.width, y = static_cast<int>(place) / t.width;
+    const auto own = point_at(t, x, y);
+    if (!own) return;
+    double share = 1;
+    const auto add_bend = [&](const std::optional<std::size_t>& before, const std::optional<std::size_t>& behind) {
+      if (!before || !behind || t.part[*before] != t.part[*own] || t.part[*behind] != t.part[*own]) return;
+      for (const std::size_t point : {*before, *behind}) add_point(t, point, factors.get(), bend, out);
+      share -= 2 * bend;
+    };
+    if (bend > 0) {
+      add_bend(point_at(t, x - 1, y), point_at(t, x + 1, y));
+      add_bend(point_at(t, x, y - 1), point_at(t, x, y + 1));
     }
+    add_point(t, *own, factors.get(), share, out);
   };
   const std::vector<double>& coats = transport_->worn.coats;
   const double coat = coats.empty() ? paint::kNoCoat : *std::ranges::max_element(coats);

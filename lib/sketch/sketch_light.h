@@ -31,8 +31,9 @@ class SketchTransport {
   // Nothing where the buffers have no transport. Error: as render::transport_of().
   static Result<std::optional<SketchTransport>> of(const image::AovFile& buffers);
 
-  // As sketch_light(). Bounced light is that of the paints that were worn, or of the paint told last.
-  SketchLight light() const;
+  // As sketch_light(). Bounced light is that of the paints that were worn, or of the paint told last. A picture of
+  // several samples a pixel shows their mean, as the light in the centers of the pixels around tells it.
+  SketchLight light(int samples) const;
 
   // The parts of the mesh, by number from 1. The floor has no number among them: it keeps what it wears.
   std::vector<int> mesh_parts() const;

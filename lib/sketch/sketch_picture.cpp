@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "display/paint_view.h"
+#include "image/aov_file.h"
 #include "image/color_space.h"
 #include "sketch/internal/sketch_icc.h"
 
@@ -105,6 +106,9 @@ Result<Picture> picture_of(image::ImagePart part, const std::string& name, Pictu
   const bool integer = holds_integers(part), is_exr = !part.attributes.contains("goniochrome:integer");
   Picture picture;
   picture.scene_linear = !integer;
+  picture.left_out = image::left_out(part);
+  if (const auto found = part.attributes.find("goniochrome:samples"); found != part.attributes.end())
+    if (const int* samples = std::get_if<int>(&found->second)) picture.samples = *samples;
   if (part.image.channels == 0) return input_error("{}: has no channels", name);
   picture.state = states(part.image, integer);
   drop_to_gray(part.image);

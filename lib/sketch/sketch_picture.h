@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ struct Picture {
   bool scene_linear = false;  // EXR, HDR: light itself
   std::string space;          // "sRGB", "ICC profile", "linear Rec.2020": what the file was taken for
   std::vector<std::string> warnings;
+  // The effects that the picture was drawn without, by render-osmesa's names; nothing where its header does not tell.
+  std::optional<std::vector<std::string>> left_out;
+  std::optional<int> samples;  // of each pixel, by the same header
 
   const float* pixel(int x, int y) const { return rgb.pixel(x, y); }
 };

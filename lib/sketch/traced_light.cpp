@@ -5,6 +5,7 @@
 
 #include "base/angles.h"
 #include "render/light_transport.h"
+#include "sketch/internal/traced_point.h"
 
 namespace goniochrome::sketch {
 
@@ -26,14 +27,8 @@ int TracedLight::height() const {
 }
 
 std::optional<std::size_t> TracedLight::point_at(int x, int y) const {
-  const render::LobeTransport& t = *transport_;
-  if (x < 0 || y < 0 || x >= t.width || y >= t.height) return std::nullopt;
-  const auto place =
-      static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(t.width) + static_cast<std::uint32_t>(x);
-  const auto found = std::ranges::lower_bound(t.places, place);
-  if (found == t.places.end() || *found != place) return std::nullopt;
-  const auto point = static_cast<std::size_t>(found - t.places.begin());
-  if (t.worn.is_laid(t.part[point])) return std::nullopt;  // its light is what it shows
+  const auto point = sketch::point_at(*transport_, x, y);
+  if (point && transport_->worn.is_laid(transport_->part[*point])) return std::nullopt;  // its light is what it shows
   return point;
 }
 

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "base/angles.h"
+#include "render/gbuffer.h"
 #include "render/light_transport.h"
 #include "sketch/pick.h"
+#include "sketch/sketch_light.h"
 
 namespace goniochrome::sketch {
 namespace {
@@ -115,6 +117,30 @@ TEST(TracedLight, ADropperInAShadowFindsThePaintOfTheSurface) {
     EXPECT_FALSE(shadow->lit);
     EXPECT_GT(color::delta_e_76(shadow->lab, truth), 5) << "the control must fail";
   }
+}
+
+// Light that bends from pixel to pixel, and its mean over the samples of a pixel, which are taken from the function
+// itself. The control: the light of the centers.
+TEST(SketchTransport, APictureOfSeveralSamplesShowsTheirMean) {
+  const auto bent = [](double x) { return 1 + 2 * (x - 3) * (x - 3); };  // relative to white
+  std::vector<Lit> row;
+  for (int x = 0; x < 7; ++x) row.push_back({kWhite * bent(x) * color::Rgb{1, 0.5, 0.25}, of_even_light()});
+  const auto transport = SketchTransport::of(buffers_of(row));
+  ASSERT_TRUE(transport.ok() && transport->has_value());
+  std::vector<Vec3> columns(2 * kExponents.size() + 2);
+  const auto diffuse = [&](int samples, std::uint32_t place) {
+    (*transport)->light(samples).shade(place, columns.data());
+    return columns[0];
+  };
+  for (const int samples : {4, 16})
+    for (const std::uint32_t place : {2U, 3U, 4U}) {
+      double mean = 0;
+      for (const auto& shift : render::sample_shifts(samples)) mean += bent(place + shift[0]) / samples;
+      const Vec3 light = diffuse(samples, place);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], mean * std::pow(0.5, c), 2e-3 * mean) << place;
+      EXPECT_NEAR(diffuse(1, place).x, bent(place), 1e-3 * bent(place)) << place;
+      EXPECT_GT(mean - bent(place), 0.1) << "the control must fail";
+    }
 }
 
 TEST(TracedLight, APictureOfAnotherSizeAndAPixelWithoutLightAreRefused) {

@@ -64,6 +64,7 @@ Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const 
   part.attributes["goniochrome:exposure"] = static_cast<float>(stops);
   part.attributes["goniochrome:whiteLuminance"] = static_cast<float>(white.luminance);
   part.attributes["goniochrome:automaticExposure"] = static_cast<float>(automatic);
+  part.attributes["goniochrome:samples"] = request.samples;
   if (!request.aovs.empty()) {
     const Vec3 to_light = scene.lights.empty() ? white.direction : scene.lights.front().direction;
     for (const std::string& aov : request.aovs) {
@@ -77,7 +78,6 @@ Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const 
     part.attributes["goniochrome:aovLight"] = spelled(to_light);
     describe_view(options, frame.gbuffer->rays, scene.lights, part.attributes);
     part.attributes["goniochrome:operator"] = spelled(scene.reflection);
-    part.attributes["goniochrome:samples"] = request.samples;
     Json names = Json::array(), materials = Json::array();
     for (const mesh::MeshPart& mesh_part : scene.mesh->parts) {
       names.push_back(mesh_part.name);

@@ -66,22 +66,23 @@ void warn_of_effects(const image::AovFile& buffers, cli::Session& session) {
                     buffers.path, unknown));
 }
 
+// The effects that the picture was drawn without, as its own header tells them or else that of the buffers, which were
+// rendered with it.
+const std::vector<std::string>& left_out_of(const Material& material) {
+  return material.picture.left_out ? *material.picture.left_out : material.buffers.left_out;
+}
+
 // Warns of light that the paint has and that the picture was drawn without.
-void warn_of_left_out(const image::AovFile& buffers, cli::Session& session) {
+void warn_of_left_out(const Options& options, const Material& material, cli::Session& session) {
   std::vector<std::string> light;
-  for (const std::string& name : buffers.left_out)
+  for (const std::string& name : left_out_of(material))
     if (name == "diffuse" || name == "mirror" || name.starts_with("lobe-") || name.starts_with("gloss-"))
       light.push_back(name);
-  if (!buffers.drawn_by_rays.empty())
-    session.warn(
-        fmt::format("{} shows {}: no paint explains what the mesh does to light, so that the paint found is off: "
-                    "render picture and buffers with --effects auto,-rays, or the buffers with --aov transport",
-                    buffers.path, buffers.drawn_by_rays));
   if (light.empty()) return;
   session.warn(
       fmt::format("{} was drawn without {}, so that the paint found lacks it too, most of all near specular: render "
                   "picture and buffers with --effects all",
-                  buffers.path, joined(light, ", ")));
+                  material.picture.left_out ? options.image : material.buffers.path, joined(light, ", ")));
 }
 
 // Lays a scan on the buffers. A mask of its size goes with it.
@@ -232,14 +233,14 @@ void tell(const Options& options, const sketch::SketchPixels& pixels, const sket
 
 // The paint in light that was traced. Bounced light depends on the paint: it is scaled to what was found, and the paint
 // is sought again.
-sketch::SketchFit fit_in_transport(const sketch::SketchInput& input, const sketch::SketchPixels& pixels,
+sketch::SketchFit fit_in_transport(const sketch::SketchInput& input, const sketch::SketchPixels& pixels, int samples,
                                    const sketch::SketchLimits& limits, bool differences,
                                    sketch::SketchTransport& transport, cli::Session& session) {
   constexpr int kRounds = 3;
   sketch::SketchFit fit;
   double error_de00 = 0;
   for (int round = 0; round < kRounds; ++round) {
-    fit = sketch::sketch_environment(input, pixels, transport.light(), limits, differences);
+    fit = sketch::sketch_environment(input, pixels, transport.light(samples), limits, differences);
     if (fit.weights.empty() || round + 1 == kRounds) break;
     error_de00 = transport.wear(fit.weights, input.parts);
   }
@@ -254,6 +255,11 @@ sketch::SketchFit fit_in_transport(const sketch::SketchInput& input, const sketc
 
 // What a fit without traced light leaves out.
 void tell_shadows(const image::AovFile& buffers, cli::Session& session) {
+  if (!buffers.drawn_by_rays.empty())
+    session.warn(
+        fmt::format("{} shows {}: no paint explains what the mesh does to light, so that the paint found is off: "
+                    "render picture and buffers with --effects auto,-rays, or the buffers with --aov transport",
+                    buffers.path, buffers.drawn_by_rays));
   session.say(fmt::format(
       "{} holds no transport: the paint is sought in light that nothing blocks and no surface sends back. Where the "
       "picture has shadows or the body in itself, give buffers of render-osmesa --aov transport",
@@ -360,7 +366,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   tell_registration(material, options, session);
   for (const std::string& warning : material.picture.warnings) session.warn(warning);
   if (!options.env.empty() && !material.transport) warn_of_effects(material.buffers, session);
-  if (!material.transport) warn_of_left_out(material.buffers, session), tell_shadows(material.buffers, session);
+  if (!material.transport) tell_shadows(material.buffers, session);
+  warn_of_left_out(options, material, session);
   const Stopwatch clock;
   GONIO_ASSIGN(sketch::SketchPixels pixels, sketch::sketch_pixels(input));
   GONIO_TRY(check_usable(pixels, options));
@@ -370,7 +377,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   const bool environment = !options.env.empty() || material.transport;
   sketch::SketchFit fit;
   if (material.transport) {
-    fit = fit_in_transport(input, pixels, limits, differences, *material.transport, session);
+    fit = fit_in_transport(input, pixels, material.picture.samples.value_or(material.buffers.samples), limits,
+                           differences, *material.transport, session);
   } else if (environment) {
     GONIO_ASSIGN(const sketch::SketchLight light, sketch::sketch_light(material.buffers, material.env));
     fit = sketch::sketch_environment(input, pixels, light, limits, differences);
@@ -378,7 +386,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     fit = sketch::sketch_point(input, pixels, material.basis, limits, differences);
     GONIO_TRY(fit_lamps(material, limits, differences, pixels, fit));
   }
-  if (!material.transport) sketch::take_left_out(material.buffers.left_out, fit);
+  sketch::take_left_out(left_out_of(material), fit);
   keep_gloss(start, fit);
   Json& results = session.results();
   report_fit(fit, environment, results);

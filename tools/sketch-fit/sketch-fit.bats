@@ -153,6 +153,25 @@ planted() {
   [[ $output == *"wood.exr was drawn with effects that the search does not know"*"--effects auto,-texture"* ]] || { echo "$output"; return 1; }
 }
 
+@test "with a transport, the lobes that the picture itself was drawn without are told" {
+  fit-paint -q --basis "$TESTDATA/b7.basis.xml" "$TESTDATA/paints.paints.xml" -o measured.xml
+  scene="--mesh $TESTDATA/box.obj --light 35,45 --paint measured.xml#champagne --size 48x36"
+  render-osmesa -q $scene --samples 1 --effects all --aov transport --tolerance 6 -o traced.exr
+  for samples in 1 4; do
+    render-osmesa -q $scene --samples $samples --effects all --tolerance 6 -o whole.exr
+    exrheader whole.exr | grep -q "goniochrome:samples (type int): $samples"
+    run sketch-fit -i whole.exr -b traced.exr -o found.xml --report r.json
+    [ "$status" -eq 0 ]
+    [ "$(result mode)" = transport ]
+    [[ $output != *"was drawn without"* ]] || { echo "$output"; return 1; }
+  done
+  render-osmesa -q $scene --samples 1 --effects all,-lobe-6 --tolerance 6 -o lacking.exr
+  run sketch-fit -i lacking.exr -b traced.exr -o found.xml --report r.json
+  [ "$status" -eq 0 ]
+  [[ $output == *"lacking.exr was drawn without lobe-6"* ]] || { echo "$output"; return 1; }
+  [[ $output == *"the color at 15 deg from specular may be off: the picture was drawn without lobe-6"* ]] || { echo "$output"; return 1; }
+}
+
 @test "a picture with shadows says that no paint explains them, and how to leave them out" {
   scene="--mesh $TESTDATA/box.obj --light 35,45 --paint fitted.xml#satin --size 48x36 --samples 1 --aov normal,aspecular,lambert,mask,part"
   render-osmesa -q $scene --tolerance 2 -o shadows.exr
