@@ -32,6 +32,24 @@ def entries(fitted):
     return found
 
 
+def with_colors(fitted, path):
+    """The file of the paints of a file of paint XML that have a color to show, and messages that name the others. It is written to
+    `path` if there are others. This reads one paint after the other."""
+    kept, left_out = [], []
+    for place in paint_text.places(fitted):
+        paint = paint_text.paints_at(fitted, place, place)[0]
+        try:
+            if "<lab" not in paint and "<appearance" not in paint:  # else it has a color, and need not be parsed here
+                library.read_text(paint_text.document([paint]))
+            kept.append({"place": place})
+        except ValueError as error:
+            left_out.append(str(error))
+    if not left_out:
+        return fitted, left_out
+    write_paints(fitted, kept, path)
+    return path, left_out
+
+
 def cut(found, most):
     """The entries as lists for pages of about equal length, of at most `most` paints each."""
     count = -(-len(found) // most)

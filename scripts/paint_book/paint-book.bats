@@ -415,3 +415,26 @@ PY
   run book --palette small.paints.xml --beside -o x.html
   [ "$status" -eq 2 ]
 }
+
+@test "a paint without a color is left out and named, and the book has the others" {
+  sed 's|<paint name="red"|<paint name="bare" class="solid"/>&|' small.paints.xml >bare.paints.xml
+  run book bare.paints.xml --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 -o bare.html
+  [ "$status" -eq 1 ]
+  [[ "$output" =~ 'bare.html: 4 paints' ]]
+  [[ "$output" =~ 'paint-book: left out: paint "bare" has neither measured rows nor an appearance' ]]
+  /usr/bin/python3 - <<'PY'
+import json, re
+def names(page):
+    return [paint["name"] for paint in json.loads(re.search(r'id="data">(.*?)</script>', open(page, encoding="utf-8").read(), re.S)[1])]
+assert names("bare.html") == names("small.html"), names("bare.html")
+PY
+  run book --palette bare.paints.xml -o bare-palette.html
+  [ "$status" -eq 1 ]
+  [[ "$output" =~ 'left out: paint "bare"' ]]
+  # Where no paint is left there is no book.
+  printf '%s\n' '<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="bare" class="solid"/></paints>' >none.paints.xml
+  run book --palette none.paints.xml -o bare-none.html
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ 'paint "bare" has neither measured rows nor an appearance' ]]
+  [ ! -e bare-none.html ]
+}
