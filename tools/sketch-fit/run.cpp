@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/clock.h"
 #include "base/text.h"
@@ -322,7 +323,10 @@ Result<void> fit_lamps(const Material& material, const sketch::SketchLimits& lim
   constexpr double kMore = 1.15, kMoreBy_de76 = 0.1;
   if (by_lamps.status != "fitted" || by_lamps.median_de76 > kMore * fit.median_de76 + kMoreBy_de76) return {};
   by_lamps.seen_from_deg = fit.seen_from_deg, by_lamps.seen_to_deg = fit.seen_to_deg;
-  by_lamps.extrapolated_deg = fit.extrapolated_deg;
+  // What either of them has no pixels for: a curve that fell back to a matt color names no angles.
+  std::vector<double> extrapolated_deg;
+  std::ranges::set_union(by_lamps.extrapolated_deg, fit.extrapolated_deg, std::back_inserter(extrapolated_deg));
+  by_lamps.extrapolated_deg = std::move(extrapolated_deg);
   fit = std::move(by_lamps), pixels = std::move(all);
   return {};
 }

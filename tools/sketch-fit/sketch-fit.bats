@@ -454,6 +454,17 @@ EOF
   [ ! -e none.xml ]
 }
 
+# Of this paint the curve falls back to a matt color in this picture, and the search for lobes finds it.
+@test "angles that no pixel shows are told where the curve gives up and the search does not" {
+  fit-paint -q --basis "$TESTDATA/b7.basis.xml" "$TESTDATA/paints.paints.xml" -o measured.xml
+  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --light 35,45 --size 200x125 --paint measured.xml#blue_to_purple \
+    --aov normal,aspecular,lambert,mask,part -o few.exr
+  run sketch-fit -i few.exr -b few.exr --basis "$TESTDATA/b7.basis.xml" -o found.xml --report r.json
+  [ "$status" -eq 0 ]
+  [ "$(result status)" = fitted ]
+  [[ $output == *"no pixel shows 15, 25 deg from specular: the color there is extrapolated"* ]] || { echo "$output"; return 1; }
+}
+
 @test "what a small picture leaves open has a warning with its angle, and the gloss of the start is kept" {
   fit-paint -q --basis "$TESTDATA/b7.basis.xml" "$TESTDATA/paints.paints.xml" -o measured.xml
   # From this side and in this light hardly any pixel of the shape lies near specular.
