@@ -25,10 +25,10 @@ void add_lobe(const Effects::LobeUse& use, std::vector<Effects::LobeUse>& lobes)
 Effects united(const Effects& a, const Effects& b) {
   Effects all = a;
   for (const Effects::LobeUse& use : b.lobes) add_lobe(use, all.lobes);
-  for (const auto flag :
-       {&Effects::environment, &Effects::diffuse, &Effects::mirror, &Effects::fresnel, &Effects::coat,
-        &Effects::horizon, &Effects::views, &Effects::satin, &Effects::maps, &Effects::image_maps, &Effects::texture,
-        &Effects::texture_filter, &Effects::anisotropy, &Effects::reflection, &Effects::extent, &Effects::panes})
+  for (const auto flag : {&Effects::environment, &Effects::diffuse, &Effects::mirror, &Effects::fresnel, &Effects::coat,
+                          &Effects::horizon, &Effects::views, &Effects::satin, &Effects::stretch, &Effects::maps,
+                          &Effects::image_maps, &Effects::texture, &Effects::texture_filter, &Effects::anisotropy,
+                          &Effects::reflection, &Effects::extent, &Effects::panes})
     all.*flag = a.*flag || b.*flag;
   for (const auto flag : {&RayEffects::shadow, &RayEffects::self, &RayEffects::bounce, &RayEffects::floor})
     all.rays.*flag = a.rays.*flag || b.rays.*flag;
@@ -52,10 +52,10 @@ bool covers(const Effects& all, const Effects& wanted) {
   const auto same_use = [](const Effects::LobeUse& x, const Effects::LobeUse& y) {
     return x.exponent == y.exponent && x.directional_diffuse == y.directional_diffuse && x.gloss == y.gloss;
   };
-  for (const auto flag :
-       {&Effects::environment, &Effects::diffuse, &Effects::mirror, &Effects::fresnel, &Effects::coat,
-        &Effects::horizon, &Effects::views, &Effects::satin, &Effects::maps, &Effects::image_maps, &Effects::texture,
-        &Effects::texture_filter, &Effects::anisotropy, &Effects::reflection, &Effects::extent, &Effects::panes})
+  for (const auto flag : {&Effects::environment, &Effects::diffuse, &Effects::mirror, &Effects::fresnel, &Effects::coat,
+                          &Effects::horizon, &Effects::views, &Effects::satin, &Effects::stretch, &Effects::maps,
+                          &Effects::image_maps, &Effects::texture, &Effects::texture_filter, &Effects::anisotropy,
+                          &Effects::reflection, &Effects::extent, &Effects::panes})
     if (both.*flag != all.*flag) return false;
   return std::ranges::equal(both.lobes, all.lobes, same_use) && both.rays == all.rays && both.spots == all.spots &&
          both.tilt_level == all.tilt_level && both.lights == all.lights && both.background == all.background;

@@ -10,6 +10,7 @@
 #include "brdf/lobe_model.h"
 #include "brdf/tilted_lobes.h"
 #include "math/elementary.h"
+#include "render/internal/coat_stretch.h"
 #include "render/internal/lobe_curves.h"
 #include "render/internal/tilt_table.h"
 #include "render/internal/worn_lobes.h"
@@ -111,15 +112,24 @@ paint::LobeFit beside_tilts(paint::LobeFit paint, const paint::TiltedLobes& set,
   return paint;
 }
 
+// What is left of a paint where other lobes stand for the gloss of its rough coat. The mirror is none of them.
+paint::LobeFit beside_stretch(paint::LobeFit paint) {
+  for (paint::Lobe& lobe : paint.lobes)
+    if (!lobe.is_mirror()) lobe.gloss = {};
+  return paint;
+}
+
 void fill_part(const Scene& scene, const Effects& effects, std::size_t part, const WeightTable& table, float* rows) {
   const paint::LobeFit paint = effects.coat ? scene.paints[part] : brdf::under_coat(scene.paints[part], paint::kNoCoat);
   const bool with_views = effects.views && !paint.views.empty();
   const paint::TiltedLobes* tilts = drawn_tilts(paint, effects);
+  const bool stretched = drawn_stretch(scene, effects, part) != nullptr;
   SlotValues values(table, effects, gloss_deg_of(scene, part), paint.coat_index, tilts != nullptr);
   std::vector<SlotValues::Texel> before;
   for (int node = 0; node <= table.segments; ++node) {
     const double x = static_cast<double>(node) / table.segments, cos_o = table.segments > 1 ? x * x : x;
-    const paint::LobeFit here_paint = with_views ? brdf::at_view(paint, math::acos(cos_o) / kDegree) : paint;
+    paint::LobeFit here_paint = with_views ? brdf::at_view(paint, math::acos(cos_o) / kDegree) : paint;
+    if (stretched) here_paint = beside_stretch(std::move(here_paint));  // bright spots stand in the maps of those lobes
     const std::vector<SlotValues::Texel>& here =
         values.at(tilts != nullptr ? beside_tilts(here_paint, *tilts, math::acos(cos_o) / kDegree) : here_paint,
                   effects.maps ? paint : here_paint, cos_o, node);
@@ -207,6 +217,7 @@ Effects effects_of(const Scene& scene) {
                               [](const paint::LobeFit& paint) { return !paint.views.empty(); });
   for (std::size_t part = 0; part < scene.paints.size(); ++part)
     effects.satin = effects.satin || wears_rough_coat(scene, part);
+  effects.stretch = effects.satin && effects.environment && effects.lights == 0;
   effects.anisotropy =
       !effects.lobes.empty() && std::any_of(scene.anisotropy.begin(), scene.anisotropy.end(), is_anisotropic);
   if (effects.environment) {

@@ -44,7 +44,8 @@ struct Effects {
   bool horizon = false;     // lobes end at the horizon, and each of their directions has its own cosine
   std::size_t spots = 0;    // bright spots of the environment that each horizon cuts by itself; with horizon
   bool views = false;       // weights of paints that change with the view
-  bool satin = false;       // rough coats as surfaces of facets, by engines that can evaluate them; else lobes
+  bool satin = false;       // rough coats as surfaces of facets, by engines that can evaluate them
+  bool stretch = false;     // elsewhere as lobes along the plane of incidence; else about the mirror direction alone
   bool maps = false;        // color maps under lights
   bool image_maps = false;  // color maps in image light, by engines that can evaluate them there
   int tilt_level = 0;       // what stands for them elsewhere: which set of tilted lobes; 0: none
@@ -68,7 +69,7 @@ struct Effects {
   // What engines of maps sum one by one: lamps, and bright spots of the environment as discs.
   std::size_t single_lights() const { return lights + spots; }
   bool discs() const { return extent || spots > 0; }
-  bool depends_on_view() const { return fresnel || coat || horizon || views || tilt_level > 0; }
+  bool depends_on_view() const { return fresnel || coat || horizon || views || stretch || tilt_level > 0; }
 };
 
 // Everything that the scene's paints and lights call for.

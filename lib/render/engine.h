@@ -100,6 +100,7 @@ struct Workload {
   double mapped = 0;                                 // those points that show a color map
   double behind_pixels = 0, behind_points = 0;       // the same as `pixels` and `points`, seen through panes
   double tilts = 1;                                  // normals that lobes are drawn about, the mean over the points
+  double stretched = 0;                              // look-ups of rough coats, the mean over the points
   std::vector<double> lookups = {};  // of tilted lobes, the mean over the points, by each level of Effects
   int forms = 3;                     // in which the product of colors is taken; internal/product_forms.h
   int texture_lobes = 0;             // of the texture that has most

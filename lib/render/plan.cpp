@@ -79,7 +79,7 @@ Workload workload_of(const Scene& scene, const Effects& all, const std::vector<V
   work.textured = work.points * share_of(scene, probe, [](const PartSurface& s) { return s.texture != nullptr; });
   if (scene.layer != nullptr && scene.layer->mapped())
     work.mapped = work.points * share_of(scene, probe, [](const PartSurface& s) { return s.color_map != nullptr; });
-  work.tilts = mean_tilts(scene, all, probe);
+  work.tilts = mean_tilts(scene, all, probe), work.stretched = mean_stretch_lookups(scene, all, probe);
   for (int level = 1; level <= all.tilt_level; ++level) work.lookups.push_back(mean_lookups(scene, level, probe));
   work.forms = all.reflection ? product_forms(scene.reflection).count : 3;
   work.texture_lobes = scene.layer != nullptr ? scene.layer->lobes() : 0;

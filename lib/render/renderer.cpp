@@ -93,6 +93,7 @@ struct Renderer::State : Sight {
   std::optional<envmap::SunlitSky> ray_sun;        // of the environment of ray_setup, where it has a sun
   std::shared_ptr<const EnvironmentTable> ray_table;
   std::optional<Transport> transport;
+  bool rough_rays = false;  // whether its rough coats are facets, as those of the picture that it corrects
   std::optional<envmap::BlockTree> ray_texels;  // of the environment of ray_setup; none: not yet
   std::optional<Error> ray_failure;             // of load_paints(), which cannot tell it
   double white_luminance = 1, tolerance_de00 = 0.5;
@@ -122,7 +123,7 @@ struct Renderer::State : Sight {
   CorrectionNoise correct(int first, int count, image::Image& picture);
   Result<Transport> traced_light(bool over_floor) const;
   Result<std::optional<Transport>> transport_over_floor() const;
-  Result<void> trace(const Scene& whole_scene);
+  Result<void> trace(const Scene& whole_scene, bool rough);
   Scene completed(const Scene& scene) const;
   // The light of which rays are drawn; a sun is asked for by itself.
   const envmap::Environment* ray_environment() const { return ray_sun ? &ray_sun->sky : ray_setup->environment; }
@@ -344,10 +345,11 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
   return all;
 }
 
-Result<void> Renderer::State::trace(const Scene& whole_scene) {
+Result<void> Renderer::State::trace(const Scene& whole_scene, bool rough) {
   transport.reset(), ray_failure.reset();
   if (!ray_setup || !ray_setup->absent.empty()) return {};
   ray_scene = whole_scene;
+  rough_rays = rough;
   if (ray_sun) ray_scene.lights.push_back(light_of(ray_sun->sun));
   if (whole_scene.mesh != nullptr) {
     GONIO_TRY(show(*whole_scene.mesh));
@@ -365,6 +367,7 @@ Result<Transport> Renderer::State::traced_light(bool over_floor) const {
   paths.scene = &ray_scene;
   paths.environment = ray_environment(), paths.mirrored = ray_setup->environment, paths.table = ray_table;
   paths.rays = ray_mesh, paths.eye = whole;
+  paths.rough_coats = rough_rays;
   if (over_floor) {
     paths.ground = ray_setup->floor;
     paths.rays = std::make_shared<const rays::RayScene>(ray_mesh->over({ray_setup->floor->height}));
@@ -490,7 +493,7 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
     rays.bounces = s.effort_asked.bounces, rays.seed = s.effort_asked.seed, rays.absent = s.ray_setup->absent;
     rays.refused = s.ray_setup->refused, rays.no_floor = s.ray_setup->no_floor;
     s.effects.rays = {};  // decided below
-    const Result<void> traced = s.trace(scene);
+    const Result<void> traced = s.trace(scene, effects_of(scene).stretch);
     if (!traced.ok()) rays.absent = traced.error().message;
     rays.transport = s.transport ? &*s.transport : nullptr;
     GONIO_ASSIGN(over_floor, s.transport_over_floor());
@@ -517,7 +520,12 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
   if (refusal && (request.engine || able.empty())) return *refusal;
   s.white_luminance = request.white_luminance;
   GONIO_ASSIGN(Plan plan, make_plan(seen, gbuffers, request, able, rays));
-  if (plan.effects.rays.floor) s.transport = std::move(over_floor);
+  const bool by_lobes = s.transport && s.rough_rays && !plan.effects.stretch;
+  if (by_lobes) {
+    s.rough_rays = false;
+    GONIO_ASSIGN(over_floor, s.traced_light(plan.effects.rays.floor));
+  }
+  if (by_lobes || plan.effects.rays.floor) s.transport = std::move(over_floor);
   GONIO_ASSIGN(const EngineInfo* taken, engine_named(plan.engine));
   GONIO_TRY(load(taken->traces_rays ? s.completed(scene) : seen, plan.effects, plan.engine));
   return plan;
@@ -529,7 +537,7 @@ void Renderer::load_paints(const Scene& scene) {
   s.scene = s.engine != nullptr && s.engine->info().traces_rays ? s.completed(scene) : scene;
   if (s.engine != nullptr) s.engine->load_paints(s.scene);
   if (!s.effects.rays.any()) return;
-  const Result<void> traced = s.trace(scene);
+  const Result<void> traced = s.trace(scene, s.effects.stretch);
   if (!traced.ok()) s.ray_failure = traced.error();
 }
 

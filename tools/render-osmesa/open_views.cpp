@@ -7,6 +7,7 @@
 #include "base/angles.h"
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "brdf/coat_facets.h"
 #include "brdf/lobe_model.h"
 #include "rays/ray_scene.h"
 #include "render/light_transport.h"
@@ -50,7 +51,8 @@ class OpenViews : public PaintViews {
   }
 
   Result<void> draw(const SourcePaint& paint, PaintView& view) override {
-    if (paint.paint.anisotropy || paint.map != nullptr || !paint.paint.lobes->tilts.empty())
+    if (paint.paint.anisotropy || paint.map != nullptr || !paint.paint.lobes->tilts.empty() ||
+        brdf::stands_for_coat(*paint.paint.lobes))
       return others_->draw(paint, view);
     const auto kept = view_of(paint);
     if (!kept.ok()) return others_->draw(paint, view);

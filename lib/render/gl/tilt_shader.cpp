@@ -44,7 +44,8 @@ TiltTexture tilt_texture(const TiltTable& table, std::size_t maps,
 
 std::string tilt_sampler(const Effects& effects, const std::vector<double>& exponents, double exponent) {
   const auto lobe = std::ranges::find(effects.lobes, exponent, &Effects::LobeUse::exponent);
-  if (lobe != effects.lobes.end()) return fmt::format("lobe_{}", lobe - effects.lobes.begin());
+  // Bright spots are taken out of the maps of lobes alone.
+  if (lobe != effects.lobes.end() && effects.spots == 0) return fmt::format("lobe_{}", lobe - effects.lobes.begin());
   return fmt::format("tilted_{}", std::ranges::find(exponents, exponent) - exponents.begin());
 }
 

@@ -40,11 +40,10 @@ double point_ns(const Workload& work, const Effects& effects, const MapCost& c) 
     for (const LobeClass& of : lobe_classes(*work.scene->env, effects))
       ns += spread * (c.direction + c.block * static_cast<double>(pairs ? (of.lobes.size() + 1) / 2 : of.lobes.size()));
   }
-  if (effects.environment && effects.tilt_level > 0 && !work.lookups.empty()) {
-    const double lookups =
-        work.lookups[std::min(work.lookups.size(), static_cast<std::size_t>(effects.tilt_level)) - 1];
-    if (lookups > 0) ns += c.tilted + lookups * c.lookup;
-  }
+  double lookups = effects.environment && effects.stretch ? work.stretched : 0;
+  if (effects.environment && effects.tilt_level > 0 && !work.lookups.empty())
+    lookups += work.lookups[std::min(work.lookups.size(), static_cast<std::size_t>(effects.tilt_level)) - 1];
+  if (lookups > 0) ns += c.tilted + lookups * c.lookup;
   return ns +
          static_cast<double>(effects.single_lights()) * (c.light + spread * static_cast<double>(effects.lobes.size()) *
                                                                        (effects.discs() ? c.disc_lobe : c.lit_lobe));

@@ -6,6 +6,7 @@
 #include "base/angles.h"
 #include "brdf/tilted_lobes.h"
 #include "math/elementary.h"
+#include "render/internal/coat_stretch.h"
 #include "render/internal/worn_lobes.h"
 
 namespace goniochrome::render {
@@ -77,7 +78,11 @@ const paint::TiltedLobes* drawn_tilts(const paint::LobeFit& paint, const Effects
 
 std::vector<double> tilt_exponents(const Scene& scene, const Effects& effects) {
   std::set<double> exponents;
-  if (!effects.environment || effects.tilt_level <= 0) return {};
+  if (!effects.environment) return {};
+  // Any paint that is loaded later may have a rough coat of the same lobes.
+  for (const Effects::LobeUse& use : effects.lobes)
+    if (effects.stretch && use.gloss) exponents.insert(use.exponent);
+  if (effects.tilt_level <= 0) return {exponents.begin(), exponents.end()};
   for (const paint::LobeFit& paint : scene.paints) {
     for (const paint::TiltedLobes& set : paint.tilts)
       for (const paint::TiltedLobe& lobe : set.lobes) exponents.insert(lobe.exponent);
@@ -94,7 +99,8 @@ TiltTable tilt_table(const Scene& scene, const Effects& effects, const std::vect
     table.group_of_part.push_back(static_cast<int>(same - first.begin()));
     if (same != first.end()) continue;
     first.push_back(part);
-    const paint::TiltedLobes* set = drawn_tilts(scene.paints[part], effects);
+    const auto stretch = drawn_stretch(scene, effects, part);
+    const paint::TiltedLobes* set = stretch ? stretch.get() : drawn_tilts(scene.paints[part], effects);
     if (set == nullptr) {
       table.rows.resize(table.rows.size() + static_cast<std::size_t>(table.segments));
       continue;
@@ -110,10 +116,14 @@ TiltTable tilt_table(const Scene& scene, const Effects& effects, const std::vect
   return table;
 }
 
-double mean_lookups(const Scene& scene, int level, const std::vector<VisiblePoint>& points) {
+namespace {
+
+// Look-ups of these points in the sets of their parts, the mean.
+template <class SetOf>
+double mean_lookups_in(const std::vector<VisiblePoint>& points, const SetOf& set_of_part) {
   double sum = 0;
   for (const VisiblePoint& point : points) {
-    const paint::TiltedLobes* set = set_of(scene.paints[static_cast<std::size_t>(point.part)], level);
+    const paint::TiltedLobes* set = set_of_part(static_cast<std::size_t>(point.part));
     if (set == nullptr) continue;
     const double view_deg = math::acos(std::clamp(dot(point.normal, point.to_viewer), 0.0, 1.0)) / kDegree;
     const paint::TiltedView view = brdf::at_view(*set, view_deg);
@@ -121,6 +131,18 @@ double mean_lookups(const Scene& scene, int level, const std::vector<VisiblePoin
       if (view.weights[k] != color::Rgb{}) sum += set->lobes[k].lookups();
   }
   return sum / static_cast<double>(std::max<std::size_t>(1, points.size()));
+}
+
+}  // namespace
+
+double mean_lookups(const Scene& scene, int level, const std::vector<VisiblePoint>& points) {
+  return mean_lookups_in(points, [&](std::size_t part) { return set_of(scene.paints[part], level); });
+}
+
+double mean_stretch_lookups(const Scene& scene, const Effects& effects, const std::vector<VisiblePoint>& points) {
+  std::vector<std::shared_ptr<const paint::TiltedLobes>> sets;
+  for (std::size_t part = 0; part < scene.paints.size(); ++part) sets.push_back(drawn_stretch(scene, effects, part));
+  return mean_lookups_in(points, [&](std::size_t part) { return sets[part].get(); });
 }
 
 void leave_to_tilts(const Scene& scene, Effects& effects) {

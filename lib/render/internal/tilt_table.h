@@ -30,7 +30,8 @@ struct TiltTable {
 // The set that a paint is drawn with by these effects, or null: its lobes are.
 const paint::TiltedLobes* drawn_tilts(const paint::LobeFit& paint, const Effects& effects);
 
-// The exponents (ascending) of all sets of the scene's paints, drawn or not; none where the effects draw no sets.
+// The exponents (ascending) of all sets of the scene's paints, drawn or not, and of the gloss lobes that stand for
+// rough coats; none where the effects draw neither.
 std::vector<double> tilt_exponents(const Scene& scene, const Effects& effects);
 
 // The look-ups in maps of those exponents. Lobes of other exponents are left out.
@@ -38,6 +39,9 @@ TiltTable tilt_table(const Scene& scene, const Effects& effects, const std::vect
 
 // Look-ups of these points, the mean; by the sets of a level (1 is the first).
 double mean_lookups(const Scene& scene, int level, const std::vector<VisiblePoint>& points);
+
+// The same of the lobes of rough coats, where these effects draw them.
+double mean_stretch_lookups(const Scene& scene, const Effects& effects, const std::vector<VisiblePoint>& points);
 
 // Takes flake lobes out of the effects that no paint shows: all that have them are drawn by tilted lobes. Under lights
 // they stay, since color maps are drawn there as a difference from the lobes.

@@ -53,7 +53,7 @@ void add_lobes(const Scene& scene, const Effects& all, bool gloss, std::vector<E
                     fmt::format("{} on {} visible part{}", gloss ? "gloss" : "flake", parts, parts == 1 ? "" : "s"),
                     [=](Effects& e) {
                       remove_weight(e, exponent, gloss);
-                      if (gloss) e.satin = false;
+                      if (gloss) e.satin = e.stretch = false;
                     },
                     gloss});
     list.back().left_to_tilts = !gloss && std::ranges::any_of(scene.paints, [&](const paint::LobeFit& paint) {
@@ -226,7 +226,7 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
       !all.fresnel  ? "neither gloss lobes nor mirror"
       : grazing > 0 ? fmt::format("{:.0f} % of what is seen lies beyond 60 deg", grazing)
                     : "nothing is seen beyond 60 deg",
-      [](Effects& e) { e.fresnel = e.satin = false; });
+      [](Effects& e) { e.fresnel = e.satin = e.stretch = false; });
   add("coat", all.coat,
       !all.coat     ? "no visible paint has a coat"
       : grazing > 0 ? fmt::format("the coat takes light from the base, {:.0f} % of what is seen beyond 60 deg", grazing)
@@ -246,11 +246,17 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
       : all.views           ? "weights change with the view"
       : all.maps            ? "a color map under lights"
                             : "no visible paint has a color map or weights for several views",
-      [](Effects& e) { e.views = e.maps = e.satin = false; });
+      [](Effects& e) { e.views = e.maps = e.satin = e.stretch = false; });
   add("satin", all.satin,
       all.satin ? "a rough coat as facets, in the place of its round lobes" : "no visible paint has a rough coat",
       [](Effects& e) { e.satin = false; });
   list.back().beyond_maps = true;
+  add("stretch", all.stretch,
+      all.stretch ? "the light of a rough coat, which is wider in the plane of incidence than across it"
+      : all.satin ? "lamps light the rough coat: the lobes that they see stand for it"
+                  : "no visible paint has a rough coat",
+      [](Effects& e) { e.stretch = false; });
+  list.back().refines = true;
   add_tilts(scene, all, list);
   add("texture", all.texture, texture_reason(scene, all, seen), [](Effects& e) { e.texture = false; });
   const int texture = static_cast<int>(list.size()) - 1;

@@ -1,0 +1,16 @@
+// The lobes that stand for rough coats where prefiltered maps are looked up. goniochrome-theory(7), SATIN, What maps
+// draw.
+#pragma once
+
+#include <memory>
+
+#include "render/effects.h"
+
+namespace goniochrome::render {
+
+// The set that the rough coat of a part is drawn with by these effects, in the place of its gloss lobes but beside its
+// mirror; null where they draw none. It has the exponents of those gloss lobes. Sets are kept, since making one takes
+// some 25 ms.
+std::shared_ptr<const paint::TiltedLobes> drawn_stretch(const Scene& scene, const Effects& effects, std::size_t part);
+
+}  // namespace goniochrome::render
