@@ -220,6 +220,10 @@ Result<void> lay_textures(const mesh::Mesh& mesh, const Options& options, Dresse
                  laying_of(option, texture, projection, box_of(mesh, parts), *dress.textures.back()));
     const double repeat = projection == Projection::kOwn ? texture.repeat : 1;
     for (const std::size_t part : parts) {
+      if (dress.panes[part])
+        return wrong(option,
+                     fmt::format("--part makes \"{}\" glass, which has no place for a texture: leave out one of both",
+                                 mesh.parts[part].name));
       dress.paints[part] = {};
       dress.anisotropy[part] = {};
       dress.worn[part].reset();
