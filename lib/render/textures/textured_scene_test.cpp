@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/angles.h"
+#include "base/parallel.h"
 #include "render/exact.h"
 #include "render/gl/gl.h"
 #include "render/gl/shader.h"
@@ -251,6 +252,25 @@ TEST_F(TiledFloor, OneFilteredSampleIsNearerToManyWithout) {
     view.samples = 1;
     EXPECT_LT(difference(filtered, drawn("gl", effects_of(scene))), 0.05) << size;
   }
+}
+
+// Without a plan the levels are made by the first row of a picture that needs them, while other rows wait: of a texture
+// large enough, on several threads each.
+TEST_F(TiledFloor, RowsThatNeedLevelsAtOnceAreDrawn) {
+  const brdf::SbrdfTexture small = brushed_texture();
+  texture = {64, 64, small.lobes, {}};
+  for (int i = 0; i < 64 * 64; ++i) {
+    const float* from = small.texel(i % small.width, i / 64 % small.height);
+    texture.values.insert(texture.values.end(), from, from + texture.stride());
+  }
+  const auto drawn_by = [&](int threads) {
+    set_threads(threads);
+    lay(40);
+    return with_filter(true, 1);
+  };
+  const Frame one = drawn_by(1);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(drawn_by(8).picture.data, one.picture.data);
+  set_threads(0);
 }
 
 TEST_F(TiledFloor, ThePlanKnowsWhatTheFilterIsWorth) {
