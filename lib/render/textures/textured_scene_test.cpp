@@ -2,6 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "base/angles.h"
 #include "base/parallel.h"
 #include "render/exact.h"
@@ -271,6 +275,26 @@ TEST_F(TiledFloor, RowsThatNeedLevelsAtOnceAreDrawn) {
   const Frame one = drawn_by(1);
   for (int i = 0; i < 5; ++i) EXPECT_EQ(drawn_by(8).picture.data, one.picture.data);
   set_threads(0);
+}
+
+// A file may state texture coordinates, and a user a number of repetitions, that no float can hold.
+TEST_F(TiledFloor, PlacesBeyondAllNumbersAreDrawn) {
+  for (const float far : {3e38F, std::numeric_limits<float>::infinity()}) {
+    mesh.texture[2] = {far, far};
+    for (const double times : {1.0, 1e300}) {
+      lay(times);
+      for (const bool filter : {false, true}) {
+        for (const char* engine : {"cpu", "gl"}) {
+          Effects effects = effects_of(scene);
+          effects.texture_filter = filter;
+          view.samples = 1;
+          const Frame frame = drawn(engine, effects);
+          const auto is_bad = [](float value) { return !std::isfinite(value); };
+          EXPECT_TRUE(std::ranges::none_of(frame.picture.data, is_bad)) << far << ' ' << times << ' ' << engine;
+        }
+      }
+    }
+  }
 }
 
 TEST_F(TiledFloor, ThePlanKnowsWhatTheFilterIsWorth) {
