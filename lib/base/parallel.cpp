@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <memory>
@@ -51,6 +52,10 @@ void parallel_for(std::size_t n, std::size_t chunk,
     return;
   }
   tbb::parallel_for(std::size_t{0}, chunks, run);
+}
+
+void with_no_other_work(const std::function<void()>& work) {
+  tbb::this_task_arena::isolate(work);
 }
 
 }  // namespace goniochrome

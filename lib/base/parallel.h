@@ -18,4 +18,9 @@ int threads();
 void parallel_for(std::size_t n, std::size_t chunk,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+// Calls work(). While it waits for loops of its own, its thread takes up no other work, such as the next chunk of a
+// loop that called this. So work() may hold a lock that such a chunk asks for too: elsewhere the thread would wait for
+// itself.
+void with_no_other_work(const std::function<void()>& work);
+
 }  // namespace goniochrome

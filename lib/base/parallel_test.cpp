@@ -1,8 +1,13 @@
 #include "base/parallel.h"
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/hard_case_for_test.h"
@@ -21,6 +26,42 @@ TEST(Parallel, EveryIndexOnceWhateverTheThreads) {
       EXPECT_EQ(visits, std::vector<int>(n, 1));
     }
   }
+  set_threads(0);
+}
+
+// How often one of eight threads, which need not be as many cores, began a chunk of the outer loop while it waited for
+// its own inner loop in another. Chunks of the inner loop that other threads take from it last longer.
+int chunks_begun_while_waiting(bool alone) {
+  std::atomic<int> count = 0;
+  tbb::task_arena threads(8);
+  threads.execute([&] {
+    parallel_for(64, 1, [&](std::size_t, std::size_t) {
+      thread_local bool is_waiting = false;
+      count += is_waiting ? 1 : 0;
+      const auto inner = [owner = std::this_thread::get_id()] {
+        parallel_for(4, 1, [&](std::size_t, std::size_t) {
+          std::this_thread::sleep_for(std::chrono::microseconds(std::this_thread::get_id() == owner ? 20 : 2000));
+        });
+      };
+      const bool before = std::exchange(is_waiting, true);
+      if (alone)
+        with_no_other_work(inner);
+      else
+        inner();
+      is_waiting = before;
+    });
+  });
+  return count;
+}
+
+// A thread that holds a lock while it waits must not begin what asks for that lock. The control is a loop by itself:
+// some 10 of its 64 chunks are begun so.
+TEST(Parallel, AThreadWithNoOtherWorkBeginsNoOtherChunk) {
+  set_threads(8);
+  int control = 0;
+  for (int i = 0; i < 200 && control == 0; ++i) control = chunks_begun_while_waiting(false);
+  EXPECT_GT(control, 0);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(chunks_begun_while_waiting(true), 0);
   set_threads(0);
 }
 

@@ -40,7 +40,9 @@ int wrapped(double index, int n) {
 }  // namespace
 
 std::array<TextureTap, 4> texture_taps(int width, int height, double u, double v) {
-  const double x = u * width - 0.5, y = (1 - v) * height - 0.5;
+  // A place that is too far away for a number is taken for the corner.
+  const auto numbered = [](double place) { return std::isfinite(place) ? place : 0; };
+  const double x = numbered(u * width) - 0.5, y = numbered((1 - v) * height) - 0.5;
   const double left = std::floor(x), top = std::floor(y), s = x - left, t = y - top;
   const int x0 = wrapped(left, width), x1 = wrapped(left + 1, width);
   const int y0 = wrapped(top, height), y1 = wrapped(top + 1, height);

@@ -45,5 +45,19 @@ TEST(Sbrdf, TapsRepeatAndBlend) {
   EXPECT_NEAR(texture_taps(8, 4, 1.0 / 16, 7.0 / 8)[0].weight, 1, 1e-12);
 }
 
+TEST(Sbrdf, TapsOfPlacesBeyondAllNumbersAreTexels) {
+  for (const double far : {1e300, -1e308, HUGE_VAL, -HUGE_VAL, std::nan("")}) {
+    double sum = 0;
+    for (const TextureTap& tap : texture_taps(7, 5, far, far)) {
+      EXPECT_GE(tap.column, 0) << far;
+      EXPECT_LT(tap.column, 7) << far;
+      EXPECT_GE(tap.row, 0) << far;
+      EXPECT_LT(tap.row, 5) << far;
+      sum += tap.weight;
+    }
+    EXPECT_NEAR(sum, 1, 1e-12) << far;
+  }
+}
+
 }  // namespace
 }  // namespace goniochrome::brdf

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "base/text.h"
 #include "formats/imported.h"
@@ -261,7 +262,10 @@ Result<std::optional<paint::SpectrumReading>> CsvPaintReader::State::spectrum(co
     return std::optional<paint::SpectrumReading>();
   paint::SpectrumReading spectrum{geometry, columns[0].nm, columns[1].nm - columns[0].nm, {}};
   for (const WavelengthColumn& column : columns) {
-    GONIO_ASSIGN(const double factor, number(column.at, Domain::kLab));
+    GONIO_ASSIGN(const double factor, number(column.at, Domain::kAny));
+    if (std::abs(factor) > 100 * kLargestFactor)
+      return error(fmt::format("{} is {}: write a reflectance, where 1, or 100 percent, is the perfect diffuser",
+                               shown(header.headings[column.at]), shown(cells[column.at])));
     spectrum.factors.push_back(factor);
   }
   return std::optional(std::move(spectrum));

@@ -316,6 +316,12 @@ TEST(PaintCsv, SpectraComeBackAsTheyWere) {
               ElementsAre("spectra are left out that have other wavelengths than the first paint of the table (x at "
                           "45as15 and 1 more)",
                           "spectra without L*, a* and b* beside them are left out (y at 45as25)"));
+  // Where the first paint has none, the remedy is told.
+  auto reversed = CsvPaintWriter::begin(*OutputFile::create(folder.path("r.csv")), layout);
+  paints[0].measurement->spectra.clear();
+  for (const paint::Paint& paint : paints) ASSERT_TRUE(reversed->write(paint).ok());
+  EXPECT_THAT(reversed->warnings(), ElementsAre(testing::AllOf(testing::HasSubstr("put a paint with one first"),
+                                                               testing::HasSubstr("(y at 45as15 and 1 more)"))));
 }
 
 // Rows of the curve are marked; they are read only where a paint has no others.
@@ -379,6 +385,8 @@ TEST(PaintCsv, ReadsSpectraAndTheirColors) {
               ElementsAre(HasSubstr("the column of 450 nm stands where that of 440 nm would")));
   EXPECT_THAT(reading_of_text("sample,geometry,400,410,420,430,440\nx,45as15,,,,,\n").errors,
               ElementsAre(HasSubstr("the row has no spectrum, and the table no L, a and b")));
+  EXPECT_THAT(reading_of_text(spectral_table("sample,geometry,L,a,b", "gray,45as25,50,0,0", 1e5)).errors,
+              ElementsAre(HasSubstr("write a reflectance, where 1, or 100 percent, is the perfect diffuser")));
 }
 
 TEST(PaintCsv, ReadsTheHeadingsOfInstruments) {

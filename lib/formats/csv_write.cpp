@@ -95,7 +95,14 @@ std::string CsvPaintWriter::spectrum_cells(const paint::Paint& paint, const pain
 void CsvPaintWriter::note_spectra_left_out(const paint::Paint& paint) {
   for (const paint::SpectrumReading& spectrum : paint.measurement->spectra) {
     const std::string place = fmt::format("{} at {}", paint.name, paint::geometry_name(spectrum.geometry));
-    if (!has_columns_for(spectrum))
+    if (!wavelengths_)
+      remarks_.note(
+          fmt::format(
+              "spectra are left out: the table has the wavelengths of its first paint, and that has no spectrum "
+              "of {} or more from 300 to 1100 nm: put a paint with one first",
+              kFewestWavelengths),
+          place);
+    else if (!has_columns_for(spectrum))
       remarks_.note("spectra are left out that have other wavelengths than the first paint of the table", place);
     else if (std::ranges::find(paint.measurement->rows, spectrum.geometry, &paint::LabReading::geometry) ==
              paint.measurement->rows.end())

@@ -10,6 +10,7 @@
 #include "base/angles.h"
 #include "base/text.h"
 #include "color/spectrum.h"
+#include "formats/internal/spectral_rows.h"
 #include "formats/internal/xml_stream.h"
 
 namespace goniochrome::formats {
@@ -207,6 +208,7 @@ class CxfHandler final : public XmlHandler {
         }
         i = end + 1;
       }
+      if (color_.spectrum.empty()) return error("ReflectanceSpectrum is empty: write its factors, or leave it out");
       object.colors.push_back(color_);
     }
     if (in("PhysicalAttributes", "Gloss")) {
@@ -317,6 +319,7 @@ class CxfResolver {
     for (const RawColor& color : object.colors) ++(color.spectrum.empty() ? lab_values : spectra)[color.specification];
     for (const RawColor& color : object.colors) {
       const bool spectral = !color.spectrum.empty();
+      if (spectral && !is_sound(color)) continue;
       if (spectral) keep_spectrum(color, spectra[color.specification], kept[color.specification]++);
       if (spectral && lab_values.contains(color.specification)) continue;  // the file's own Lab is what it says
       const std::size_t values = (spectral ? spectra : lab_values)[color.specification];
@@ -341,14 +344,32 @@ class CxfResolver {
   std::deque<paint::Paint>& paints() { return paints_; }
 
  private:
+  static double first_nm_of(const RawColor& color, const Specification& specification) {
+    return color.first_nm > 0 ? color.first_nm : specification.first_nm;
+  }
+
+  // Whether a spectrum is one; else it is named. Where its specification is missing or has no angles, place() tells it.
+  bool is_sound(const RawColor& color) {
+    const auto found = specifications_.find(color.specification);
+    if (found == specifications_.end() || found->second.angles.empty()) return true;
+    std::string fault;
+    if (first_nm_of(color, found->second) <= 0 || found->second.step_nm <= 0)
+      fault = "spectra without a WavelengthRange were left out";
+    else if (color.spectrum.size() < 2)
+      fault = "spectra of a single wavelength were left out";
+    else if (std::ranges::any_of(color.spectrum, [](double factor) { return std::abs(factor) > kLargestFactor; }))
+      fault = fmt::format("spectra with factors beyond {} were left out: 1 is the perfect diffuser", kLargestFactor);
+    if (!fault.empty()) remarks_.note(fault, open_->paint.name);
+    return fault.empty();
+  }
+
   // The k-th of n spectra under one specification, at the angles that place() gives it.
   void keep_spectrum(const RawColor& color, std::size_t n, std::size_t k) {
     const auto found = specifications_.find(color.specification);
     if (found == specifications_.end()) return;
     const Specification& specification = found->second;
-    const double first_nm = color.first_nm > 0 ? color.first_nm : specification.first_nm;
-    const bool placed = n == 1 || n == specification.angles.size();
-    if (!placed || first_nm <= 0 || specification.step_nm <= 0 || color.spectrum.size() < 2) return;
+    if (n != 1 && n != specification.angles.size()) return;
+    const double first_nm = first_nm_of(color, specification);
     for (std::size_t i = 0; i < specification.angles.size(); ++i)
       if (n == 1 || i == k)
         open_->spectra.push_back({specification.angles[i], first_nm, specification.step_nm, color.spectrum});
@@ -403,11 +424,7 @@ class CxfResolver {
 
   Result<std::optional<color::Lab>> integrate(const RawColor& color, const Specification& specification,
                                               const color::ViewingCondition& condition) {
-    const double first_nm = color.first_nm > 0 ? color.first_nm : specification.first_nm;
-    if (first_nm <= 0 || specification.step_nm <= 0) {
-      remarks_.note("spectra without a WavelengthRange were left out", open_->paint.name);
-      return std::optional<color::Lab>();
-    }
+    const double first_nm = first_nm_of(color, specification);
     std::vector<double> nm;
     for (std::size_t i = 0; i < color.spectrum.size(); ++i)
       nm.push_back(first_nm + specification.step_nm * static_cast<double>(i));

@@ -196,6 +196,40 @@ TEST_F(Cxf, SpectraBecomeLabUnderTheirSpecification) {
   EXPECT_EQ(own.paints[0].measurement->rows[0].lab.L, 50);
 }
 
+// Nothing is lost without a word, and no color is made of nothing.
+TEST_F(Cxf, SpectraThatAreNoneAreNamedAndTheirLabIsKept) {
+  const auto spectrum = [](const std::string& factors) {
+    return "<ReflectanceSpectrum ColorSpecification=\"s\">" + factors + "</ReflectanceSpectrum>";
+  };
+  const auto text = [&](const std::string& factors, const std::string& range, bool with_lab) {
+    return cxf(object("p", spectrum(factors) + (with_lab ? lab("s") : "")),
+               specification("s", angles({{15, ""}}), range));
+  };
+  const std::string range = "<WavelengthRange StartWL=\"400\" Increment=\"10\"/>";
+  struct Case {
+    const char *factors, *range, *told;
+  };
+  for (const Case& wrong :
+       {Case{"0.1 0.2", "", "without a WavelengthRange"},
+        {"0.1 0.2", "<WavelengthRange StartWL=\"400\" Increment=\"0\"/>", "without a WavelengthRange"},
+        {"0.1 0.2", "<WavelengthRange StartWL=\"400\" Increment=\"-10\"/>", "without a WavelengthRange"},
+        {"0.1", range.c_str(), "of a single wavelength"},
+        {"0.1 1e308", range.c_str(), "with factors beyond 20 were left out"},
+        {"0.1 -21", range.c_str(), "with factors beyond 20 were left out"}}) {
+    const auto beside = good(text(wrong.factors, wrong.range, true));
+    ASSERT_EQ(beside.paints.size(), 1u) << wrong.told;
+    EXPECT_EQ(beside.paints[0].measurement->rows[0].lab.L, 50);
+    EXPECT_THAT(beside.paints[0].measurement->spectra, IsEmpty()) << wrong.told;
+    EXPECT_THAT(beside.warnings, ElementsAre(testing::AllOf(HasSubstr(wrong.told), HasSubstr("(p)"))));
+    const auto alone = good(text(wrong.factors, wrong.range, false));
+    EXPECT_THAT(alone.paints, IsEmpty()) << wrong.told;
+    EXPECT_THAT(alone.warnings, Contains(HasSubstr(wrong.told)));
+  }
+  EXPECT_EQ(good(text("0.1 20", range, true)).paints[0].measurement->spectra.size(), 1u) << "the control";
+  for (const bool with_lab : {false, true})
+    EXPECT_THAT(refusal(text(" ", range, with_lab)), HasSubstr("ReflectanceSpectrum is empty: write its factors"));
+}
+
 TEST_F(Cxf, ConditionsAreChosenOrAssumed) {
   const std::string text =
       cxf(object("p", lab("a") + lab("b", "<L>10</L><A>0</A><B>0</B>"),

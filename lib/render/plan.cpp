@@ -405,8 +405,7 @@ std::vector<ProbePixel> probe_pixels(const std::vector<std::shared_ptr<const Gbu
 
 std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count) {
   std::vector<VisiblePoint> points;
-  for (const ProbePixel& pixel : probe_pixels(gbuffers, count))
-    points.push_back(pixel.gbuffer->point(pixel.x, pixel.y));
+  for (const auto& [g, x, y] : probe_pixels(gbuffers, count)) points.push_back(g->point(x, y));
   return points;
 }
 
@@ -567,10 +566,9 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   const auto tracer = std::ranges::find_if(engines, [](const Engine* of) { return of->info().traces_rays; });
   const bool may_take = asked == nullptr && words.start == Start::kAuto && words.forced.empty();
   plan.path_ms = by_rays.path_ms, plan.path_samples = by_rays.path_samples;
-  const double most_in_all =
-      request.most_ray_samples > 0 ? request.most_ray_samples : std::numeric_limits<double>::infinity();
+  const double most = request.most_ray_samples;  // 0: no limit
   if (may_take && tracer != engines.end() && !plan.not_kept.empty() && by_rays.path_ms > 0 &&
-      by_rays.path_ms < plan.predicted_ms() + plan.rays_ms && by_rays.path_in_all <= most_in_all)
+      by_rays.path_ms < plan.predicted_ms() + plan.rays_ms && (most <= 0 || by_rays.path_in_all <= most))
     take_rays_alone(all, by_rays, request.tolerance_de00, request.most_ray_samples, **tracer, plan);
   plan.time_ms = 1000 * clock.elapsed_s();
   return plan;

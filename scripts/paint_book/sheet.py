@@ -16,7 +16,8 @@ CHIP_BORDER = 12  # pixels
 ANGLES = (15, 45, 110)
 GLOSS_LEGEND = ("The colors run from 15 to 110 degrees from specular. The border around them shows the gloss at 60 degrees, black for 0 "
                 "and white for 100 units, and is dashed where the paint does not state it.")
-KINDS = {"face": r"face-[a-z]+", "flop": r"flop-[a-z]+", "travel": r"travel[+-][0-9.e+-]+", "gloss": r"gloss[+-][0-9.e+-]+"}
+NUMBER = r"[+-]\d+(\.\d+)?(e[+-]?\d+)?"
+KINDS = {"face": r"face-[a-z]+", "flop": r"flop-[a-z]+", "travel": "travel" + NUMBER, "gloss": "gloss" + NUMBER}
 OPPOSITES = [("lighter", "darker"), ("red", "cyan"), ("yellow", "blue"), ("green", "magenta")]
 
 

@@ -61,7 +61,7 @@ cli::ToolSpec tool_spec(Options& o) {
       {"sets[].exponents", "the exponents, ascending"},
       {"sets[].max_error", "largest weighted RMS error of a paint, in L* if the weights are perceptual"},
       {"sets[].mean_error", "mean of this error over the paints"},
-      {"sets[].objective", "max_error + mean_error, which the search makes least"},
+      {"sets[].objective", "the sum max_error + mean_error, which the search makes least"},
       {"sets[].de00_max", "largest color difference of any paint at any sample angle"},
       {"sets[].log_regularity",
        "squared correlation of the exponents' logarithms with their rank; 1 means that they are evenly spaced"},

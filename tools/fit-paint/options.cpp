@@ -133,7 +133,8 @@ void add_report(cli::ToolSpec& spec) {
       {"paints[].gamut_de00", "color that is lost because the working space has no negative channels"},
       {"paints[].glare_rows", "readings that are left out because they are within 10 degrees of specular"},
       {"paints[].gloss[]",
-       "angle_deg and simulated_gu; where the paint states its gloss also stated_gu, and misfit_gu, which is the "
+       "of each meter angle_deg and simulated_gu; where the paint states its gloss also stated_gu, and misfit_gu, "
+       "which is the "
        "simulated gloss minus the stated one"},
       {"paints[].coat_range",
        "where several gloss readings are those of a coat of two scales: slopes, which is ggx or gaussian, and "

@@ -146,7 +146,8 @@ void add_report(cli::ToolSpec& spec) {
       {"paints[].worst_deg", "smallest index of the paint; null where there is none"},
       {"worst_deg", "smallest index of all paints"},
       {"left_out[]",
-       "light_deg, view_deg, azimuth_deg and aspecular_deg of the pairs that are left out because they are within 10 "
+       "the light_deg, view_deg, azimuth_deg and aspecular_deg of the pairs that are left out because they are within "
+       "10 "
        "degrees of the mirror direction"},
       {"seam_length_m",
        "with --mesh; beside it stand unit_m, misalignment_deg, gap_mm and flush_mm (low, median, high), and repairs"},

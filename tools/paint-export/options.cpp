@@ -34,15 +34,13 @@ cli::ToolSpec tool_spec(Options& o) {
       "mirror direction, and one beside the plane. The column readings is the mean difference from the readings of the "
       "paint itself, which the error of its fit is part of; it is n/a where it has none.",
       "A table for Mitsuba holds every paint, but not a mirror: the mirror image in the coat is widened to an orange "
-      "peel with "
-      "slopes of 0.01. The bands of a spectral table come from the spectra that a paint keeps, and a colored paint "
-      "without spectra has none. All other files have linear Rec.709 colors, but for graphs of MaterialX whose paint "
-      "is outside of Rec.709: these say "
-      "that they are in ACEScg, and a renderer that works in Rec.709 cuts their colors. In a table of RGB, a color "
-      "outside of "
-      "Rec.709 has a value below 0, which Mitsuba carries through to its picture. The other targets know no light "
-      "below "
-      "0, and what they show of such a color is cut; the difference tells how much that is.",
+      "peel with slopes of 0.01. The bands of a spectral table come from the spectra that a paint keeps, and a colored "
+      "paint without spectra has none. Where nothing else is said, files have linear Rec.709 colors. Graphs of "
+      "MaterialX "
+      "whose paint is outside of Rec.709 say that they are in ACEScg, and a renderer that works in Rec.709 cuts their "
+      "colors. In a table of RGB, a color outside of Rec.709 has a value below 0, which Mitsuba carries through to its "
+      "picture. The other targets know no light below 0, and what they show of such a color is cut; the difference "
+      "tells how much that is.",
       "A material of MDL has two files: NAME.mdl lays the mirror of the coat, as a layer, over the table NAME.mbsdf, "
       "whose cells are 1 degree wide. Lobes of an exponent of 1000 and more are narrower than these, and the mirror "
       "gets "

@@ -87,6 +87,9 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   run prefilter-envmap -e 6 --size big "$sky" -o x.env.exr
   [ "$status" -eq 2 ]
   [[ "$output" =~ '--size is "big": give auto' ]]
+  run prefilter-envmap -e 6 --tolerance 1 "$sky" -o x.env.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "--tolerance is 1: give 1e-06 or more, and less than 1" ]]
   run prefilter-envmap -e 6 --tolerance 1e-9 "$sky" -o x.env.exr
   [ "$status" -eq 2 ]
   run prefilter-envmap -e 6 "$sky" "$sky" -o x.env.exr

@@ -115,7 +115,8 @@ Result<Wanted> wanted_lobes(const Options& options) {
   prefilter::PrefilterRequest& request = wanted.request;
   request.tolerance = options.common.tolerance;
   if (!(request.tolerance >= kLeastTolerance && request.tolerance < 1))
-    return usage_error("--tolerance is {}: give {} to 1", shortest(request.tolerance), shortest(kLeastTolerance));
+    return usage_error("--tolerance is {}: give {} or more, and less than 1", shortest(request.tolerance),
+                       shortest(kLeastTolerance));
   GONIO_TRY(set_geometry(options, request));
   request.exponents = options.exponents;
   if (!options.basis.empty()) {

@@ -177,7 +177,7 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "The names are diffuse, lobes, gloss, mirror, fresnel, coat, horizon, spots, anisotropy, travel, satin, "
           "stretch, tilts, texture, texture-filter (pixels show the mean of all texels that they cover), "
           "texture-lobes, "
-          "operator, lights and extent (of lamps). spots draws the bright spots of the "
+          "operator, panes (what lies behind glass), lights and extent (of lamps). spots draws the bright spots of the "
           "environment, such as its sun, as lamps that each horizon cuts by itself, and needs horizon. lobe-20, "
           "gloss-900 and texture-0 (lobe0 of the textures) are single lobes. satin draws the rough coat of a paint as "
           "a surface of facets, which integral and path do; to other engines the plan tells what it is worth. stretch "

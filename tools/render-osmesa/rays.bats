@@ -210,6 +210,12 @@ OBJ
   run render-osmesa $view --part Window=glas -o x.exr
   [ "$status" -eq 2 ]
   [[ "$output" =~ "for glass that is seen through write PART=glass" ]]
+  run render-osmesa $view --part Window=glass --texture "Window=$TESTDATA/wood.sbrdf.exr,project=box" -o x.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" == *'makes "Window" glass, which has no place for a texture: leave out one of both'* ]]
+  run render-osmesa $view --part Window=glass --emit Window=1,1,1 --engine path -o x.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" == *'--emit makes "Window" shine, and --part makes it glass'* ]]
   run render-osmesa $view --part Window=glass --aov transport -o x.exr
   [ "$status" -eq 2 ]
   [[ "$output" =~ "holds the light of one surface a pixel" ]]

@@ -298,6 +298,10 @@ Result<void> set_stage(const Options& options, Request& request, Stage& stage, c
   if (summed && stage.source.environment) scene.texels = &stage.texels.emplace(*stage.source.environment);
   if (request.engine != nullptr && request.engine->traces_rays) GONIO_TRY(set_ground(request.floor, options, scene));
   GONIO_ASSIGN(scene.emission, emission_of(stage.mesh, request.emissions));
+  for (std::size_t part = 0; part < scene.emission.size(); ++part)
+    if (render::is_pane(scene, part) && !(scene.emission[part] == color::Rgb{}))
+      return usage_error("--emit makes \"{}\" shine, and --part makes it glass, which does not: leave out one of both",
+                         stage.mesh.parts[part].name);
   GONIO_TRY(set_spectra(options, request, stage, session));
   return set_background(scene, options.background);
 }

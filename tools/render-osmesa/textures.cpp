@@ -213,8 +213,6 @@ Result<void> lay(const std::string& option, const Texture& texture, const render
     dress.worn[part].reset();
     dress.names[part] = texture.file;
     surface = {};
-  } else if (dress.panes[part]) {
-    return wrong(option, "a pane that is seen through takes no map with alpha: give the part a paint");
   }
   const std::size_t there = surface.textures().size();
   if (there + facets.size() > render::kMostLaid)
@@ -261,8 +259,13 @@ Result<void> lay_textures(const mesh::Mesh& mesh, const Options& options, Dresse
     GONIO_ASSIGN(const render::TextureLaying laying,
                  laying_of(option, texture, projection, box_of(mesh, parts), *dress.textures.back()));
     const double repeat = projection == Projection::kOwn ? texture.repeat : 1;
-    for (const std::size_t part : parts)
+    for (const std::size_t part : parts) {
+      if (dress.panes[part])
+        return wrong(option,
+                     fmt::format("--part makes \"{}\" glass, which has no place for a texture: leave out one of both",
+                                 mesh.parts[part].name));
       GONIO_TRY(lay(option, texture, {dress.textures.back().get(), repeat, laying, false}, part, dress));
+    }
     const bool flat =
         projection != Projection::kOwn && projection != Projection::kCylinder && projection != Projection::kSphere;
     LaidTexture laid{texture.part, texture.file, name_of(projection), std::nullopt};

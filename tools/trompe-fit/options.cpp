@@ -177,7 +177,8 @@ void add_report(cli::ToolSpec& spec) {
       {"geometries[].light_deg", "beside it stand view_deg, azimuth_deg, aspecular_deg, aspecular_b_deg and weight"},
       {"geometries[].de_before", "difference there in the same paint; de_after is that with the paint found"},
       {"left_out[]",
-       "light_deg, view_deg, azimuth_deg and aspecular_deg of the pairs that are left out because they are within 10 "
+       "the light_deg, view_deg, azimuth_deg and aspecular_deg of the pairs that are left out because they are within "
+       "10 "
        "degrees of the mirror direction"},
       {"undetermined[]", "parameters that the views leave open"},
       {"at_bound[]", "parameters that a bound holds back"},

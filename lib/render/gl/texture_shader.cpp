@@ -145,6 +145,7 @@ TextureLayers place_layers(const SurfaceLayer& layer, const Effects& effects, co
   const std::vector<std::size_t> drawn = layer.drawn(effects);
   // The program counts from 0 to below 1, so that it has all digits for the place within the texture.
   const auto within = [](double x) {
+    if (!std::isfinite(x)) return 0.0F;
     return std::min(static_cast<float>(x - std::floor(x)), 1 - std::numeric_limits<float>::epsilon());
   };
   SurfaceLayer::Stack seen;

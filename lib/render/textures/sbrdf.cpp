@@ -229,7 +229,9 @@ const PackedTexture& SbrdfShader::packed(std::size_t texture, int level, std::ui
   const std::lock_guard<std::mutex> lock(levels.mutex);
   std::vector<PackedTexture>& made = levels.packed[lobes];
   if (made.empty())
-    for (const TextureLevel& of : texture_levels(*given_[texture], lobes)) made.push_back(pack(of));
+    with_no_other_work([&] {
+      for (const TextureLevel& of : texture_levels(*given_[texture], lobes)) made.push_back(pack(of));
+    });
   return made[static_cast<std::size_t>(level) - 1];
 }
 

@@ -58,9 +58,10 @@ std::vector<TextureLevel> texture_levels(const brdf::SbrdfTexture& texture, std:
 }
 
 TexturePlace repeated(const TexturePlace& place, double repeat) {
+  constexpr double kFarthest = 1e30;  // which a float and its multiples hold
   TexturePlace result = place;
   for (float* value : {&result.u, &result.v, &result.across[0], &result.across[1], &result.down[0], &result.down[1]})
-    *value = static_cast<float>(repeat * *value);
+    *value = static_cast<float>(std::clamp(repeat * *value, -kFarthest, kFarthest));
   return result;
 }
 

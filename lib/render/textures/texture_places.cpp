@@ -143,7 +143,10 @@ void TextureLayout::add_footprint(const Gbuffer& gbuffer, int x, int y, const Me
   const auto step = [&](double dx, double dy, float* to) {
     float low[2], high[2];
     const bool whole = met(x + 0.5 - dx, y + 0.5 - dy, low) && met(x + 0.5 + dx, y + 0.5 + dy, high);
-    for (int c = 0; c < 2; ++c) to[c] = whole ? std::clamp(high[c] - low[c], -kEndless, kEndless) : kEndless;
+    for (int c = 0; c < 2; ++c) {
+      const float wide = whole ? high[c] - low[c] : kEndless;
+      to[c] = std::isfinite(wide) ? std::clamp(wide, -kEndless, kEndless) : kEndless;
+    }
     // Around an axis, u may go on at the other edge.
     const Projection by = layings_[part].projection;
     if (whole && (by == Projection::kCylinder || by == Projection::kSphere))

@@ -2,9 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 
 #include "base/angles.h"
+#include "base/parallel.h"
 #include "render/exact.h"
 #include "render/gl/gl.h"
 #include "render/gl/shader.h"
@@ -390,6 +394,45 @@ TEST_F(TiledFloor, OneFilteredSampleIsNearerToManyWithout) {
     EXPECT_LT(difference(truth, with_filter(true, 4)), left) << size;
     view.samples = 1;
     EXPECT_LT(difference(filtered, drawn("gl", effects_of(scene))), 0.05) << size;
+  }
+}
+
+// Without a plan the levels are made by the first row of a picture that needs them, while other rows wait: of a texture
+// large enough, on several threads each.
+TEST_F(TiledFloor, RowsThatNeedLevelsAtOnceAreDrawn) {
+  const brdf::SbrdfTexture small = brushed_texture();
+  texture = {64, 64, small.lobes, {}};
+  for (int i = 0; i < 64 * 64; ++i) {
+    const float* from = small.texel(i % small.width, i / 64 % small.height);
+    texture.values.insert(texture.values.end(), from, from + texture.stride());
+  }
+  const auto drawn_by = [&](int threads) {
+    set_threads(threads);
+    lay(40);
+    return with_filter(true, 1);
+  };
+  const Frame one = drawn_by(1);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(drawn_by(8).picture.data, one.picture.data);
+  set_threads(0);
+}
+
+// A file may state texture coordinates, and a user a number of repetitions, that no float can hold.
+TEST_F(TiledFloor, PlacesBeyondAllNumbersAreDrawn) {
+  for (const float far : {3e38F, std::numeric_limits<float>::infinity()}) {
+    mesh.texture[2] = {far, far};
+    for (const double times : {1.0, 1e300}) {
+      lay(times);
+      for (const bool filter : {false, true}) {
+        for (const char* engine : {"cpu", "gl"}) {
+          Effects effects = effects_of(scene);
+          effects.texture_filter = filter;
+          view.samples = 1;
+          const Frame frame = drawn(engine, effects);
+          const auto is_bad = [](float value) { return !std::isfinite(value); };
+          EXPECT_TRUE(std::ranges::none_of(frame.picture.data, is_bad)) << far << ' ' << times << ' ' << engine;
+        }
+      }
+    }
   }
 }
 
