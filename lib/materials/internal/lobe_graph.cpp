@@ -184,7 +184,7 @@ class Problem {
   // The nodes for every paint first, then more of them one by one, and where neither is near enough all at once.
   void solve() {
     attempt(kTintParts * offers_.usual);
-    constexpr double kWithinReach_de00 = 1.5;  // from farther away, the second attempt comes nearer by 5 % at most
+    constexpr double kWithinReach_de00 = 1.5;  // from farther away, a second attempt does not get to kWanted_de00
     if (const double mean = mean_compared(); mean <= kWanted_de00 || mean > kWithinReach_de00) return;
     const double first = best_;
     const auto weights = x_;
@@ -242,13 +242,13 @@ class Problem {
   // Gives a graph that is still farther away than kWanted_de00 more columns out of all that are offered: again and
   // again those that bring it nearer most quickly, until it is near enough or that helps no more.
   void widen() {
-    constexpr double kLeastGain = 0.002;
-    constexpr int kRounds = 12;
+    constexpr double kLeastGain = 0.005;
+    constexpr int kRounds = 12, kStepsOfRound = 2;
     for (int round = 0; round < kRounds && mean_compared() > kWanted_de00; ++round) {
       add_values(kTintParts * offers_.nodes.size());
       const double before = best_;
       add_columns();
-      descend(kSteps);
+      descend(kStepsOfRound);
       if (best_ > (1 - kLeastGain) * before) break;
     }
   }
