@@ -10,7 +10,6 @@
 #include "brdf/lobe_model.h"
 #include "brdf/tilted_lobes.h"
 #include "math/elementary.h"
-#include "render/internal/coat_stretch.h"
 #include "render/internal/lobe_curves.h"
 #include "render/internal/tilt_table.h"
 #include "render/internal/worn_lobes.h"
@@ -119,11 +118,11 @@ paint::LobeFit beside_stretch(paint::LobeFit paint) {
   return paint;
 }
 
-void fill_part(const Scene& scene, const Effects& effects, std::size_t part, const WeightTable& table, float* rows) {
+void fill_part(const Scene& scene, const Effects& effects, std::size_t part, bool stretched, const WeightTable& table,
+               float* rows) {
   const paint::LobeFit paint = effects.coat ? scene.paints[part] : brdf::under_coat(scene.paints[part], paint::kNoCoat);
   const bool with_views = effects.views && !paint.views.empty();
   const paint::TiltedLobes* tilts = drawn_tilts(paint, effects);
-  const bool stretched = drawn_stretch(scene, effects, part) != nullptr;
   SlotValues values(table, effects, gloss_deg_of(scene, part), paint.coat_index, tilts != nullptr);
   std::vector<SlotValues::Texel> before;
   for (int node = 0; node <= table.segments; ++node) {
@@ -304,18 +303,19 @@ WeightTable slots_of(const Effects& effects) {
   return table;
 }
 
-WeightTable weight_table(const Scene& scene, const Effects& effects) {
+WeightTable weight_table(const Scene& scene, const Effects& effects, const std::vector<bool>& stretched) {
   WeightTable table = slots_of(effects);
   table.parts = static_cast<int>(scene.paints.size());
   const std::size_t row = static_cast<std::size_t>(table.slots) * 8,
                     part_size = row * static_cast<std::size_t>(table.segments);
   table.rgba.assign(part_size * scene.paints.size(), 0.0F);
+  const auto is_stretched = [&](std::size_t part) { return !stretched.empty() && stretched[part]; };
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
     float* rows = &table.rgba[part * part_size];
-    if (part > 0 && same_wear(scene, part, part - 1)) {
+    if (part > 0 && same_wear(scene, part, part - 1) && is_stretched(part) == is_stretched(part - 1)) {
       std::copy_n(rows - part_size, part_size, rows);
     } else {
-      fill_part(scene, effects, part, table, rows);
+      fill_part(scene, effects, part, is_stretched(part), table, rows);
     }
   }
   return table;

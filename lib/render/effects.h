@@ -137,6 +137,7 @@ struct WeightTable {
 };
 // The table's sizes, without its weights.
 WeightTable slots_of(const Effects& effects);
-WeightTable weight_table(const Scene& scene, const Effects& effects);
+// `stretched` tells of each part whether other lobes stand for the gloss of its rough coat; empty: of none.
+WeightTable weight_table(const Scene& scene, const Effects& effects, const std::vector<bool>& stretched = {});
 
 }  // namespace goniochrome::render

@@ -29,6 +29,8 @@ refused() {
     refused 2 'expected one argument' $option
     refused 3 'none.xml: there is no such file' $option none.xml
   done
+  refused 3 'none.xml: there is no such file' --paints 'none.xml#signal_red'
+  refused 3 'none: there is no such file' --paints "$BATS_TEST_DIRNAME/../../testdata/paints.paints.xml#signal_red" --probe none
   refused 2 'expected one argument' --target-de00
   refused 2 'invalid float' --target-de00 small
   refused 2 'is 0: give a color difference above 0' --target-de00 0

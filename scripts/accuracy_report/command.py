@@ -56,8 +56,8 @@ def parse(arguments):
     parser.add_argument("--quick", action="store_true", help="try fewer settings, which takes about a minute")
     parser.add_argument("--bin", type=pathlib.Path, metavar="DIR",
                         help="the folder of the tools [that of the installed command, then PATH, then build/release/bin]")
-    parser.add_argument("--paints", type=pathlib.Path, default=DATA / "paints.paints.xml", metavar="FILE",
-                        help="the library to use [that of testdata]")
+    parser.add_argument("--paints", type=pathlib.Path, default=DATA / "paints.paints.xml", metavar="FILE[#NAME]",
+                        help="the library to use, or the paints of it that NAME means [that of testdata]")
     parser.add_argument("--probe", type=pathlib.Path, default=DATA / "studio.exr", metavar="FILE",
                         help="the HDR panorama to use [the studio of testdata]")
     parser.add_argument("--mesh", type=pathlib.Path, default=DATA / "speed-shape.obj", metavar="FILE",
@@ -75,7 +75,10 @@ def parse(arguments):
     for name in options.studies:
         if name not in STUDIES:
             parser.error(f"there is no study {name}: choose of {', '.join(STUDIES)}")
-    for path in (options.paints, options.probe, options.mesh):
+    library = options.paints
+    if "#" in library.name and not library.is_file():
+        library = pathlib.Path(str(library).rpartition("#")[0])
+    for path in (library, options.probe, options.mesh):
         if not path.is_file():
             print(f"accuracy-report: {path}: there is no such file", file=sys.stderr)
             sys.exit(3)

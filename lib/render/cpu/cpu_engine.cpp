@@ -6,6 +6,7 @@
 #include "base/angles.h"
 #include "base/large_pages.h"
 #include "base/parallel.h"
+#include "render/internal/coat_stretch.h"
 #include "render/internal/map_cost.h"
 
 namespace goniochrome::render {
@@ -190,7 +191,7 @@ Result<void> CpuEngine::load(const Scene& scene, const Effects& effects) {
 
 void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
   take_out_spots(scene, effects.spots);
-  const WeightTable table = weight_table(scene, effects);
+  const WeightTable table = weight_table(scene, effects, stretched_parts(scene, effects));
   std::size_t blocks = 0;
   for (const Stack& stack : stacks_) blocks += static_cast<std::size_t>(stack.blocks);
   const int light_slots = effects.single_lights() > 0 ? table.shift_slot(0) - table.light_slot() : 0;

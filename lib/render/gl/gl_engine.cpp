@@ -9,6 +9,7 @@
 #include "render/gl/gl_weights.h"
 #include "render/gl/shader.h"
 #include "render/gl/tilt_shader.h"
+#include "render/internal/coat_stretch.h"
 #include "render/internal/map_cost.h"
 #include "render/page_weights.h"
 #include "render/surface_layer.h"
@@ -206,7 +207,7 @@ void GlEngine::upload_discs() {
 }
 
 void GlEngine::load_paints(const Scene& scene) {
-  const WeightTable table = weight_table(scene, effects_);
+  const WeightTable table = weight_table(scene, effects_, stretched_parts(scene, effects_));
   gl_->DeleteTextures(1, &weights_);
   const std::vector<float> weights = gl_weights(table, forms_);
   weights_ = gl_->float_texture(2 * table.slots * table.segments, table.parts, weights.data());

@@ -85,4 +85,11 @@ std::shared_ptr<const paint::TiltedLobes> drawn_stretch(const Scene& scene, cons
   return kept.of(scene.paints[part], part < scene.gloss_deg.size() ? scene.gloss_deg[part] : 45);
 }
 
+std::vector<bool> stretched_parts(const Scene& scene, const Effects& effects) {
+  std::vector<bool> parts;
+  for (std::size_t part = 0; part < scene.paints.size(); ++part)
+    parts.push_back(drawn_stretch(scene, effects, part) != nullptr);
+  return parts;
+}
+
 }  // namespace goniochrome::render

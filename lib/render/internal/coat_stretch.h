@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "render/effects.h"
 
@@ -12,5 +13,8 @@ namespace goniochrome::render {
 // mirror; null where they draw none. It has the exponents of those gloss lobes. Sets are kept, since making one takes
 // some 25 ms.
 std::shared_ptr<const paint::TiltedLobes> drawn_stretch(const Scene& scene, const Effects& effects, std::size_t part);
+
+// Of each part whether there is such a set.
+std::vector<bool> stretched_parts(const Scene& scene, const Effects& effects);
 
 }  // namespace goniochrome::render
