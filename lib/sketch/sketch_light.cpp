@@ -316,6 +316,19 @@ std::vector<int> SketchTransport::mesh_parts() const {
   return parts;
 }
 
+image::Image SketchTransport::worn_picture() const {
+  const render::LobeTransport& t = *transport_;
+  std::vector<render::TransportPaint> paints;
+  for (const int group : t.worn.groups.of_part)
+    paints.push_back({{0}, {t.worn.weights[static_cast<std::size_t>(group)]}});
+  render::BounceScale unscaled;
+  unscaled.of_class.assign(t.worn.groups.classes(), {1, 1, 1});
+  image::Image picture{t.width, t.height, 4, {}, {"R", "G", "B", "A"}};
+  picture.data.assign(4 * static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height), 0);
+  render::TransportShader(t, {}).shade(paints, reflection_ ? &*reflection_ : nullptr, unscaled, 1, picture);
+  return picture;
+}
+
 double SketchTransport::wear(const std::vector<color::Rgb>& weights, const std::vector<int>& parts) {
   const render::LobeTransport& t = *transport_;
   if (t.bounces == 0) return 0;

@@ -38,6 +38,9 @@ class SketchTransport {
   // The parts of the mesh, by number from 1. The floor has no number among them: it keeps what it wears.
   std::vector<int> mesh_parts() const;
 
+  // What the paints that were worn show (radiance, as R G B A), and A = 0 where no surface was traced.
+  image::Image worn_picture() const;
+
   // Scales bounced light to these weights on these parts (numbers from 1), and returns what that errs by
   // (CIEDE2000, 95th percentile): 0 where the tracing was done without bounces.
   double wear(const std::vector<color::Rgb>& weights, const std::vector<int>& parts);

@@ -75,12 +75,12 @@ class Sorter {
     return PixelUse::kUsed;
   }
 
-  // How much an edit shows: kEdited above five codes of an 8-bit display, about two units of lightness, kTouched where
-  // it is more than rounding.
-  Change change(int x, int y) const {
-    const float* pixel = image_.pixel(x, y);
+  // How much an edit of the buffers' own picture, or of the shaded one, shows: kEdited above five codes of an 8-bit
+  // display, about two units of lightness, kTouched where it is more than rounding.
+  Change change(int x, int y, bool of_shaded) const {
+    const float* pixel = of_shaded ? input_.shaded->pixel(x, y) : image_.pixel(x, y);
     const float* edited = input_.edited->pixel(x + input_.shift_x, y + input_.shift_y);
-    color::Rgb was = original_gain_ * color::Rgb{pixel[0], pixel[1], pixel[2]};
+    color::Rgb was = (of_shaded ? 1 : original_gain_) * color::Rgb{pixel[0], pixel[1], pixel[2]};
     if (!input_.edited->scene_linear) was = display::in_display_gamut(was);
     const double scale = 1 / input_.buffers->white_luminance;
     was = scale * was;
@@ -110,19 +110,23 @@ class Sorter {
   std::vector<bool> wanted_;
 };
 
-// Sorts all pixels; `changed` is told for those that could be used.
-void sort_pixels(const Sorter& sorter, const image::Image& image, bool compare, SketchPixels& pixels,
-                 std::vector<std::uint8_t>& changed) {
+template <class Function>
+void for_places(const image::Image& image, Function&& function) {
   parallel_for(static_cast<std::size_t>(image.height), kRows, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-      for (int x = 0; x < image.width; ++x) {
-        const std::size_t i = static_cast<std::size_t>(y) * image.width + x;
-        pixels.use[i] = sorter.use(x, y);
-        if (compare && (pixels.use[i] == PixelUse::kUsed || pixels.use[i] == PixelUse::kGlare))
-          changed[i] = sorter.change(x, y);
-      }
+      for (int x = 0; x < image.width; ++x) function(x, y, static_cast<std::size_t>(y) * image.width + x);
   });
 }
+
+bool could_be_used(PixelUse use) {
+  return use == PixelUse::kUsed || use == PixelUse::kGlare;
+}
+
+// The change of every pixel that could be used, and how many of those used were touched and edited.
+struct Changes {
+  std::vector<std::uint8_t> of;
+  std::size_t touched = 0, edited = 0;
+};
 
 // An edit covers areas; compression and noise scatter. A pixel stays changed where most of the nine around it are.
 void drop_scattered(const image::Image& image, std::vector<std::uint8_t>& changed) {
@@ -139,6 +143,18 @@ void drop_scattered(const image::Image& image, std::vector<std::uint8_t>& change
         if (count < 5) changed[y * width + x] = kTouched;
       }
   });
+}
+
+Changes changes(const Sorter& sorter, const image::Image& image, const std::vector<PixelUse>& use, bool of_shaded) {
+  Changes result;
+  result.of.resize(use.size(), kSame);
+  for_places(image, [&](int x, int y, std::size_t i) {
+    if (could_be_used(use[i])) result.of[i] = sorter.change(x, y, of_shaded);
+  });
+  drop_scattered(image, result.of);
+  for (std::size_t i = 0; i < use.size(); ++i)
+    if (use[i] == PixelUse::kUsed) result.edited += result.of[i] == kEdited, result.touched += result.of[i] != kSame;
+  return result;
 }
 
 constexpr int kShiftReach = 8;            // pixels
@@ -173,24 +189,24 @@ Result<SketchPixels> sketch_pixels(const SketchInput& input) {
   const Sorter sorter(input, at);
   SketchPixels pixels;
   pixels.use.resize(static_cast<std::size_t>(image.width) * image.height);
-  std::vector<std::uint8_t> changed(pixels.use.size(), 0);
-  const bool compare = input.rule != PixelRule::kAll;
-  sort_pixels(sorter, image, compare, pixels, changed);
-  if (compare) drop_scattered(image, changed);
-
-  std::size_t usable = 0, touched = 0;
-  for (std::size_t i = 0; i < changed.size(); ++i)
-    if (pixels.use[i] == PixelUse::kUsed)
-      ++usable, pixels.changed += changed[i] == kEdited, touched += changed[i] != kSame;
+  for_places(image, [&](int x, int y, std::size_t i) { pixels.use[i] = sorter.use(x, y); });
+  const auto usable = static_cast<std::size_t>(std::ranges::count(pixels.use, PixelUse::kUsed));
+  Changes changed;
+  if (input.rule != PixelRule::kAll) {
+    changed = changes(sorter, image, pixels.use, false);
+    if (input.shaded != nullptr)
+      if (Changes other = changes(sorter, image, pixels.use, true); other.touched < changed.touched)
+        changed = std::move(other), pixels.from_shaded = true;
+  }
+  pixels.changed = changed.edited;
   const auto share = [&](std::size_t count) {
     return usable > 0 ? static_cast<double>(count) / static_cast<double>(usable) : 0;
   };
-  const bool partly = share(pixels.changed) >= kLeastChangedShare && share(touched) < kRepaintedShare;
+  const bool partly = share(pixels.changed) >= kLeastChangedShare && share(changed.touched) < kRepaintedShare;
   pixels.changed_only = input.rule == PixelRule::kChanged || (input.rule == PixelRule::kAuto && partly);
   for (std::size_t i = 0; i < pixels.use.size(); ++i) {
     PixelUse& use = pixels.use[i];
-    const bool candidate = use == PixelUse::kUsed || use == PixelUse::kGlare;
-    if (candidate && pixels.changed_only && changed[i] != kEdited) use = PixelUse::kUnchanged;
+    if (could_be_used(use) && pixels.changed_only && changed.of[i] != kEdited) use = PixelUse::kUnchanged;
     if (use == PixelUse::kUsed) pixels.used.push_back(static_cast<std::uint32_t>(i));
     if (use == PixelUse::kGlare) pixels.glare.push_back(static_cast<std::uint32_t>(i));
     ++pixels.count[static_cast<std::size_t>(use)];

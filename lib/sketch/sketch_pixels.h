@@ -25,6 +25,9 @@ struct SketchInput {
   double gain = 1;                     // edited values times this are light as in the buffers, exposure taken out
   double least_cosine = 0;             // of the light's incidence; darker places tell nothing
   double glare_deg = 0;                // aspecular angles below this are gloss
+  // What the paints of the buffers show in their transport (radiance), or null. The picture may have begun as that and
+  // not as the buffers' own picture, from which it differs by the noise of both.
+  const image::Image* shaded = nullptr;
 };
 
 // Why a pixel is left out; kUsed is not.
@@ -50,6 +53,7 @@ struct SketchPixels {
   std::array<std::size_t, static_cast<std::size_t>(PixelUse::kCount)> count{};
   std::size_t changed = 0;  // of the pixels that could be used
   bool changed_only = false;
+  bool from_shaded = false;  // whether it keeps more pixels of SketchInput::shaded than of the buffers' own picture
 };
 
 // Sorts the pixels. Error: picture, mask and buffers differ in size, or the buffers lack a channel.

@@ -445,6 +445,48 @@ TEST(Sketch, OnlyThePixelsThatWereEditedCount) {
   EXPECT_FALSE(sketch_pixels(input(other, repainted))->changed_only);
 }
 
+// The same light with noise of its own: spots of 3 x 3 pixels that are a fifth brighter, each fourth spot.
+Picture noisy(const Picture& from) {
+  Picture to = from;
+  for (int y = 0; y < to.rgb.height; ++y)
+    for (int x = 0; x < to.rgb.width; ++x)
+      if ((x / 3 + 2 * (y / 3)) % 4 == 0)
+        for (int c = 0; c < 3; ++c) to.rgb.pixel(x, y)[c] *= 1.2F;
+  return to;
+}
+
+// The picture began as that of a transport, whose noise is not that of the buffers' own picture. The controls: the
+// buffers alone take the noise for an edit, and a picture that began as theirs is compared with theirs.
+TEST(Sketch, APictureThatATransportMadeIsComparedWithWhatTheTransportShows) {
+  image::AovFile ball = sphere(160, kLamp);
+  const paint::Paint before = designed({60, 10, 0}, {20, 5, 0}, 60), after = designed({60, -30, 20}, {20, -10, 5}, 60);
+  image::AovFile other = ball;
+  shade(ball, lobes(before)), shade(other, lobes(after));
+  const Picture own = picture(ball), traced = noisy(own), repainted = picture(other);
+  SketchInput in = input(ball, traced);
+  EXPECT_TRUE(sketch_pixels(in)->changed_only) << "the control must fail";
+  in.shaded = &traced.rgb;
+  const SketchPixels untouched = *sketch_pixels(in);
+  EXPECT_FALSE(untouched.changed_only);
+  EXPECT_TRUE(untouched.from_shaded);
+  EXPECT_EQ(untouched.changed, 0U);
+
+  const auto left_part_repainted = [&](const Picture& from) {
+    Picture p = from;
+    for (int y = 0; y < 160; ++y) std::copy_n(repainted.pixel(0, y), 3 * 72, p.rgb.pixel(0, y));
+    return p;
+  };
+  for (const Picture* from : {&own, &traced}) {
+    const Picture p = left_part_repainted(*from);
+    in.edited = &p;
+    const SketchPixels pixels = *sketch_pixels(in);
+    EXPECT_TRUE(pixels.changed_only);
+    EXPECT_EQ(pixels.from_shaded, from == &traced);
+    for (const std::uint32_t place : pixels.used) EXPECT_LT(place % 160, 72U);
+    EXPECT_LE(worst_de00(fit(in), *after.appearance), 1);
+  }
+}
+
 TEST(Sketch, SizesThatDifferAreBothNamed) {
   const image::AovFile ball = sphere(40, kLamp), larger = sphere(50, kLamp);
   const Picture p = picture(larger), own = picture(ball);

@@ -143,6 +143,28 @@ TEST(SketchTransport, APictureOfSeveralSamplesShowsTheirMean) {
     }
 }
 
+// The paint of buffers_of() has the weight .1 in every column, which get the light once and by their shares. The
+// tolerance is that of halves.
+TEST(SketchTransport, TheWornPictureIsTheLightTimesTheWeights) {
+  const color::Rgb light{3, 2, 1};
+  for (const color::ReflectionOperator& reflection : {color::component_wise(), color::iso_rgb_operator()}) {
+    image::AovFile file = buffers_of({{light, of_lamp(25)}, {{}, of_lamp(40)}});
+    file.reflection = reflection;
+    const auto transport = SketchTransport::of(file);
+    ASSERT_TRUE(transport.ok() && transport->has_value());
+    const image::Image shown = (*transport)->worn_picture();
+    double share = 1;
+    for (const double of_lobe : of_lamp(25)) share += of_lobe;
+    const color::Rgb truth = color::reflected(reflection, {0.1, 0.1, 0.1}, share * light);
+    ASSERT_EQ(shown.width, 2);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(shown.pixel(0, 0)[c], truth[c], 1e-3 * truth[c]);
+      EXPECT_EQ(shown.pixel(1, 0)[c], 0);
+    }
+    EXPECT_EQ(shown.pixel(0, 0)[3], 1);
+  }
+}
+
 TEST(TracedLight, APictureOfAnotherSizeAndAPixelWithoutLightAreRefused) {
   const image::AovFile file = buffers_of({{{1, 1, 1}, of_lamp(40)}, {{}, of_lamp(40)}});
   const auto traced = TracedLight::of(file);

@@ -107,6 +107,19 @@ figure() { grep -m1 "\"$1\"" "$2" | sed -E 's/.*: ([-0-9.e+a-z]+),?$/\1/'; }
   awk -v p="$(figure pixels_used sketch.json)" -v share="$walls" 'BEGIN { exit !(p > 50 && p <= 768 * share) }'
 }
 
+@test "a picture shaded from the transport in its own paint is no edit of it, and an edit of it is found" {
+  render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine -o own.png
+  sketch-fit -q -i own.png -b view.exr -o sketch.xml --report sketch.json
+  [ "$(jq .results.pixels_rule sketch.json)" = '"all"' ]
+  [ "$(jq .results.pixels_changed sketch.json)" -eq 0 ]
+  [ "$(jq .results.pixels_compared_with sketch.json)" = '"transport"' ]
+  # A third of it, recolored.
+  oiiotool own.png --cut 11x24+0+0 --mulc 1,0.6,0.5 own.png --paste +0+0 -d uint8 -o brushed.png
+  sketch-fit -q -i brushed.png -b view.exr -o sketch.xml --report sketch.json
+  [ "$(jq .results.pixels_rule sketch.json)" = '"changed"' ]
+  [ "$(jq '.results | .pixels_changed == .pixels_used and .pixels_changed > 40 and .pixels_changed <= 264' sketch.json)" = true ]
+}
+
 @test "several points are a pixel: their mean, in single pictures and in streams" {
   render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine -o points.exr
   render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine --samples 4 -o pixels.exr --report pixels.json

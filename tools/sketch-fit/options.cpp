@@ -102,6 +102,9 @@ void add_report(cli::ToolSpec& spec) {
       {"pixels_used", "number of pixels that the fit rests on"},
       {"pixels_changed", "number of pixels that could be used and were edited"},
       {"pixels_rule", "changed or all"},
+      {"pixels_compared_with",
+       "picture, for that of the buffers, or transport, for what it shows of the paints that were worn: the one in "
+       "which the edit began; null with --pixels all"},
       {"pixels_left_out", "number of pixels that were left out, by reason"},
       {"aspecular_from_deg", "smallest aspecular angle seen; null with --env"},
       {"aspecular_to_deg", "largest aspecular angle seen; null with --env"},

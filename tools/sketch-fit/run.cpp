@@ -31,6 +31,7 @@ struct Material {
   envmap::PrefilteredEnvironment env;
   formats::Basis basis;
   std::optional<sketch::SketchTransport> transport;
+  image::Image shaded;  // by the transport, in the paints that were worn
   sketch::SketchInput input;
 };
 
@@ -155,6 +156,8 @@ Result<void> gather(const Options& options, Material& material) {
   GONIO_ASSIGN(material.transport, sketch::SketchTransport::of(material.buffers));
   if (material.transport) {
     if (input.parts.empty()) input.parts = material.transport->mesh_parts();
+    material.shaded = material.transport->worn_picture();
+    input.shaded = &material.shaded;
     return {};
   }
   if (options.env.empty()) {
@@ -168,10 +171,11 @@ Result<void> gather(const Options& options, Material& material) {
   return {};
 }
 
-void report_pixels(const sketch::SketchPixels& pixels, Json& results) {
+void report_pixels(const sketch::SketchPixels& pixels, bool compared, Json& results) {
   results["pixels_used"] = pixels.used.size();
   results["pixels_changed"] = pixels.changed;
   results["pixels_rule"] = pixels.changed_only ? "changed" : "all";
+  results["pixels_compared_with"] = compared ? Json(pixels.from_shaded ? "transport" : "picture") : Json(nullptr);
   results["pixels_left_out"] = Json::object();
   for (int use = 1; use < static_cast<int>(sketch::PixelUse::kCount); ++use)
     results["pixels_left_out"][sketch::pixel_use_name(static_cast<sketch::PixelUse>(use))] =
@@ -381,8 +385,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   const bool environment = !options.env.empty() || material.transport;
   sketch::SketchFit fit;
   if (material.transport) {
-    fit = fit_in_transport(input, pixels, material.picture.samples.value_or(material.buffers.samples), limits,
-                           differences, *material.transport, session);
+    const int samples = material.picture.samples.value_or(pixels.from_shaded ? 1 : material.buffers.samples);
+    fit = fit_in_transport(input, pixels, samples, limits, differences, *material.transport, session);
   } else if (environment) {
     GONIO_ASSIGN(const sketch::SketchLight light, sketch::sketch_light(material.buffers, material.env));
     fit = sketch::sketch_environment(input, pixels, light, limits, differences);
@@ -395,7 +399,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   Json& results = session.results();
   report_fit(fit, environment, results);
   if (material.transport) results["mode"] = "transport";
-  report_pixels(pixels, results);
+  report_pixels(pixels, input.rule != sketch::PixelRule::kAll, results);
   tell_shift(input, session);
   results["color_space"] = material.picture.space;
   results["fit_s"] = clock.elapsed_s();
