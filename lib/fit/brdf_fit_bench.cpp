@@ -36,7 +36,7 @@ void lobes(benchmark::State& state) {
   const auto brdf = target(static_cast<int>(state.range(0)));
   if (!brdf.ok()) return state.SkipWithError(brdf.error().message.c_str());
   const PaintFitter fitter(basis(12), {.method = state.range(1) == 1 ? FitMethod::kL1 : FitMethod::kL2,
-                                       .views_where_needed = state.range(2) == 1});
+                                       .view_sets = state.range(2) == 1 ? ViewSets::kWhereNeeded : ViewSets::kNone});
   PaintFit fit;
   for (auto _ : state) fit = *fitter.fit(*brdf);
   state.SetLabel(kFiles[state.range(0)]);

@@ -43,27 +43,37 @@ std::vector<double> chosen_exponents(const FitOptions& options, const FlakeTarge
   return chosen;
 }
 
-// Solves for K_D and K_DD, for all views and for each of `views_deg`. Returns where the rows stand that the lobes meet
-// without a coat and not under it.
-std::vector<FlakePoint> fit_flake(const FitOptions& options, const FlakeTarget& together, const FlakeTarget& by_view,
-                                  const std::vector<double>& views_deg, const std::vector<double>& exponents,
-                                  double first_rad, PaintFit& out) {
-  const Deadline deadline(options.time_limit_s);
+// What a fit for all views found.
+struct FlakeStart {
+  FlakeModel model;              // its lobes
+  std::vector<FlakePoint> lost;  // where the rows stand that they meet without a coat and not under it
+};
+
+// Solves for K_D and K_DD, for all views.
+FlakeStart fit_flake(const FitOptions& options, const FlakeTarget& target, const std::vector<double>& exponents,
+                     double first_rad, const Deadline& deadline, PaintFit& out) {
   PaintFitReport& report = out.report;
   const std::vector<double> seen = seen_exponents(exponents, first_rad);
-  FlakeModel model{chosen_exponents(options, together, seen, deadline)};
+  FlakeModel model{chosen_exponents(options, target, seen, deadline)};
   report.unseen = difference(exponents, seen);
   report.dropped = difference(seen, model.exponents);
-  const auto [flake, lost] = fit_under_coat(options.method, together, model, deadline);
+  auto [flake, lost] = fit_under_coat(options.method, target, model, deadline);
   set_weights(model.exponents, flake.x.data(), out.lobes.diffuse, out.lobes.lobes);
   report.status = deadline.passed() ? FitStatus::kTimeLimit : flake.status;
   report.objective = flake.objective;
   report.plain_objective = flake.plain_objective;
   report.optimality_gap = flake.optimality_gap;
-  if (views_deg.empty()) return lost;
+  return {std::move(model), std::move(lost)};
+}
 
+// Adds the K_D and K_DD of these views for the same lobes. Returns where the rows stand that they meet without a coat
+// and not under it.
+std::vector<FlakePoint> add_views(const FitOptions& options, const FlakeTarget& by_view, FlakeModel model,
+                                  const std::vector<double>& views_deg, const Deadline& deadline, PaintFit& out) {
+  PaintFitReport& report = out.report;
   model.views_deg = views_deg;
-  const auto [each, lost_by_view] = fit_under_coat(options.method, by_view, model, deadline);
+  const auto [each, lost] = fit_under_coat(options.method, by_view, model, deadline);
+  out.lobes.views.clear();
   for (std::size_t v = 0; v < model.views_deg.size(); ++v) {
     paint::ViewLobes view{model.views_deg[v], {}, out.lobes.lobes};
     for (paint::Lobe& lobe : view.lobes) lobe.directional_diffuse = {};
@@ -74,7 +84,7 @@ std::vector<FlakePoint> fit_flake(const FitOptions& options, const FlakeTarget& 
   if (report.status == FitStatus::kOptimal) report.status = each.status;
   report.optimality_gap = std::max(report.optimality_gap, each.optimality_gap);
   if (deadline.passed()) report.status = FitStatus::kTimeLimit;
-  return lost_by_view;
+  return lost;
 }
 
 FlakeTarget flake_target(const FitOptions& options, const Target& target, const color::Xyz& white, double coat_index) {
@@ -272,19 +282,24 @@ Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint) const {
   GONIO_ASSIGN(const Target target, target_rows(paint, options_.target, white, basis_.exponents, coat));
   GONIO_ASSIGN(const FlakeTarget together,
                coated_target(options_, paint, target, white, basis_.exponents, coat, false));
-  const double first_rad = target.first_deg * kDegree;
-  const auto fit_views = [&](const std::vector<double>& views_deg) -> Result<std::vector<FlakePoint>> {
-    if (views_deg.empty()) return fit_flake(options_, together, together, {}, basis_.exponents, first_rad, out);
+  const Deadline deadline(options_.time_limit_s);
+  const auto [model, lost_by_all] =
+      fit_flake(options_, together, basis_.exponents, target.first_deg * kDegree, deadline, out);
+  std::vector<FlakePoint> lost = lost_by_all;
+  const auto fit_views = [&, &lobes = model](const std::vector<double>& views_deg) -> Result<void> {
     GONIO_ASSIGN(const Target rows, target_rows(paint, options_.target, white, basis_.exponents, coat, true));
     GONIO_ASSIGN(const FlakeTarget by_view, coated_target(options_, paint, rows, white, basis_.exponents, coat, true));
-    return fit_flake(options_, together, by_view, views_deg, basis_.exponents, first_rad, out);
+    lost = add_views(options_, by_view, lobes, views_deg, deadline, out);
+    return {};
   };
   const Twins twins = twins_of(target.readings);
-  GONIO_ASSIGN(std::vector<FlakePoint> lost,
-               fit_views(options_.views_where_needed ? twins.views_deg : options_.views_deg));
-  if (options_.views_where_needed && !lost.empty()) {
-    out = started(coat);
-    GONIO_ASSIGN(lost, fit_views(views_of(target.readings)));
+  const std::vector<double> views_asked =
+      options_.view_sets == ViewSets::kWhereNeeded && options_.views_deg.empty() ? twins.views_deg : options_.views_deg;
+  if (!views_asked.empty()) GONIO_TRY(fit_views(views_asked));
+  const std::vector<double> all_views = views_of(target.readings);
+  if (options_.view_sets != ViewSets::kNone && options_.views_deg.empty() && !lost.empty() && all_views.size() > 1) {
+    GONIO_TRY(fit_views(all_views));
+    out.report.views_for_coat = true;
   }
   out.report.floor = {twins.apart_de00, twins.sum_de00 / static_cast<double>(target.readings.size()),
                       twins.largest_de00};
@@ -321,8 +336,11 @@ Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
   GONIO_ASSIGN(const color::Xyz white, color::white_point({"D65", 2}));
   GONIO_ASSIGN(const BrdfRows rows, brdf_rows(brdf, white, options_, basis_.exponents));
   static const std::vector<double> kEvery15_deg = {0, 15, 30, 45, 60, 75};
-  fit_flake(options_, rows.flake, rows.flake, options_.views_where_needed ? kEvery15_deg : options_.views_deg,
-            basis_.exponents, rows.first_rad, out);
+  const Deadline deadline(options_.time_limit_s);
+  const FlakeStart flake = fit_flake(options_, rows.flake, basis_.exponents, rows.first_rad, deadline, out);
+  const bool every_15 = options_.views_deg.empty() && options_.view_sets == ViewSets::kWhereNeeded;
+  const std::vector<double>& views_deg = every_15 ? kEvery15_deg : options_.views_deg;
+  if (!views_deg.empty()) add_views(options_, rows.flake, flake.model, views_deg, deadline, out);
   out.report.gamut_de00 = rows.gamut_de00;
   out.report.brdf = BrdfFigures{.fitted = rows.fitted.size(), .glare = rows.glare.size(), .steep = rows.steep};
   add_spike(rows, spike_exponents(options_, basis_.exponents, out.report), out);
@@ -350,7 +368,7 @@ Result<FiveAngleFigures> PaintFitter::from_five_angles(const BrdfTarget& brdf) c
   GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(brdf.paint)));
   GONIO_ASSIGN(const Target target, target_rows(brdf.paint, options_.target, white, basis_.exponents, coat));
   const FlakeTarget flake = flake_target(options_, target, white, coat);
-  fit_flake(options_, flake, flake, {}, basis_.exponents, target.first_deg * kDegree, five);
+  fit_flake(options_, flake, basis_.exponents, target.first_deg * kDegree, Deadline(options_.time_limit_s), five);
   return five_angle_figures(brdf, five.lobes);
 }
 

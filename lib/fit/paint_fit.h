@@ -28,6 +28,11 @@ const char* fit_method_name(FitMethod method);
 // with two or three readings, all with a reading, whose others then follow the usual series of coats, or none.
 enum class Satin { kBySeveral, kAll, kNone };
 
+// Which paints get weights for several views of their readings, beside those for all views: none; those with readings
+// that a coat keeps from being met that are met without it; or also those with readings that differ at one aspecular
+// angle. Measured BRDFs get views every 15 deg by kWhereNeeded, and none by the others.
+enum class ViewSets { kNone, kWhereLost, kWhereNeeded };
+
 struct FitOptions {
   FitMethod method = FitMethod::kL1;
   paint::TargetCurve::Kind target = paint::TargetCurve::Kind::kMeasured;
@@ -39,10 +44,8 @@ struct FitOptions {
   // Measured BRDFs have no coat unless one is told here.
   std::optional<double> coat_index = {};
   double prune_de00 = 0;               // --prune: lobes that move no color by more are dropped; 0: none are
-  std::vector<double> views_deg = {};  // weights at these angles of the viewer too; empty: none
-  bool views_where_needed = false;     // in place of views_deg, the views of readings that differ at one aspecular
-                                       // angle or that a coat keeps from being met; of a measured BRDF, views every
-                                       // 15 deg
+  std::vector<double> views_deg = {};  // weights at these angles of the viewer too; empty: those of `view_sets`
+  ViewSets view_sets = ViewSets::kWhereLost;
   Satin satin = Satin::kBySeveral;
   double steepest_deg = 75;   // measured BRDFs: directions farther from the normal are left out
   double time_limit_s = 0;    // for one paint; 0: none
@@ -134,8 +137,9 @@ struct PaintFitReport {
   std::vector<GeometryError> de00_by_geometry;  // against the readings (or the designed curve at 15, 45 and 110 deg)
   double de00_max = 0, de00_mean = 0;
   // The readings that the lobes meet exactly without the paint's coat and not under it, with their differences under
-  // it. kDeltaE tells none.
+  // it. By kDeltaE they are those that the l1 fit misses, from which it starts.
   std::vector<GeometryError> lost_to_coat;
+  bool views_for_coat = false;  // weights for views meet readings that the coat would have kept from being met
   ViewFloor floor;
   std::string limit;               // why the worst reading is not met any better, in words; empty where all are met
   double gamut_de00 = 0;           // the largest color change from negative working-space channels of the target

@@ -301,18 +301,18 @@ TEST(PaintFit, NoFitForAllViewsComesBelowTheFloor) {
     EXPECT_GT(together.floor.de00_mean, apart / 5 / 2);
     EXPECT_GE(together.de00_max, floor);
     EXPECT_GE(together.de00_mean, together.floor.de00_mean);
-    const PaintFitReport needed = report_of(paint, {.method = method, .views_where_needed = true});
+    const PaintFitReport needed = report_of(paint, {.method = method, .view_sets = ViewSets::kWhereNeeded});
     EXPECT_LT(needed.de00_max, floor / 3);
     ASSERT_TRUE(needed.views);
     EXPECT_NEAR(needed.views->de00_mean_without, together.de00_mean, 1e-9);
   }
-  const auto fit = PaintFitter(kBasis, {.views_where_needed = true}).fit(paint);
+  const auto fit = PaintFitter(kBasis, {.view_sets = ViewSets::kWhereNeeded}).fit(paint);
   ASSERT_TRUE(fit.ok());
   ASSERT_EQ(fit->lobes.views.size(), 2u);
   EXPECT_EQ(fit->lobes.views[0].view_deg, 30);
   EXPECT_EQ(fit->lobes.views[1].view_deg, 60);
   // A paint that agrees with itself gets none.
-  EXPECT_FALSE(report_of(metallic_blue(), {.views_where_needed = true}).views);
+  EXPECT_FALSE(report_of(metallic_blue(), {.view_sets = ViewSets::kWhereNeeded}).views);
   EXPECT_EQ(report_of(metallic_blue()).floor.de00_mean, 0);
 }
 
@@ -443,7 +443,7 @@ TEST(PaintFit, BothSidesOfSpecularRealData) {
   for (const FitMethod method : kMethods) {
     double floor = 0, together = 0;
     std::vector<double> errors;
-    for (const auto& fit : fits(PaintFitter(kBasis, {.method = method, .views_where_needed = true}), paints)) {
+    for (const auto& fit : fits(PaintFitter(kBasis, {.method = method, .view_sets = ViewSets::kWhereNeeded}), paints)) {
       ASSERT_TRUE(fit.ok());
       EXPECT_EQ(fit->report.status, FitStatus::kOptimal);
       for (const GeometryError& error : fit->report.de00_by_geometry) errors.push_back(error.de00);

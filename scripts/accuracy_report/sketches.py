@@ -41,6 +41,17 @@ def passed(cos, index):
     return 1 - (across * across + along * along) / 2
 
 
+def at_view(lobes, view_deg):
+    """The elements with the weights for a view: of one view after the other with its share of them, or of all views."""
+    views = [e for e in lobes if e.tag.endswith("}view")]
+    if not views:
+        return [(1, lobes)]
+    angles = [float(e.get("angle")) for e in views]
+    place = float(numpy.interp(view_deg, angles, range(len(angles))))
+    before, after = views[int(place)], views[math.ceil(place)]
+    return [(1 - place % 1, before), (place % 1, after)]
+
+
 def shown_lab(paint, angle_deg):
     """Lab that an instrument reads off the lobes of a paint element at an aspecular angle."""
     def child(name):
@@ -49,14 +60,16 @@ def shown_lab(paint, angle_deg):
     def rgb(element, names):
         return numpy.array([float(element.get(name)) for name in names])
 
-    lobes = child("lobes")
-    total = rgb(child("diffuse"), "rgb")
-    for lobe in lobes:
-        if lobe.tag.endswith("}lobe") and lobe.get("exponent") != "mirror":
-            total = total + max(math.cos(math.radians(angle_deg)), 0) ** float(lobe.get("exponent")) * rgb(lobe, ("ddr", "ddg", "ddb"))
+    view_deg = min(abs(LIGHT_DEG - angle_deg), STEEPEST_VIEW_DEG)
+    total = numpy.zeros(3)
+    for share, weights in at_view(child("lobes"), view_deg):
+        for element in weights:
+            if element.tag.endswith("}diffuse"):
+                total = total + share * rgb(element, "rgb")
+            elif element.tag.endswith("}lobe") and element.get("exponent") != "mirror":
+                total = total + share * max(math.cos(math.radians(angle_deg)), 0) ** float(element.get("exponent")) * rgb(element, ("ddr", "ddg", "ddb"))
     coat = child("coat")
     index = float(coat.get("index")) if coat is not None else 1
-    view_deg = min(abs(LIGHT_DEG - angle_deg), STEEPEST_VIEW_DEG)
     through = passed(math.cos(math.radians(LIGHT_DEG)), index) * passed(math.cos(math.radians(view_deg)), index)
     xyz = RGB_TO_XYZ @ (math.pi * through * total)
     cones = BRADFORD @ WHITE_10 / (BRADFORD @ numpy.array(colors.WHITE))

@@ -324,20 +324,33 @@ cornell() {
   [ "$(grep -c '"simulated_gu"' r.json)" -eq 3 ]
 }
 
-@test "readings that only the coat keeps from being met are told, and --views auto meets them" {
-  run --separate-stderr fit-paint -b "$basis" "$paints" -o out.xml --report r.json
+@test "readings that only a coat would keep from being met are met by views, and told with --views none" {
+  run --separate-stderr fit-paint -b "$basis" --views none "$paints" -o none.xml --report r.json
   lost=$(sed -nE 's/^    "lost_to_coat": ([0-9]+),?$/\1/p' r.json)
   [ "$lost" -gt 0 ]
-  [[ "$stderr" =~ "$lost readings that lobes meet without a coat are off by up to dE00 1."[0-9]+" under it".*"--views auto meets them" ]]
+  [[ "$stderr" =~ "$lost readings that lobes meet without a coat are off by up to dE00 1."[0-9]+" under it".*"--views lost meets them" ]]
   [ "$(jq '[.results.paints[].lost_to_coat[]] | length' r.json)" -eq "$lost" ]
-  jq -e '.results.paints[] | select(.name == "reference_gray") | .lost_to_coat["45as110"] > 1' r.json
+  jq -e '.results.paints[] | select(.name == "reference_gray") | .lost_to_coat["45as110"] > 1 and .views_for_coat == false' r.json
   jq -e '.results.paints[] | select(.name == "reference_gray") | .limit | test("under the coat grows by 9 %")' r.json
+  names=$(jq -r '[.results.paints[] | select(.lost_to_coat != {}) | .name] | join(" ")' r.json)
   fit-paint -q -b "$basis" --coat none "$paints" -o out.xml --report r.json
-  jq -e '.results.lost_to_coat == 0 and ([.results.paints[].lost_to_coat[]] == [])' r.json
-  run --separate-stderr fit-paint -b "$basis" --views auto "$paints" -o out.xml --report r.json
-  [[ ! "$stderr" =~ "under it" ]]
-  jq -e '.results.lost_to_coat == 0' r.json
-  jq -e '.results.paints[] | select(.name == "reference_gray") | .de00_max < 1e-6' r.json
+  jq -e '.results.lost_to_coat == 0 and ([.results.paints[].lost_to_coat[]] == []) and .results.views_for_coat == 0' r.json
+  for views in lost auto; do
+    run --separate-stderr fit-paint -b "$basis" --views "$views" "$paints" -o "$views.xml" --report r.json
+    [[ ! "$stderr" =~ "under it" ]]
+    jq -e '.results.lost_to_coat == 0' r.json
+    jq -e '.results.paints[] | select(.name == "reference_gray") | .de00_max < 1e-6 and .views_for_coat' r.json
+  done
+  # lost is the default. Paints that lose nothing are the same as without it.
+  run --separate-stderr fit-paint -b "$basis" "$paints" -o out.xml --report r.json
+  [[ "$stderr" =~ "$(wc -w <<<"$names") paints have weights for the views of their readings" ]]
+  cmp <(grep -v "<processing" out.xml) <(grep -v "<processing" lost.xml)
+  [ "$(jq -r '[.results.paints[] | select(.views_for_coat) | .name] | join(" ")' r.json)" = "$names" ]
+  diff <(sed '/<view /,/<\/view>/d' lost.xml) <(sed '/<view /,/<\/view>/d' none.xml) >changed || true
+  [ "$(grep -c '^< .*<lobes ' changed)" -eq "$(wc -w <<<"$names")" ]
+  # By the least color difference too.
+  fit-paint -q -b "$basis" --method deltae "$paints" -o out.xml --report r.json
+  jq -e '.results.paints[] | select(.name == "reference_gray") | .de00_max < 0.05 and .views_for_coat' r.json
 }
 
 @test "--paint-time-limit stops a paint, writes the best and exits 4" {

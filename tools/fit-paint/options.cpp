@@ -26,9 +26,9 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("coat", "INDEX", "1.5", &o.coat, "refractive index of the clear coat of every paint; none is no coat")
       .more(
           "The coat takes from the base what it reflects itself. The base is fitted to what the coat leaves of it at "
-          "each geometry, so that what is read stays the same. Readings that are met without a coat are met with it, "
-          "except where no lobes do, as where the base would have to grow away from specular: there the report names "
-          "them under lost_to_coat, and --views auto meets them. auto gives a coat to every paint with gloss, "
+          "each geometry, so that what is read stays the same. Readings that are met without a coat are met with it. "
+          "Where no weights for all views do so, as where the base would have to grow away from specular, the paint "
+          "gets weights for the views of its readings (see --views). auto gives a coat to every paint with gloss, "
           "stated or assumed, and to every paint that states a coat; its index is 1.5, or as much as the gloss asks "
           "for. Measured BRDFs have none unless it is given here.");
   spec.option("satin", "WHICH", "all", &o.satin, "which paints get the gloss of a rough coat, by views")
@@ -57,16 +57,17 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("prune", "DE00", "0.1", &o.prune_de00, "drop lobes as long as no color moves by more; 0 drops none")
       .from(0, 100)
       .more("Only flake lobes are dropped.");
-  spec.option("views", "auto|DEG,...", "0,30,60", &o.views, "also fit weights for several angles of the viewer")
+  spec.option("views", "lost|auto|none|DEG,...", "0,30,60", &o.views,
+              "also fit weights for several angles of the viewer")
       .in("degrees from the normal: two or more, ascending")
       .more(
           "Weights for several views follow a color that turns with the view, and the two sides of specular of an "
           "interference paint. Between the views they are linear. The weights for all views stay in front of them, and "
           "the report tells what the views gain. A multi-angle instrument sees each view once or twice; between its "
-          "readings, the weights rest on smoothness and not on data. auto takes the views of readings that differ "
-          "visibly at one aspecular angle; of all readings, where a coat keeps one from being met that is met without "
-          "it; "
-          "and none for other paints.");
+          "readings, the weights rest on smoothness and not on data. lost takes the views of all readings of a paint "
+          "of which a coat would change what is read: where one is met without the coat and by no weights for all "
+          "views under it. auto does so too, and takes the views of readings that differ visibly at one aspecular "
+          "angle. none gives no paint such weights; what a coat changes is then told under lost_to_coat.");
   spec.option("paint-time-limit", "S", "0.5", &o.paint_time_limit_s, "longest time for one paint; 0 is no limit")
       .from(0)
       .more("After this time the best weights so far are taken.");
@@ -119,7 +120,10 @@ void add_report(cli::ToolSpec& spec) {
       {"paints[].de00_mean", "mean CIEDE2000 difference at the readings"},
       {"paints[].de00_by_geometry", "difference at each geometry"},
       {"paints[].lost_to_coat",
-       "by l1 and l2: the readings that are met exactly without the coat and not with it, with their differences"},
+       "the readings that are met exactly without the coat and not with it, with their differences; by deltae, those "
+       "that the l1 fit misses from which it starts"},
+      {"paints[].views_for_coat",
+       "whether the paint has weights for the views of its readings because no others meet them under its coat"},
       {"paints[].limit",
        "what keeps the worst reading from being met better: the working space, two sides of specular, a channel that "
        "grows away from specular, or the basis; empty below dE00 0.5"},
@@ -151,7 +155,8 @@ void add_report(cli::ToolSpec& spec) {
        "degrees from the normal: directions is their number, and the median relative error is told by the aspecular "
        "angle (by_aspecular) and by the angle of the flakes in the coat (by_flake)"},
       {"paints[].views",
-       "with --views: de00_mean over the readings, or over the fitted directions of a measured BRDF; "
+       "where there are weights for several views: de00_mean over the readings, or over the fitted directions of a "
+       "measured BRDF; "
        "de00_mean_without, the same by the weights for all views; and their difference gain_de00"},
       {"paints[].message", "reason why a paint failed"},
       {"color_maps[].name", "with --color-map: the paint"},
@@ -190,6 +195,7 @@ void add_report(cli::ToolSpec& spec) {
       {"worst[]", "the five worst paints: name, geometry, de00 and limit"},
       {"contradicting", "number of paints with readings at one aspecular angle that differ visibly"},
       {"lost_to_coat", "number of readings that are met exactly without a coat and not with it"},
+      {"views_for_coat", "number of paints with weights for views because no others meet their readings under a coat"},
       {"floor_de00_mean", "least de00_mean that weights for all views can have"},
       {"floor_de00_p95", "least de00_p95 that weights for all views can have"},
       {"warnings[]", "first messages about failed paints"}};

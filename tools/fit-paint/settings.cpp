@@ -42,19 +42,18 @@ Result<std::optional<double>> coat_index(const std::string& text) {
   return index;
 }
 
-// "0,15,30", or nothing.
+// "0,15,30".
 Result<std::vector<double>> view_angles(const std::string& text) {
   std::vector<double> angles;
-  if (text.empty()) return angles;
   for (const std::string_view part : split(text, ',')) {
     const auto angle = parse_number(part);
     const bool ascending = angle && (angles.empty() || *angle > angles.back());
     if (!ascending || *angle < 0 || *angle > 90)
-      return usage_error("--views \"{}\": give auto, or angles from 0 to 90 deg, ascending, as in 0,15,30,45,60,75",
-                         text);
+      return usage_error(
+          "--views \"{}\": give lost, auto, none, or angles from 0 to 90 deg, ascending, as in 0,15,30,45,60,75", text);
     angles.push_back(*angle);
   }
-  if (angles.size() < 2) return usage_error("--views \"{}\": give two or more angles, or auto", text);
+  if (angles.size() < 2) return usage_error("--views \"{}\": give two or more angles, or lost, auto or none", text);
   return angles;
 }
 
@@ -100,8 +99,10 @@ Result<fit::FitOptions> fit_options(const Options& options) {
   fit.satin = options.satin == "all"    ? fit::Satin::kAll
               : options.satin == "none" ? fit::Satin::kNone
                                         : fit::Satin::kBySeveral;
-  fit.views_where_needed = options.views == "auto";
-  if (!fit.views_where_needed) {
+  fit.view_sets = options.views == "auto"   ? fit::ViewSets::kWhereNeeded
+                  : options.views == "lost" ? fit::ViewSets::kWhereLost
+                                            : fit::ViewSets::kNone;
+  if (fit.view_sets == fit::ViewSets::kNone && options.views != "none") {
     GONIO_ASSIGN(fit.views_deg, view_angles(options.views));
   }
   return fit;
@@ -134,9 +135,13 @@ std::string plan(const Options& options, const fit::FitOptions& fit, const forma
   text += fmt::format("measured BRDFs: directions to {} deg from the normal; some ms each\n", fit.steepest_deg);
   if (fit.most_lobes > 0) text += fmt::format("lobes: the best subset of {}\n", fit.most_lobes);
   if (fit.prune_de00 > 0) text += fmt::format("lobes that move no color by dE00 {} are dropped\n", fit.prune_de00);
-  if (fit.views_where_needed)
+  if (fit.view_sets == fit::ViewSets::kWhereNeeded)
     text +=
         "views where readings at one aspecular angle differ visibly: a set of weights each, beside the one for all\n";
+  if (fit.view_sets != fit::ViewSets::kNone)
+    text +=
+        "views of all readings where the coat would keep one from being met: a set of weights each, beside the one for "
+        "all; twice the time of the fit, and no time in a pixel\n";
   if (!fit.views_deg.empty())
     text += fmt::format("views at{} deg: a set of weights each, beside the one for all\n", list(fit.views_deg));
   return text;

@@ -71,6 +71,7 @@ Json report_of(const paint::Paint& paint, const fit::PaintFit& fit) {
                  {"de00_mean", json_number(r.de00_mean)},
                  {"de00_by_geometry", by_geometry(r.de00_by_geometry)},
                  {"lost_to_coat", by_geometry(r.lost_to_coat)},
+                 {"views_for_coat", r.views_for_coat},
                  {"limit", r.limit},
                  {"floor_de00_mean", json_number(r.floor.de00_mean)},
                  {"apart_de00", json_number(r.floor.apart_de00)},
@@ -152,6 +153,7 @@ void Tally::add(const paint::Paint& paint, const fit::PaintFit& fit) {
   contradicting_ += r.floor.apart_de00 > fit::kVisible_de00;
   for (const fit::GeometryError& lost : r.lost_to_coat)
     ++lost_to_coat_, largest_lost_ = std::max(largest_lost_, lost.de00);
+  by_views_ += r.views_for_coat;
   sum_floor_ += r.floor.de00_mean * static_cast<double>(r.de00_by_geometry.size());
   for (const double floor : r.floor.largest_de00) floors_.add(floor);
   if (r.views) sum_gain_ += r.views->gain_de00();
@@ -189,7 +191,7 @@ std::string Tally::summary() const {
   if (predicted_ > 0)
     line +=
         fmt::format(", five angles predict those to 60 deg with {:.3f}", sum_five_ / static_cast<double>(predicted_));
-  if (!options_.views.empty())
+  if (views_asked(options_))
     line +=
         fmt::format(", the views gain dE00 {:.2f}", sum_gain_ / static_cast<double>(std::max<std::size_t>(fitted_, 1)));
   if (not_converged_ > 0) line += fmt::format(", {} not converged", not_converged_);
@@ -217,6 +219,7 @@ cli::Verdict Tally::finish() {
   results["de00_p95"] = p95(errors_);
   results["contradicting"] = contradicting_;
   results["lost_to_coat"] = lost_to_coat_;
+  results["views_for_coat"] = by_views_;
   results["floor_de00_mean"] = sum_floor_ / readings;
   results["floor_de00_p95"] = floors_.all_but(0.05 * readings);
   results["worst"] = Json::array();
@@ -228,16 +231,21 @@ cli::Verdict Tally::finish() {
   for (std::size_t k = 1; k < worst_.size() && worst_[k].de00 > kBad_de00; ++k)
     session_.say(fmt::format("  then {:.2f} ({} at {}: {})", worst_[k].de00, worst_[k].name, worst_[k].geometry,
                              worst_[k].limit));
-  if (contradicting_ > 0 && options_.views.empty())
+  if (contradicting_ > 0 && !views_asked(options_))
     session_.say(
         fmt::format("{}: {} paints contradict themselves at one aspecular angle: no weights for all views come "
                     "below {}; --views auto does",
                     session_.tool(), contradicting_, floor()));
+  if (by_views_ > 0)
+    session_.say(
+        fmt::format("{}: {} paints have weights for the views of their readings, as no weights for all views meet "
+                    "under the coat what lobes meet without it; --views none leaves them out",
+                    session_.tool(), by_views_));
   if (lost_to_coat_ > 0)
     session_.say(fmt::format(
-        "{}: {} readings that lobes meet without a coat are off by up to dE00 {:.2f} under it, where no "
-        "weights for all views meet them{}",
-        session_.tool(), lost_to_coat_, largest_lost_, options_.views.empty() ? "; --views auto meets them" : ""));
+        "{}: {} readings that lobes meet without a coat are off by up to dE00 {:.2f} under it{}", session_.tool(),
+        lost_to_coat_, largest_lost_,
+        options_.views == "none" ? ", where no weights for all views meet them; --views lost meets them" : ""));
   if (open_coats_ > 0)
     session_.say(fmt::format(
         "{}: the gloss readings of {} paints leave open how wide the haze of their coats is; that of {} may have "

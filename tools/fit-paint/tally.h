@@ -57,6 +57,7 @@ class Tally {
   std::size_t contradicting_ = 0;  // paints
   std::size_t lost_to_coat_ = 0;   // readings
   double largest_lost_ = 0;        // dE00 of these
+  std::size_t by_views_ = 0;       // paints with views so that none are lost
   double sum_floor_ = 0;           // over all readings
   Spread floors_;                  // of the worse readings at shared angles
   std::vector<Bad> worst_;         // the worst paints, worst first

@@ -22,13 +22,18 @@ struct Options {
   std::string illuminant;
   int lobes = 0;
   double prune_de00 = 0;
-  std::string views;
+  std::string views = "lost";
   double steepest_deg = 75;
   double paint_time_limit_s = 0;
   std::string color_map;
   std::string color_map_model = "better";
   std::string tilts = "8,16,32,64";
 };
+
+// Whether weights for several views are fitted to more paints than those whose readings a coat would change.
+inline bool views_asked(const Options& options) {
+  return options.views != "none" && options.views != "lost";
+}
 
 cli::ToolSpec tool_spec(Options& options);
 Result<cli::Verdict> run(const Options& options, cli::Session& session);

@@ -372,7 +372,9 @@ TEST(BrdfFit, RglFilesComeOutBetterThanAGgxLobeRealData) {
     const Errors ggx = best_ggx(*target, samples, white);
     for (const FitMethod method : {FitMethod::kL1, FitMethod::kL2})
       for (const bool by_view : {false, true}) {
-        const auto fit = PaintFitter(kBasis, {.method = method, .views_where_needed = by_view}).fit(*target);
+        const auto fit =
+            PaintFitter(kBasis, {.method = method, .view_sets = by_view ? ViewSets::kWhereNeeded : ViewSets::kNone})
+                .fit(*target);
         ASSERT_TRUE(fit.ok());
         const auto f = [&](const Vec3& light, const Vec3& view) {
           return brdf::coated_brdf(fit->lobes, light, view, {0, 0, 1});

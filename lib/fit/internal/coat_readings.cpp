@@ -49,8 +49,9 @@ CoatedFit fit_under_coat(FitMethod method, const FlakeTarget& target, const Flak
                          const Deadline& deadline) {
   FlakeTarget held = target;
   if (method != FitMethod::kDeltaE) return hold(method, held, model, deadline);
-  if (!target.without_coat.empty()) hold(FitMethod::kL1, held, model, deadline);
-  return {flake_fit(method, held, model, deadline), {}};
+  std::vector<FlakePoint> lost;
+  if (!target.without_coat.empty()) lost = hold(FitMethod::kL1, held, model, deadline).lost;
+  return {flake_fit(method, held, model, deadline), std::move(lost)};
 }
 
 }  // namespace goniochrome::fit

@@ -20,7 +20,7 @@ struct CoatedFit {
 // The best weights. Where `target.without_coat` has rows and the best weights under the coat miss known rows that the
 // best weights without it meet, these rows are held one after the other, the ones that are missed least first, as long
 // as all that are held are met together. The l1 fit bounds that of kDeltaE and is a start of it, so that there the l1
-// fit holds rows; kDeltaE itself weighs the readings against each other, and none are told as lost.
+// fit holds rows and tells which are lost; kDeltaE itself weighs the readings against each other.
 CoatedFit fit_under_coat(FitMethod method, const FlakeTarget& target, const FlakeModel& model,
                          const Deadline& deadline);
 
