@@ -19,7 +19,7 @@ constexpr int kFewSamples = 48, kManySamples = 176;
 // The most by which the samples that are needed fall while more are drawn: as this power of their number.
 constexpr double kFalling = -0.6;
 // What the engine draws of every pixel to begin with, beyond the percentile of all needs, and beyond what it lacks.
-constexpr double kFewest = 16, kBeyond = 1.05, kRaised = 1.1;
+constexpr double kFewest = 8, kBeyond = 1.05, kRaised = 1.1;
 
 // Of a pixel: the samples that its neighborhood asks for, and those that its own noise does.
 struct Need {
@@ -36,11 +36,12 @@ struct Needs {
     for (const Need& need : pixels) all.push_back(need.samples);
     return percentile_95(std::move(all));
   }
-  // By how much the noise is above the tolerance where the neighborhoods are content.
+  // By how much the noise is above the tolerance where the neighborhoods are content. What needs less than the fewest
+  // has samples to spare.
   double lacking(double most) const {
     std::vector<double> all;
     for (const Need& need : pixels)
-      if (need.samples > 0) all.push_back(need.own / std::min(need.samples, most));
+      if (need.samples > 0) all.push_back(need.own / std::max(kFewest, std::min(need.samples, most)));
     return percentile_95(std::move(all));
   }
   double mean(double most, double scale) const {

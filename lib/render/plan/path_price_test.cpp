@@ -110,15 +110,20 @@ struct Case {
   envmap::Environment (*light)();
   double tolerance_de00;
   int pixel_samples;
+  // Told over drawn samples. In the field most pixels need fewer than the engine draws of each: were they taken for
+  // noisy by what they lack of that, it would be 1.28 to 1.43.
+  double most = 2;
 };
 
 // The control has what other engines draw: the mesh alone, and a sun that is a lamp.
 TEST(PathPrice, ToldSamplesAreWithinAFactorOfTwo) {
   const auto ball = [] { return sphere_mesh(24); };
-  const Case cases[] = {{"ball, field", ball, field, 1, 1},
+  const Case cases[] = {{"ball, field", ball, field, 1, 1, 1.25},
                         {"ball, studio", ball, dark_studio, 1, 1},
-                        {"box, field", ball_in_a_box, field, 2, 1},
+                        {"box, field", ball_in_a_box, field, 2, 1, 1.25},
                         {"box, overcast", ball_in_a_box, overcast, 0.5, 1},
+                        {"ball, overcast, coarse", ball, overcast, 3, 1},
+                        {"ball, field, coarse", ball, field, 3, 1, 1.25},
                         {"box, studio", ball_in_a_box, dark_studio, 1, 1},
                         {"box, studio, four samples a pixel", ball_in_a_box, dark_studio, 2, 4}};
   double worst_control = 1;
@@ -126,7 +131,7 @@ TEST(PathPrice, ToldSamplesAreWithinAFactorOfTwo) {
     const Picture picture(of.mesh(), of.light());
     const double drawn = picture.drawn_samples(of.tolerance_de00, of.pixel_samples);
     const double told = told_samples(*picture.stage.transport, picture.work(of.tolerance_de00, of.pixel_samples, true));
-    EXPECT_LE(told, 2 * drawn) << of.name;
+    EXPECT_LE(told, of.most * drawn) << of.name;
     EXPECT_GE(told, 0.5 * drawn) << of.name;
 
     Scene lit = picture.stage.scene;
