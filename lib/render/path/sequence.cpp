@@ -1,5 +1,7 @@
 #include "render/path/sequence.h"
 
+#include <bit>
+
 namespace goniochrome::render {
 
 namespace {
@@ -58,23 +60,29 @@ constexpr std::uint32_t scrambled(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
-// The first points of the sequence before they are scrambled, which are all that most paths ask for.
-constexpr std::uint32_t kTabled = 256;
+// The coordinates of the indices that have one byte other than 0, before they are scrambled. Those of any index are the
+// exclusive or of what its bytes give, so that a point of a sequence of any length takes four look-ups at most.
 using Coordinates = std::array<std::uint32_t, 4>;
+constexpr std::size_t kBytes = 4, kValues = 256;
 
-constexpr Coordinates coordinates(std::uint32_t index) {
-  Coordinates x{};
-  for (std::size_t d = 0; d < x.size(); ++d)
-    for (std::size_t k = 0; k < kBits && index >> k != 0; ++k)
-      if ((index >> k & 1U) != 0) x[d] ^= kColumns[d][k];
+constexpr std::array<std::array<Coordinates, kValues>, kBytes> kOfByte = [] {
+  std::array<std::array<Coordinates, kValues>, kBytes> tables{};
+  for (std::size_t byte = 0; byte < kBytes; ++byte) {
+    for (std::size_t value = 1; value < kValues; ++value) {
+      const auto lowest = 8 * byte + static_cast<std::size_t>(std::countr_zero(value));
+      for (std::size_t d = 0; d < 4; ++d)
+        tables[byte][value][d] = tables[byte][value & (value - 1)][d] ^ kColumns[d][lowest];
+    }
+  }
+  return tables;
+}();
+
+Coordinates coordinates(std::uint32_t index) {
+  Coordinates x = kOfByte[0][index & 0xFFU];
+  for (std::size_t byte = 1; (index >>= 8) != 0; ++byte)
+    for (std::size_t d = 0; d < 4; ++d) x[d] ^= kOfByte[byte][index & 0xFFU][d];
   return x;
 }
-
-constexpr std::array<Coordinates, kTabled> kFirst = [] {
-  std::array<Coordinates, kTabled> first{};
-  for (std::uint32_t i = 0; i < kTabled; ++i) first[i] = coordinates(i);
-  return first;
-}();
 
 }  // namespace
 
@@ -89,7 +97,7 @@ Sequence::Set::Set(std::uint64_t seed, std::uint32_t set, std::uint32_t mask) : 
 // 2^k points together.
 std::array<double, 4> Sequence::Set::point(std::uint32_t index) const {
   const std::uint32_t shuffled = reversed(scrambled(reversed(index), order_)) & mask_;
-  const Coordinates x = shuffled < kTabled ? kFirst[shuffled] : coordinates(shuffled);
+  const Coordinates x = coordinates(shuffled);
   std::array<double, 4> point{};
   for (std::size_t d = 0; d < 4; ++d) point[d] = reversed(scrambled(x[d], seeds_[d])) * 0x1p-32;
   return point;
