@@ -45,24 +45,35 @@ def fresnel(cosine, index):
     return (s * s + p * p) / 2
 
 
+def by_view(fit, view_deg):
+    """The elements that hold weights, each with its share at every angle: views linear between two, or one for all."""
+    views = fit.findall(SPACE + "view")
+    if not views:
+        return [(fit, numpy.ones(len(view_deg)))]
+    angles = [float(view.get("angle")) for view in views]
+    return [(view, numpy.interp(view_deg, angles, row)) for view, row in zip(views, numpy.eye(len(views)))]
+
+
 def lobes(path, name, light, view):
-    """f of a paint without views, in Rec.2020: goniochrome-theory(7), LOBE MODEL."""
+    """f of a paint in Rec.2020: goniochrome-theory(7), LOBE MODEL."""
     paint = next(p for p in xml.etree.ElementTree.parse(path).iter(SPACE + "paint") if p.get("name") == name)
     fit, coat = paint.find(SPACE + "lobes"), paint.find(SPACE + "coat")
     def three(node, names):
         return numpy.array([float(node.get(key)) for key in names])
-    passes = 1.0
+    passes = numpy.ones(len(light))
     if coat is not None and coat.get("index") not in (None, "none", "1"):
         passes = (1 - fresnel(light[:, 2], float(coat.get("index")))) * (1 - fresnel(view[:, 2], float(coat.get("index"))))
-    f = numpy.outer(passes * numpy.ones(len(light)), three(fit.find(SPACE + "diffuse"), "rgb"))
     about = numpy.maximum((light * view * (-1, -1, 1)).sum(1), 0)
     read = paint.find(SPACE + "gloss")  # gloss weights hold at the angle of the first reading
     usual = fresnel(numpy.cos(numpy.radians(45 if read is None else float(read.get("angle")))), 1.5)
     shine = fresnel(numpy.linalg.norm(light + view, axis=1) / 2, 1.5) / usual / light[:, 2]
-    for lobe in fit.findall(SPACE + "lobe"):
-        if lobe.get("exponent") != "mirror":
-            power = about ** float(lobe.get("exponent"))
-            f += numpy.outer(passes * power, three(lobe, ("ddr", "ddg", "ddb"))) + numpy.outer(power * shine, three(lobe, ("gr", "gg", "gb")))
+    f = numpy.zeros((len(light), 3))
+    for weights, share in by_view(fit, numpy.degrees(numpy.arccos(numpy.clip(view[:, 2], -1, 1)))):
+        f += numpy.outer(share * passes, three(weights.find(SPACE + "diffuse"), "rgb"))
+        for lobe in weights.findall(SPACE + "lobe"):
+            if lobe.get("exponent") != "mirror":
+                power = share * about ** float(lobe.get("exponent"))
+                f += numpy.outer(passes * power, three(lobe, ("ddr", "ddg", "ddb"))) + numpy.outer(power * shine, three(lobe, ("gr", "gg", "gb")))
     return f
 
 
