@@ -17,7 +17,10 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr int kFirst = 16, kMost = 1024;  // batches of a point
+constexpr int kFirst = 16;  // batches of a point
+// Points whose noise is still above what is allowed are traced on, with a fifth more than they seem to need.
+constexpr int kMoreRounds = 8;
+constexpr double kSpare = 1.2;
 // The part of the difference that the truth's own error may be, and the noise below which nobody sees any.
 constexpr double kPart = 0.1, kUnseen = 0.02;
 
@@ -92,12 +95,23 @@ class Judge {
   // `bare`, unless null, is the same without the floor of `transport`.
   void refine(const Transport& transport, const Transport* bare, const mesh::Mesh& mesh) {
     if (bare != nullptr) bare_.resize(truth_.size());
-    for (int batches = kFirst; batches <= kMost; batches *= 4) {
+    std::vector<int> batches(truth_.size());
+    for (int count = kFirst; count <= request_.batches && !is_sharp(); count *= 4) {
+      std::ranges::fill(batches, count);
       trace(transport, mesh, batches, truth_);
       if (bare != nullptr) trace(*bare, mesh, batches, bare_);
-      noise_ = percentile(&Judge::noise);
-      total_ = percentile(&Judge::total);
-      if (noise_ <= std::max(kUnseen, kPart * total_)) break;
+      judge();
+    }
+    // By now every point has met its bright paths, so that its noise tells what it needs: that falls with the root of
+    // the number of batches.
+    for (int round = 0; round < kMoreRounds && !is_sharp(); ++round) {
+      for (std::size_t i = 0; i < batches.size(); ++i) {
+        const double ratio = noise(i) / allowed_noise();
+        const double needed = kSpare * ratio * ratio * truth_[i].batches.count();
+        batches[i] = static_cast<int>(std::min<double>(request_.most_batches, needed));
+      }
+      trace(transport, mesh, batches, truth_);
+      judge();
     }
   }
 
@@ -106,7 +120,7 @@ class Judge {
     error.total.checked_pixels = static_cast<int>(truth_.size());
     error.total.de00_p95 = total_;
     error.standard_error = noise_;
-    error.sharp = noise_ <= std::max(kUnseen, kPart * total_);
+    error.sharp = is_sharp();
     for (std::size_t i = 0; i < truth_.size(); ++i) {
       const double de00 = total(i);
       error.total.de00_mean += de00 / static_cast<double>(truth_.size());
@@ -164,7 +178,17 @@ class Judge {
       truth.add(point.batch_shares(mixed(seed, static_cast<std::uint64_t>(truth.batches.count()))));
   }
 
-  void trace(const Transport& transport, const mesh::Mesh& mesh, int batches, std::vector<PointTruth>& truth) const {
+  double allowed_noise() const { return std::max(kUnseen, kPart * total_); }
+  bool is_sharp() const { return judged_ && noise_ <= allowed_noise(); }
+  void judge() {
+    judged_ = true;
+    noise_ = percentile(&Judge::noise);
+    total_ = percentile(&Judge::total);
+  }
+
+  // Every point, until it has that many batches.
+  void trace(const Transport& transport, const mesh::Mesh& mesh, const std::vector<int>& batches,
+             std::vector<PointTruth>& truth) const {
     PathOptions options;
     options.bounces = request_.bounces;
     options.correction = !request_.whole;
@@ -172,7 +196,7 @@ class Judge {
       for (std::size_t i = begin; i < end; ++i) {
         const auto [x, y] = sample_.places[i];
         const RayPoint at = ray_point(transport.rays(), mesh, *frame_.gbuffer, x, y);
-        add_batches(transport, options, at, mixed(seed(), i), batches, truth[i]);
+        add_batches(transport, options, at, mixed(seed(), i), batches[i], truth[i]);
       }
     });
   }
@@ -233,6 +257,7 @@ class Judge {
   PixelSample sample_;
   std::vector<color::Rgb> open_;          // without the mesh in the way
   std::vector<PointTruth> truth_, bare_;  // bare: without the floor; empty where there is none
+  bool judged_ = false;
   double noise_ = 0, total_ = 0, floor_beside_ = 0;
 };
 

@@ -40,6 +40,8 @@ struct TruthRequest {
   int count = 100;
   int bounces = 8;
   std::uint64_t seed = 1;
+  // Batches of 16 directions: of every pixel, and of those that are noisier than they may be.
+  int batches = 1024, most_batches = 65536;
   // The picture was drawn by paths alone, which have the mesh in the way from the beginning: all of its error is noise.
   bool whole = false;
 };

@@ -12,7 +12,9 @@ namespace {
 
 constexpr double kCrease_deg = 8;             // neighbors whose aspecular angles differ more lie on two surfaces
 constexpr double kLeastChangedShare = 0.005;  // fewer changed pixels are noise
-constexpr double kRepaintedShare = 0.5;       // more, and the whole paint is meant
+// If more are touched, the whole paint is meant, unless so many are as they were and most of those touched are edited:
+// compression and noise touch far more pixels than they edit, and a new paint leaves few as they were.
+constexpr double kRepaintedShare = 0.5, kKeptShare = 0.1, kPlainlyEdited = 0.8;
 constexpr std::size_t kRows = 16;
 
 // Where the buffers stand in a pixel.
@@ -202,7 +204,9 @@ Result<SketchPixels> sketch_pixels(const SketchInput& input) {
   const auto share = [&](std::size_t count) {
     return usable > 0 ? static_cast<double>(count) / static_cast<double>(usable) : 0;
   };
-  const bool partly = share(pixels.changed) >= kLeastChangedShare && share(changed.touched) < kRepaintedShare;
+  const bool kept = 1 - share(changed.touched) >= kKeptShare &&
+                    static_cast<double>(changed.edited) >= kPlainlyEdited * static_cast<double>(changed.touched);
+  const bool partly = share(changed.edited) >= kLeastChangedShare && (share(changed.touched) < kRepaintedShare || kept);
   pixels.changed_only = input.rule == PixelRule::kChanged || (input.rule == PixelRule::kAuto && partly);
   for (std::size_t i = 0; i < pixels.use.size(); ++i) {
     PixelUse& use = pixels.use[i];

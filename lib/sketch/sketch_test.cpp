@@ -487,6 +487,32 @@ TEST(Sketch, APictureThatATransportMadeIsComparedWithWhatTheTransportShows) {
   }
 }
 
+// More than half of what is lit is painted over, which is an edit as well. The control: a picture all of which was
+// changed a little, a quarter of it beyond five codes, as by compression.
+TEST(Sketch, AnEditOfMostOfThePictureIsAnEdit) {
+  image::AovFile ball = sphere(160, kLamp);
+  const paint::Paint before = designed({45, 10, 0}, {15, 5, 0}, 60), after = designed({80, -30, 20}, {45, -10, 5}, 60);
+  image::AovFile other = ball;
+  shade(ball, lobes(before)), shade(other, lobes(after));
+  Picture p = picture(ball), compressed = p;
+  const Picture repainted = picture(other);
+  for (int y = 0; y < 160; ++y) {
+    std::copy_n(repainted.pixel(0, y), 3 * 84, p.rgb.pixel(0, y));
+    for (int x = 0; x < 160; ++x)
+      for (int c = 0; c < 3; ++c) compressed.rgb.pixel(x, y)[c] *= x < 32 ? 1.5F : x < 144 ? 1.03F : 1.0F;
+  }
+  SketchInput in = input(ball, p);
+  in.rule = PixelRule::kAll;
+  const std::size_t usable = sketch_pixels(in)->used.size();
+  in.rule = PixelRule::kAuto;
+  const SketchPixels pixels = *sketch_pixels(in);
+  EXPECT_TRUE(pixels.changed_only);
+  EXPECT_GT(2 * pixels.changed, usable);
+  for (const std::uint32_t place : pixels.used) EXPECT_LT(place % 160, 84U);
+  EXPECT_LE(worst_de00(fit(in), *after.appearance), 1);
+  EXPECT_FALSE(sketch_pixels(input(ball, compressed))->changed_only) << "the control";
+}
+
 TEST(Sketch, SizesThatDifferAreBothNamed) {
   const image::AovFile ball = sphere(40, kLamp), larger = sphere(50, kLamp);
   const Picture p = picture(larger), own = picture(ball);

@@ -29,6 +29,9 @@ class TracedLight {
   // that were worn. Nothing where no surface of the mesh was traced.
   std::optional<std::array<color::Rgb, 3>> diffusers(int x, int y) const;
 
+  // Whether this pixel shows a floor on which the environment is laid, so that no paint is seen there.
+  bool shows_floor(int x, int y) const;
+
   // The aspecular angle (deg) at which one lamp alone would give the flakes of a paint the light that they get at this
   // pixel, relative to the matt base below them. It is the least-squares answer over the lobes of the basis, of which
   // a lamp gives the lobe of exponent E the share cos^E of the angle. Nothing as above, or where the basis has no lobe

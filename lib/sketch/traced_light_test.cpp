@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "base/angles.h"
 #include "render/gbuffer.h"
 #include "render/light_transport.h"
@@ -36,13 +38,19 @@ std::vector<double> of_even_light() {
   return shares;
 }
 
-image::AovFile buffers_of(const std::vector<Lit>& pixels) {
+// `floor`: what the last pixel shows wears these weights and is no part of the mesh.
+image::AovFile buffers_of(const std::vector<Lit>& pixels, const std::optional<color::Rgb>& floor = {}) {
   render::LobeTransport t;
   t.width = static_cast<int>(pixels.size()), t.height = 1;
   t.columns.exponents = kExponents;
   t.worn.groups = {{0}, 1};
   t.worn.weights = {std::vector<color::Rgb>(t.columns.count(), color::Rgb{0.1, 0.1, 0.1})};
   t.worn.brushed.resize(1), t.worn.coats = {paint::kNoCoat}, t.worn.emission.resize(1);
+  if (floor) {
+    t.worn.groups = {{0, 1}, 2}, t.worn.has_floor = true, t.worn.coats.push_back(paint::kNoCoat);
+    t.worn.weights.emplace_back(t.columns.count());
+    t.worn.weights.back().front() = *floor;
+  }
   t.white_luminance = kWhite;
   const auto put = [&](const color::Rgb& light) {
     for (int c = 0; c < 3; ++c) t.direct.push_back(static_cast<float>(light[c]));
@@ -58,6 +66,7 @@ image::AovFile buffers_of(const std::vector<Lit>& pixels) {
   image::AovFile file;
   file.path = "view.exr";
   file.image = {t.width, 1, 1, std::vector<float>(pixels.size(), 1.0F), {"part"}};
+  if (floor) file.image.data.back() = 2;
   file.transport = parts.header, file.layers = parts.parts;
   file.reflection = color::component_wise();
   return file;
@@ -141,6 +150,23 @@ TEST(SketchTransport, APictureOfSeveralSamplesShowsTheirMean) {
       EXPECT_NEAR(diffuse(1, place).x, bent(place), 1e-3 * bent(place)) << place;
       EXPECT_GT(mean - bent(place), 0.1) << "the control must fail";
     }
+}
+
+// A floor that shows the environment wears no paint, which the weights of a file tell. The control: a floor of paint.
+TEST(TracedLight, AFloorThatShowsTheEnvironmentHasNoPaintToPick) {
+  const std::vector<Lit> row = {{{1, 1, 1}, of_lamp(25)}, {{1, 1, 1}, of_lamp(40)}};
+  const auto laid = TracedLight::of(buffers_of(row, color::Rgb{1, 1, 1})),
+             painted = TracedLight::of(buffers_of(row, color::Rgb{0.1, 0.1, 0.1}));
+  ASSERT_TRUE(laid.ok()) << laid.error().message;
+  ASSERT_TRUE(painted.ok()) << painted.error().message;
+  EXPECT_TRUE(laid->shows_floor(1, 0));
+  EXPECT_FALSE(laid->diffusers(1, 0).has_value());
+  EXPECT_FALSE(laid->aspecular_deg(1, 0).has_value());
+  EXPECT_FALSE(laid->shows_floor(0, 0));
+  EXPECT_TRUE(laid->diffusers(0, 0).has_value());
+  EXPECT_FALSE(laid->shows_floor(2, 0)) << "outside";
+  EXPECT_FALSE(painted->shows_floor(1, 0)) << "the control";
+  EXPECT_TRUE(painted->diffusers(1, 0).has_value());
 }
 
 // The paint of buffers_of() has the weight .1 in every column, which get the light once and by their shares. The

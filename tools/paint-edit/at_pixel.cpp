@@ -72,6 +72,9 @@ Result<PlacedOptions> placed(const Options& options) {
   }
   const auto look = [&](const char* option, const std::vector<double>& place, bool of_lamp = false) -> Result<double> {
     GONIO_ASSIGN(SeenPixel pixel, seen(file, option, place));
+    if (traced && traced->shows_floor(pixel.x, pixel.y))
+      return usage_error("{} is {},{}: the floor is seen there in {}, which wears no paint: take a pixel of the mesh",
+                         option, pixel.x, pixel.y, file.path);
     if (traced && !of_lamp) {
       if (const auto angle = traced->aspecular_deg(pixel.x, pixel.y)) pixel.aspecular_deg = *angle, pixel.traced = true;
     }

@@ -42,7 +42,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .more(
           "changed are those that were edited, all are those of the paint. auto takes the changed pixels, or all of "
           "them "
-          "where none or more than half were changed, or where the picture was laid on the buffers by its edges.");
+          "where none were changed, where more than half were touched and hardly any are as they were or many changed "
+          "little, and where the picture was laid on the buffers by its edges.");
   spec.option("glare", "DEG", "15", &o.glare_deg, "aspecular angle below which a pixel shows gloss and not the paint")
       .from(0, 45);
   spec.option("max-de", "DE", "5", &o.most_de76, "median difference above which the matt color is the answer")

@@ -21,6 +21,10 @@ namespace {
 constexpr int kRounds = 4, kLastRounds = 8;
 constexpr double kLeastGain = 1e-4;  // of the cost, for another round
 constexpr int kSections = 10;        // of the interval between two values of gloss
+// Between the sharpest lobe and the mirror, the whole range of gloss lies within 2 GU. Twelve sections of this interval
+// tell the share of the mirror to half a percent.
+constexpr int kLastSections = 12;
+constexpr double kGlossReach_gu = 0.5;
 
 // d shown/d rgb, one row for each of L*, a* and b*, by differences of a thousandth.
 std::array<Vec3, 3> slopes(const SearchSamples& samples, const color::Rgb& at) {
@@ -96,6 +100,17 @@ std::vector<color::Rgb> weights_of(const formats::Basis& basis, const paint::Lob
   return w;
 }
 
+bool give_gloss(const brdf::GlossTable& table, double gloss_60_gu, paint::LobeFit& lobes) {
+  const std::vector<paint::GlossReading> reading = {{60, gloss_60_gu}};
+  const double traced = lobes.coat_index;
+  paint::LobeFit own = lobes;
+  if (const auto index = brdf::coat_index_of(reading); traced != paint::kNoCoat && index.ok() && *index > traced)
+    own = brdf::under_coat(lobes, *index);
+  if (!brdf::set_gloss(table, reading, own).ok()) return false;
+  lobes = own.coat_index == traced ? own : brdf::under_coat(own, traced);
+  return true;
+}
+
 FreeLobeFit::FreeLobeFit(const formats::Basis& basis, const brdf::GlossTable& gloss, const SearchSamples& samples,
                          const std::vector<color::Lab>& target)
     : basis_(basis), gloss_(gloss), samples_(samples), target_(target) {
@@ -125,7 +140,7 @@ Vec3 FreeLobeFit::effect(const Unknown& unknown, std::size_t sample) const {
 
 void FreeLobeFit::set_gloss_of(double gloss, std::vector<color::Rgb>& weights) const {
   paint::LobeFit lobes = lobes_of(basis_, weights, samples_.coat_index);
-  if (brdf::set_gloss(gloss_, {{60, gloss}}, lobes).ok()) weights = weights_of(basis_, lobes);
+  if (give_gloss(gloss_, gloss, lobes)) weights = weights_of(basis_, lobes);
 }
 
 double FreeLobeFit::cost(const std::vector<color::Rgb>& weights, std::vector<double>& r) const {
@@ -204,12 +219,21 @@ FreeLobes FreeLobeFit::find() const {
   for (const double gloss : values) found.push_back(with_gloss(any, gloss));
   const auto best = std::ranges::min_element(found, {}, &FreeLobes::cost);
   const auto at = static_cast<std::size_t>(best - found.begin());
-  double low = values[at > 0 ? at - 1 : 0], high = values[std::min(at + 1, values.size() - 1)];
-  FreeLobes least = *best;
+  return between(values[at > 0 ? at - 1 : 0], values[std::min(at + 1, values.size() - 1)], *best, kSections);
+}
+
+FreeLobes FreeLobeFit::sharpened(const FreeLobes& start) const {
+  const FreeLobes least = refined(start);
+  return between(std::max(0.0, least.gloss_60_gu - kGlossReach_gu), std::min(100.0, least.gloss_60_gu + kGlossReach_gu),
+                 least, kLastSections);
+}
+
+// Golden sections of the interval of gloss that holds the best so far.
+FreeLobes FreeLobeFit::between(double low, double high, FreeLobes least, int sections) const {
   const double golden = 0.5 * (std::sqrt(5.0) - 1);
   FreeLobes left = with_gloss(least, high - golden * (high - low)),
             right = with_gloss(least, low + golden * (high - low));
-  for (int section = 0; section < kSections; ++section) {
+  for (int section = 0; section < sections; ++section) {
     if (left.cost < right.cost) {
       high = right.gloss_60_gu, right = left, left = with_gloss(left, high - golden * (high - low));
     } else {

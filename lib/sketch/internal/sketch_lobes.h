@@ -42,6 +42,12 @@ color::Rgb shown_light(const Vec3* columns, const std::vector<color::Rgb>& weigh
 void differences(const SearchSamples& samples, const std::vector<color::Lab>& target,
                  const std::vector<color::Rgb>& weights, std::vector<double>& out);
 
+// Gives lobes the gloss of a meter's reading as paints get it: a reading above what their coat reads asks for a coat of
+// a higher index, which changes how the light is shared between the sharpest lobe and the mirror. The result is as it
+// looks under the coat that they had. The lobes are all those of the table in its order, then the mirror, as
+// lobes_of() makes them. Returns false, and changes nothing, where they cannot have that reading.
+bool give_gloss(const brdf::GlossTable& table, double gloss_60_gu, paint::LobeFit& lobes);
+
 struct FreeLobes {
   std::vector<color::Rgb> weights;  // in the order of the samples' columns
   double gloss_60_gu = 0;
@@ -66,6 +72,9 @@ class FreeLobeFit {
   // The best from that start, with its gloss.
   FreeLobes refined(const FreeLobes& start) const;
 
+  // The same, and the best gloss about that of the start.
+  FreeLobes sharpened(const FreeLobes& start) const;
+
  private:
   struct Unknown {
     std::size_t column;
@@ -79,6 +88,7 @@ class FreeLobeFit {
                                  bool first) const;
   FreeLobes descend(std::vector<color::Rgb> weights, std::optional<double> gloss, bool first, int rounds) const;
   FreeLobes with_gloss(const FreeLobes& start, double gloss) const;
+  FreeLobes between(double low, double high, FreeLobes least, int sections) const;
 
   const formats::Basis& basis_;
   const brdf::GlossTable& gloss_;

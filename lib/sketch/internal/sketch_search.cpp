@@ -171,14 +171,13 @@ std::vector<FreeLobes> LobeSearch::with_other_gloss(const FoundPaint& found) con
 
 double LobeSearch::cost_with_gloss(const FoundPaint& found, double gloss) const {
   paint::LobeFit lobes = lobes_of(basis_, found.weights, samples_.coat_index);
-  return brdf::set_gloss(fitters_.gloss, {{60, gloss}}, lobes).ok() ? cost(weights_of(basis_, lobes))
-                                                                    : found.search.cost;
+  return give_gloss(fitters_.gloss, gloss, lobes) ? cost(weights_of(basis_, lobes)) : found.search.cost;
 }
 
 bool LobeSearch::explains_as_well(const FoundPaint& found, double gloss) const {
   constexpr double kApart_de76 = 0.5;
   paint::LobeFit lobes = lobes_of(basis_, found.weights, samples_.coat_index);
-  if (!brdf::set_gloss(fitters_.gloss, {{60, gloss}}, lobes).ok()) return false;
+  if (!give_gloss(fitters_.gloss, gloss, lobes)) return false;
   const std::vector<color::Rgb> other = weights_of(basis_, lobes);
   double own = 0, cost = 0, all = 0;
   for (std::size_t i = 0; i < target_.size(); ++i) {
@@ -207,7 +206,7 @@ LobeSearch::Way LobeSearch::way(const std::vector<double>& start) const {
 
 FoundPaint LobeSearch::find(const LobeSearch& first) const {
   const auto enough = [](const FreeLobes& free) { return std::max(kSameCost * free.cost, kExactCost); };
-  const FreeLobes begun = first.free_lobes().find(), free = free_lobes().refined(begun);
+  const FreeLobes begun = first.free_lobes().find(), free = free_lobes().sharpened(begun);
   const paint::LobeFit lobes = lobes_of(basis_, free.weights, samples_.coat_index);
   const std::vector<double> three = numbers_of(lobes, kThree_deg, free.gloss_60_gu);
   std::vector<double> apart;  // of the face, from that of a paint of few numbers
