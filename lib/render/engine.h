@@ -15,6 +15,7 @@
 #include "render/effects.h"
 #include "render/gbuffer.h"
 #include "render/scene.h"
+#include "render/textures/texture_filter.h"
 
 namespace goniochrome::rays {
 class RayScene;
@@ -104,7 +105,7 @@ struct Workload {
   std::vector<double> lookups = {};  // of tilted lobes, the mean over the points, by each level of Effects
   int forms = 3;                     // in which the product of colors is taken; internal/product_forms.h
   int texture_lobes = 0;             // of the texture that has most
-  double texture_filter = 1;         // what a textured point takes with the filter, relative to one without it
+  FilterCost texture_filter = {};    // what a textured point takes with the filter, relative to one without it
   double speed = 1;                  // nanoseconds on this machine for each nanosecond that was counted
 };
 

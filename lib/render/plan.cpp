@@ -83,7 +83,7 @@ Workload workload_of(const Scene& scene, const Effects& all, const std::vector<V
   for (int level = 1; level <= all.tilt_level; ++level) work.lookups.push_back(mean_lookups(scene, level, probe));
   work.forms = all.reflection ? product_forms(scene.reflection).count : 3;
   work.texture_lobes = scene.layer != nullptr ? scene.layer->lobes() : 0;
-  work.texture_filter = scene.layer != nullptr ? scene.layer->filter_cost(probe) : 1;
+  if (scene.layer != nullptr) work.texture_filter = scene.layer->filter_cost(probe);
   return work;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "base/angles.h"
 #include "base/parallel.h"
@@ -147,19 +148,26 @@ const TexturePlace& place_on(const VisiblePoint& point, std::size_t level) {
 
 }  // namespace
 
-double SurfaceLayer::filter_cost(const std::vector<VisiblePoint>& points) const {
-  double sum = 0, count = 0;
+FilterCost SurfaceLayer::filter_cost(const std::vector<VisiblePoint>& points) const {
+  FilterCost sum{0, 0};
+  double count = 0;
+  SeenTexels seen;
   for (const VisiblePoint& point : points) {
     const std::vector<Laid>& laid = laid_[static_cast<std::size_t>(point.part)];
     if (!laid.empty()) ++count;
     for (std::size_t k = 0; k < laid.size(); ++k) {
       if (place_on(point, k).share == 0) continue;
       const std::size_t which = laid[k].texture;
-      const FilterProbes probes = shader_->probes(which, repeated(place_on(point, k), laid[k].repeat), 1);
-      sum += probes.count() * (1.0 + shader_->packed(which, probes.level).lobes) / (1.0 + shader_->packed(which).lobes);
+      const TexturePlace place = repeated(place_on(point, k), laid[k].repeat);
+      const FilterProbes probes = shader_->probes(which, place, 1);
+      const PackedTexture &fine = shader_->packed(which), &level = shader_->packed(which, probes.level);
+      const double lobes = (1.0 + level.lobes) / (1.0 + fine.lobes);
+      const double texels = static_cast<double>(seen.of(place, 1, probes, level.width, level.height).size());
+      sum.probes += probes.count() * lobes;
+      sum.texels += std::ceil(texels / kTexelsAtOnce) * lobes;
     }
   }
-  return count > 0 ? sum / count : 1;
+  return count > 0 ? FilterCost{sum.probes / count, sum.texels / count} : FilterCost{};
 }
 
 double SurfaceLayer::covered_texels(const VisiblePoint& point) const {
@@ -256,30 +264,23 @@ std::vector<TexturePlace> SurfaceLayer::placed(const VisiblePoint& point, std::s
 
 namespace {
 
-// The texels themselves at places that are spread over the whole footprint, up to 16 x 16, with the lobes whose bits
-// are set. Returns the part that they cover.
+// The texels themselves at 16 x 16 places that are spread over the whole footprint, or at the one in its middle where
+// the footprint lies between texels, with the lobes whose bits are set. Returns the part that they cover.
 double add_seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at, bool filtered, std::uint32_t lobes,
                        std::vector<SurfaceLayer::Piece>& pieces) {
-  const auto places = [&](const float* step) {
-    const double texels = std::hypot(step[0] * texture.width, step[1] * texture.height);
-    return filtered ? static_cast<int>(std::clamp(std::ceil(texels), 1.0, 16.0)) : 1;
-  };
-  const FilterProbes all{0, places(at.across), places(at.down)};
+  FilterProbes all;
+  if (filtered && !is_between_texels(at, 1, texture.width, texture.height)) all.across = all.down = 16;
   const Vec3 tangent = {at.tangent[0], at.tangent[1], at.tangent[2]};
+  const auto wide = static_cast<std::size_t>(texture.width);
   double covered = 0;
-  for (int i = 0; i < all.count(); ++i) {
-    const TexturePlace probe = probe_place(at, 1, all, i);
-    for (const brdf::TextureTap& tap : brdf::texture_taps(texture.width, texture.height, probe.u, probe.v)) {
-      if (tap.weight == 0) continue;
-      const double share = tap.weight / all.count();
-      pieces.push_back({brdf::sbrdf_texel(texture, tap.column, tap.row), share, tangent});
-      std::vector<brdf::LafortuneLobe>& of = pieces.back().texel.surface.lobes;
-      for (std::size_t lobe = 0; lobe < of.size(); ++lobe)
-        if ((lobes >> lobe & 1U) == 0) of[lobe].albedo = {};
-      const auto texel = static_cast<std::size_t>(tap.row) * static_cast<std::size_t>(texture.width) +
-                         static_cast<std::size_t>(tap.column);
-      covered += texture.alpha.empty() ? share : share * texture.alpha[texel];
-    }
+  SeenTexels seen;
+  for (const SeenTexels::Seen& one : seen.of(at, 1, all, texture.width, texture.height)) {
+    const auto column = static_cast<int>(one.texel % wide), row = static_cast<int>(one.texel / wide);
+    pieces.push_back({brdf::sbrdf_texel(texture, column, row), one.share, tangent});
+    std::vector<brdf::LafortuneLobe>& of = pieces.back().texel.surface.lobes;
+    for (std::size_t lobe = 0; lobe < of.size(); ++lobe)
+      if ((lobes >> lobe & 1U) == 0) of[lobe].albedo = {};
+    covered += texture.alpha.empty() ? one.share : one.share * texture.alpha[one.texel];
   }
   return covered;
 }
@@ -380,12 +381,17 @@ class SurfaceLayer::Row {
       const FilterProbes& probes = shown.probes;
       const auto weight = static_cast<float>(weight_ * shown.share);
       if (probes.level == 0 && probes.count() == 1) {
-        put_one(shown.number, 0, pixel, weight, normal, toward, *shown.place, shown.repeat);
+        prepare(shown.number, 0);
+        next(pixel, weight).put(normal, toward, *shown.place, shown.repeat);
         continue;
       }
-      for (int i = 0; i < probes.count(); ++i) {
-        put_one(shown.number, probes.level, pixel, weight / static_cast<float>(probes.count()), normal, toward,
-                probe_place(shown.repeated, scale, probes, i), 1);
+      prepare(shown.number, probes.level);
+      std::span<const SeenTexels::Seen> left =
+          texels_.of(shown.repeated, scale, probes, batch_->width(), batch_->height());
+      while (!left.empty()) {
+        const std::size_t at_once = std::min(left.size(), kTexelsAtOnce);
+        next(pixel, weight).put(normal, toward, shown.repeated.tangent, left.first(at_once));
+        left = left.subspan(at_once);
       }
     }
   }
@@ -399,13 +405,17 @@ class SurfaceLayer::Row {
   }
 
  private:
-  void put_one(std::size_t texture, int level, float* pixel, float weight, const float* normal, const float* to_viewer,
-               const TexturePlace& place, double repeat) {
-    const bool other = texture != texture_ || level != level_;
-    if (batch_ && (other || batch_->full())) flush();
-    if (!batch_ || other) batch_.emplace(shader_, texture, light_, level), texture_ = texture, level_ = level;
+  // Makes the batch one of this texture and level.
+  void prepare(std::size_t texture, int level) {
+    if (batch_ && texture == texture_ && level == level_) return;
+    flush();
+    batch_.emplace(shader_, texture, light_, level), texture_ = texture, level_ = level;
+  }
+  // The batch, which has room for one point more: a part of that pixel.
+  SbrdfShader::Batch& next(float* pixel, float weight) {
+    if (batch_->full()) flush();
     pixels_[batch_->count()] = pixel, weights_[batch_->count()] = weight;
-    batch_->put(normal, to_viewer, place, repeat);
+    return *batch_;
   }
 
   const SbrdfShader& shader_;
@@ -415,6 +425,7 @@ class SurfaceLayer::Row {
   std::size_t texture_ = 0;
   int level_ = 0;
   std::optional<SbrdfShader::Batch> batch_;
+  SeenTexels texels_;
   float* pixels_[kPointsAtOnce] = {};
   float weights_[kPointsAtOnce] = {};
 };

@@ -106,9 +106,9 @@ class SurfaceLayer {
   // where it matters which place is covered. Leaves it alone where it shows no texture or the G-buffer has no
   // triangles.
   void put_places(const Gbuffer& gbuffer, int x, int y, double scale, VisiblePoint& point) const;
-  // In how many places a textured point is shaded with the effect texture_filter, where each counts with the lobes of
-  // its level, relative to those without it: the mean over the points.
-  double filter_cost(const std::vector<VisiblePoint>& points) const;
+  // What a textured point takes with the effect texture_filter, where each place counts with the lobes of its level,
+  // relative to what it takes without it: the mean over the points.
+  FilterCost filter_cost(const std::vector<VisiblePoint>& points) const;
   // How many texels its footprint covers, 1 or more.
   double covered_texels(const VisiblePoint& point) const;
 

@@ -25,7 +25,7 @@ constexpr MapCost kCost = {.pixel = 2.5,
                            .tilted = 12,
                            .lookup = 6,
                            .pairs = true,
-                           .texture = {.point = 30, .lobe = 6, .fetches = 10, .lit = 3}};
+                           .texture = {.point = 30, .lobe = 6, .fetches = 10, .lit = 3, .each_texel_once = true}};
 
 constexpr std::size_t kBlock = 8;  // floats of a texel: two maps of four forms, or one of six
 

@@ -30,20 +30,21 @@ constexpr MapCost kCost = {.pixel = 12,
                            .tilted = 40,
                            .lookup = 60,
                            .pairs = false,
-                           .texture = {.point = 60, .lobe = 10, .fetches = 45, .lit = 6}};
+                           .texture = {.point = 60, .lobe = 10, .fetches = 45, .lit = 6, .each_texel_once = false}};
 // Of a GPU: reading the picture back is all that is felt.
-constexpr MapCost kGpuCost = {.pixel = 5,
-                              .point = 0.1,
-                              .block = 0.05,
-                              .direction = 0,
-                              .light = 0.05,
-                              .lit_lobe = 0.05,
-                              .disc_lobe = 0.1,
-                              .view = 0.05,
-                              .tilted = 0.1,
-                              .lookup = 0.1,
-                              .pairs = false,
-                              .texture = {.point = 0.3, .lobe = 0.05, .fetches = 0.1, .lit = 0.05}};
+constexpr MapCost kGpuCost = {
+    .pixel = 5,
+    .point = 0.1,
+    .block = 0.05,
+    .direction = 0,
+    .light = 0.05,
+    .lit_lobe = 0.05,
+    .disc_lobe = 0.1,
+    .view = 0.05,
+    .tilted = 0.1,
+    .lookup = 0.1,
+    .pairs = false,
+    .texture = {.point = 0.3, .lobe = 0.05, .fetches = 0.1, .lit = 0.05, .each_texel_once = false}};
 constexpr double kCompileMs = 110;
 
 }  // namespace

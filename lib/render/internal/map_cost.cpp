@@ -18,11 +18,12 @@ double mapped_point_ns(const Workload& work, const Effects& effects) {
   return effects.maps ? kMapped * directions : 0;
 }
 
-double textured_point_ns(const Effects& effects, int lobes, double filter, const TextureCost& cost) {
+double textured_point_ns(const Effects& effects, int lobes, const FilterCost& filter, const TextureCost& cost) {
   const std::uint32_t on = effects.texture_lobes & ((1U << lobes) - 1);
   const double lobe =
       cost.lobe + (effects.environment ? cost.fetches : 0) + static_cast<double>(effects.lights) * cost.lit;
-  return cost.point + (effects.texture ? 4 : 1) * (effects.texture_filter ? filter : 1) * std::popcount(on) * lobe;
+  const double places = !effects.texture_filter ? 1 : cost.each_texel_once ? filter.texels : filter.probes;
+  return cost.point + (effects.texture ? 4 : 1) * places * std::popcount(on) * lobe;
 }
 
 // Of the ray that goes on behind a pane, and of adding up what it meets.

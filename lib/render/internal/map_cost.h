@@ -9,6 +9,7 @@ namespace goniochrome::render {
 // Of a textured point: four texels around a place, each with its lobes, or the mean texel.
 struct TextureCost {
   double point, lobe, fetches, lit;  // the point, a lobe of a texel, its two fetches, its light
+  bool each_texel_once;              // however many probes of a footprint show it
 };
 
 // Nanoseconds on one core of the machine that they were measured on (2.6 GHz, AVX-512).

@@ -283,11 +283,29 @@ SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const 
   count_ = 0;
 }
 
-void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const TexturePlace& place, double repeat) {
+void SbrdfShader::Batch::put_frame(const float* normal, const float* to_viewer, const float* tangent) {
   SbrdfPoints& p = points_;
   p.nx[count_] = normal[0], p.ny[count_] = normal[1], p.nz[count_] = normal[2];
   p.vx[count_] = to_viewer[0], p.vy[count_] = to_viewer[1], p.vz[count_] = to_viewer[2];
-  p.tx[count_] = place.tangent[0], p.ty[count_] = place.tangent[1], p.tz[count_] = place.tangent[2];
+  p.tx[count_] = tangent[0], p.ty[count_] = tangent[1], p.tz[count_] = tangent[2];
+}
+
+// The kernel shades as many texels of every point; those that a point lacks have no share.
+void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const float* tangent,
+                             std::span<const SeenTexels::Seen> texels) {
+  put_frame(normal, to_viewer, tangent);
+  SbrdfPoints& p = points_;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(p.taps); ++k) {
+    const bool there = k < texels.size();
+    p.texel[k][count_] = &packed_.texels[there ? texels[k].texel * packed_.stride() : 0];
+    p.share[k][count_] = there ? texels[k].share : 0.0F;
+  }
+  ++count_;
+}
+
+void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const TexturePlace& place, double repeat) {
+  put_frame(normal, to_viewer, place.tangent);
+  SbrdfPoints& p = points_;
   if (p.taps == 1) {
     p.texel[0][count_] = packed_.texels.data();
     p.share[0][count_++] = 1;

@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "base/result.h"
@@ -98,12 +99,20 @@ class SbrdfShader {
     Batch& operator=(const Batch&) = delete;
     // `normal` and `to_viewer` on the same side, the first unit.
     void put(const float* normal, const float* to_viewer, const TexturePlace& place, double repeat);
+    // The same of up to kTexelsAtOnce texels and their shares, with the tangent of a place.
+    void put(const float* normal, const float* to_viewer, const float* tangent,
+             std::span<const SeenTexels::Seen> texels);
     int count() const { return count_; }
     bool full() const { return count_ == kPointsAtOnce; }
     // The colors of all, 4 floats each; the batch is empty again.
     const float* shade();
 
+    int width() const { return packed_.width; }  // of the texture, or its level
+    int height() const { return packed_.height; }
+
    private:
+    void put_frame(const float* normal, const float* to_viewer, const float* tangent);
+
     const PackedTexture& packed_;
     SbrdfShading shading_;
     std::vector<float> lights_, reflection_;

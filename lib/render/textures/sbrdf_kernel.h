@@ -40,6 +40,8 @@ struct SbrdfShading {
   const float* reflection = nullptr;  // k[c][d][e]; null: the component-wise product
 };
 
+constexpr std::size_t kTexelsAtOnce = 4;
+
 // Points as separate arrays. The first `count` of them are shaded; the others must hold any finite numbers and texels,
 // since the kernel computes with them as well. Each shows `taps` texels.
 struct SbrdfPoints {
@@ -47,8 +49,8 @@ struct SbrdfPoints {
   float vx[kPointsAtOnce], vy[kPointsAtOnce], vz[kPointsAtOnce];  // toward the viewer, of any length
   float tx[kPointsAtOnce], ty[kPointsAtOnce], tz[kPointsAtOnce];  // tangent, of any length and not yet level
   int taps = 0;
-  const float* texel[4][kPointsAtOnce];
-  float share[4][kPointsAtOnce];
+  const float* texel[kTexelsAtOnce][kPointsAtOnce];
+  float share[kTexelsAtOnce][kPointsAtOnce];
 };
 
 // rgba: 4 floats a point, of which the fourth has no meaning; 0 for a point that is seen from below.

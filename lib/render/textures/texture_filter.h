@@ -2,6 +2,7 @@
 // coarser map. goniochrome-theory(7), SPATIALLY VARYING SURFACES, Minification.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -27,7 +28,10 @@ std::vector<TextureLevel> texture_levels(const brdf::SbrdfTexture& texture, std:
 TexturePlace repeated(const TexturePlace& place, double repeat);
 
 // The places at which the part of a pixel is shaded that a sample stands for: a grid over its footprint, on the finest
-// level where kMostProbes of them lie no farther apart than texels.
+// level where kMostProbes of them lie no farther apart than texels. On the texture itself there are up to five more
+// along each side than texels, as long as kMostProbes are enough for that: between texels the colors are blended, and
+// in the middle of each texel the blend has an edge, which a grid as coarse as the texels misses. A footprint without
+// such an edge has one probe.
 constexpr int kMostProbes = 128;
 struct FilterProbes {
   int level = 0, across = 1, down = 1;  // level 0 is the texture itself
@@ -37,7 +41,34 @@ struct FilterProbes {
 // Footprints are `scale` times those of `place`, along each side; the texture has so many texels and levels beside
 // itself.
 FilterProbes filter_probes(const TexturePlace& place, double scale, int width, int height, int levels);
+// What the shading of footprints takes relative to that of points without footprints.
+struct FilterCost {
+  double probes = 1;  // where each probe is shaded
+  double texels = 1;  // where each texel is shaded once that any of the probes of a footprint shows
+};
 // The probe of this number.
 TexturePlace probe_place(const TexturePlace& place, double scale, const FilterProbes& probes, int number);
+// Whether a footprint lies between the middles of texels that are neighbors, where it has no edge. Its mean is then
+// the value in its middle, but for the small part of the blend that is bilinear.
+bool is_between_texels(const TexturePlace& place, double scale, int width, int height);
+
+// The texels that the probes of a footprint show, each once, with the part that it has of the whole. All probes of a
+// pixel have one normal and one viewer, so that each texel is shaded once, however many probes show it.
+class SeenTexels {
+ public:
+  struct Seen {
+    std::size_t texel = 0;  // row by row
+    float share = 0;
+  };
+  // The texture or its level has so many texels. The result is valid until the next call.
+  const std::vector<Seen>& of(const TexturePlace& place, double scale, const FilterProbes& probes, int width,
+                              int height);
+
+ private:
+  void add(std::size_t texel, double share);
+
+  std::vector<Seen> seen_;            // in the order in which the probes meet them
+  std::vector<std::uint32_t> slots_;  // number in seen_ + 1, by a hash of the texel; 0 where there is none
+};
 
 }  // namespace goniochrome::render
