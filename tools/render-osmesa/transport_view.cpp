@@ -142,6 +142,7 @@ struct ViewShader::State {
   const KeptTransport& kept;
   const render::Gbuffer& gbuffer;
   const render::Scene& scene;
+  render::BounceScaler scaler;
   std::unique_ptr<render::TransportShader> shader;  // none: not yet
   bool with_views = false;                          // of the shader
   double load_ms = 0;
@@ -158,7 +159,7 @@ struct ViewShader::State {
 };
 
 ViewShader::ViewShader(const KeptTransport& kept, const render::Gbuffer& gbuffer, const render::Scene& scene)
-    : state_(new State{kept, gbuffer, scene, nullptr}) {}
+    : state_(new State{kept, gbuffer, scene, {kept.light, render::operator_or_null(scene.reflection)}, nullptr}) {}
 ViewShader::~ViewShader() = default;
 
 Result<ShadedPaint> ViewShader::shade(const DressedMesh& dress, image::Image& picture) {
@@ -176,7 +177,7 @@ Result<ShadedPaint> ViewShader::shade(const DressedMesh& dress, image::Image& pi
   const color::ReflectionOperator* reflection = render::operator_or_null(s.scene.reflection);
   s.lay_out(shown.with_views);
   const Stopwatch judging;
-  const render::BounceScale scale = render::bounce_scale(light, shown.weights, reflection);
+  const render::BounceScale scale = s.scaler.scale(shown.weights);
   result.scale_ms = 1000 * judging.elapsed_s();
   result.scaled = scale.changed, result.bounced_de00_p95 = scale.error_p95_de00;
   const std::size_t floats = 4 * static_cast<std::size_t>(s.gbuffer.width) * static_cast<std::size_t>(s.gbuffer.height);

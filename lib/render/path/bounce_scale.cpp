@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "base/parallel.h"
 #include "render/internal/seen.h"
 
 namespace goniochrome::render {
@@ -83,103 +85,132 @@ bool gathered(const LobeTransport& t, const std::vector<Weights>& parts, std::ve
   return agree;
 }
 
-class Scaling {
- public:
-  Scaling(const LobeTransport& t, const std::vector<Weights>& parts, const std::vector<Weights>& now,
-          const color::ReflectionOperator* op)
-      : t_(t) {
-    for (const Weights& weights : t.worn.weights) worn_.emplace_back(op, weights);
-    for (const Weights& weights : now) now_.emplace_back(op, weights);
-    for (const Weights& weights : parts) parts_.emplace_back(op, weights);
-  }
+// What each group sends to a probe.
+std::vector<Arriving> arriving(const LobeTransport& t, const BounceProbe& probe, const std::vector<Products>& groups) {
+  std::vector<Arriving> result;
+  for (int g = 0; g < t.worn.groups.count; ++g)
+    result.push_back(arriving(t, probe, g, groups[static_cast<std::size_t>(g)]));
+  return result;
+}
 
-  // The mean over the probes of what each class shows in the paints worn there, before and after.
-  void add_factors(BounceScale& scale) {
-    const PaintGroups& groups = t_.worn.groups;
-    std::vector<color::Rgb> before(groups.classes()), after(groups.classes());
-    color::Rgb all_before, all_after;
-    for (const BounceProbe& probe : t_.probes) {
-      const Products& own = worn_[static_cast<std::size_t>(group_of(probe))];
-      std::vector<color::Rgb> old(groups.classes()), fresh(groups.classes());
-      color::Rgb total;
-      for (int g = 0; g < groups.count; ++g) {
-        const Arriving a = arriving(t_, probe, g, worn_[static_cast<std::size_t>(g)]);
-        const Arriving b = arriving(t_, probe, g, now_[static_cast<std::size_t>(g)]);
-        old[groups.at(g, PaintGroups::kBase)] = shown(own, a.base),
-                         fresh[groups.at(g, PaintGroups::kBase)] = shown(own, b.base);
-        old[groups.at(g, PaintGroups::kGloss)] = shown(own, a.gloss),
-                         fresh[groups.at(g, PaintGroups::kGloss)] = shown(own, b.gloss);
-        old[groups.at(g, PaintGroups::kDeeper)] = shown(own, a.deeper),
-                         fresh[groups.at(g, PaintGroups::kDeeper)] = shown(own, b.deeper);
-      }
-      for (const color::Rgb& light : old) total += light;
-      const double weight = 1 / (color::xyz_d65_from_rgb(total).Y + kDark * t_.white_luminance);
-      for (std::size_t k = 0; k < old.size(); ++k) {
-        before[k] += weight * old[k], after[k] += weight * fresh[k];
-        if (k % PaintGroups::kKinds != PaintGroups::kDeeper)
-          all_before += weight * old[k], all_after += weight * fresh[k];
-      }
-    }
-    further_ = ratio(all_after, all_before);
-    for (std::size_t k = 0; k < before.size(); ++k) {
-      scale.of_class.push_back(ratio(after[k], before[k]));
-      if (k % PaintGroups::kKinds == PaintGroups::kDeeper) scale.of_class.back() = scale.of_class.back() * further_;
-    }
-  }
-
-  // At a probe, scaled light against light by the pairs of columns. How often light was sent on that came through
-  // several surfaces is not known: once or twice, whichever is farther off.
-  double error(const BounceProbe& probe, const BounceScale& scale) const {
-    const PaintGroups& groups = t_.worn.groups;
-    const std::size_t count = t_.columns.count();
-    const Products& own = worn_[static_cast<std::size_t>(group_of(probe))];
-    const Products& paint = parts_[static_cast<std::size_t>(t_.part[probe.point])];
-    std::vector<color::Rgb> before(count), once(count), deeper(count);
-    color::Rgb weighted, all;
-    for (int g = 0; g < groups.count; ++g) {
-      const Arriving a = arriving(t_, probe, g, worn_[static_cast<std::size_t>(g)]);
-      const Arriving b = arriving(t_, probe, g, now_[static_cast<std::size_t>(g)]);
-      for (std::size_t k = 0; k < count; ++k) {
-        before[k] += a.base[k] + a.gloss[k] + a.deeper[k];
-        once[k] += b.base[k] + b.gloss[k], deeper[k] += b.deeper[k];
-      }
-      const color::Rgb kinds[] = {shown(own, a.base), shown(own, a.gloss), shown(own, a.deeper)};
-      for (std::size_t kind = 0; kind < 3; ++kind) {
-        all += kinds[kind];
-        weighted += kinds[kind] * scale.of_class[groups.at(g, static_cast<PaintGroups::Kind>(kind))];
-      }
-    }
-    const color::Rgb factor = ratio(weighted, all);
-    color::Rgb direct;
-    for (std::size_t k = 0; k < count; ++k)
-      if (!paint.dark(k)) direct += paint.of(k, t_.light(probe.point, k, false));
-    std::vector<color::Rgb> scaled(count);
-    for (std::size_t k = 0; k < count; ++k) scaled[k] = factor * before[k];
-    const color::Rgb ours = direct + shown(paint, scaled), first = direct + shown(paint, once);
-    double worst = 0;
-    color::Rgb further = further_;
-    for (int times = 1; times <= 2; ++times, further = further * further_) {
-      std::vector<color::Rgb> sent(count);
-      for (std::size_t k = 0; k < count; ++k) sent[k] = further * deeper[k];
-      worst = std::max(worst, seen_difference(ours, first + shown(paint, sent), t_.white_luminance));
-    }
-    return worst;
-  }
-
- private:
-  int group_of(const BounceProbe& probe) const {
-    return t_.worn.groups.of_part[static_cast<std::size_t>(t_.part[probe.point])];
-  }
-
-  const LobeTransport& t_;
-  std::vector<Products> worn_, now_, parts_;
-  color::Rgb further_{1, 1, 1};  // of what each surface sends on
-};
+std::vector<Products> products_of(const color::ReflectionOperator* op, const std::vector<Weights>& paints) {
+  std::vector<Products> products;
+  for (const Weights& weights : paints) products.emplace_back(op, weights);
+  return products;
+}
 
 }  // namespace
 
-BounceScale bounce_scale(const LobeTransport& t, const std::vector<Weights>& parts,
-                         const color::ReflectionOperator* reflection) {
+struct BounceScaler::State {
+  const LobeTransport& t;
+  std::optional<color::ReflectionOperator> reflection;
+  std::vector<Products> worn;                 // by group
+  std::vector<std::vector<Arriving>> before;  // probe, group: in the paints worn
+
+  const color::ReflectionOperator* op() const { return reflection ? &*reflection : nullptr; }
+  const Products& worn_at(const BounceProbe& probe) const {
+    return worn[static_cast<std::size_t>(t.worn.groups.of_part[static_cast<std::size_t>(t.part[probe.point])])];
+  }
+};
+
+namespace {
+
+constexpr std::size_t kProbesAtOnce = 8;
+
+// What the classes show at a probe in the paints worn there, before and after.
+struct OfClasses {
+  std::vector<color::Rgb> before, after;
+  double weight = 0;
+};
+
+OfClasses of_classes(const LobeTransport& t, const Products& own, const std::vector<Arriving>& before,
+                     const std::vector<Arriving>& after) {
+  const PaintGroups& groups = t.worn.groups;
+  OfClasses of{std::vector<color::Rgb>(groups.classes()), std::vector<color::Rgb>(groups.classes()), 0};
+  for (int g = 0; g < groups.count; ++g) {
+    const auto add = [&](const Arriving& light, std::vector<color::Rgb>& to) {
+      to[groups.at(g, PaintGroups::kBase)] = shown(own, light.base);
+      to[groups.at(g, PaintGroups::kGloss)] = shown(own, light.gloss);
+      to[groups.at(g, PaintGroups::kDeeper)] = shown(own, light.deeper);
+    };
+    add(before[static_cast<std::size_t>(g)], of.before), add(after[static_cast<std::size_t>(g)], of.after);
+  }
+  color::Rgb total;
+  for (const color::Rgb& light : of.before) total += light;
+  of.weight = 1 / (color::xyz_d65_from_rgb(total).Y + kDark * t.white_luminance);
+  return of;
+}
+
+// The factors of the classes, by the mean over the probes; and that of what each surface sends on.
+color::Rgb add_factors(const LobeTransport& t, const std::vector<OfClasses>& probes, BounceScale& scale) {
+  std::vector<color::Rgb> before(t.worn.groups.classes()), after(before.size());
+  color::Rgb all_before, all_after;
+  for (const OfClasses& probe : probes) {
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      before[k] += probe.weight * probe.before[k], after[k] += probe.weight * probe.after[k];
+      if (k % PaintGroups::kKinds != PaintGroups::kDeeper)
+        all_before += probe.weight * probe.before[k], all_after += probe.weight * probe.after[k];
+    }
+  }
+  const color::Rgb further = ratio(all_after, all_before);
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    scale.of_class.push_back(ratio(after[k], before[k]));
+    if (k % PaintGroups::kKinds == PaintGroups::kDeeper) scale.of_class.back() = scale.of_class.back() * further;
+  }
+  return further;
+}
+
+// At a probe, scaled light against light by the pairs of columns. How often light was sent on that came through
+// several surfaces is not known: once or twice, whichever is farther off. `paint`: that of the point now.
+double error_at(const LobeTransport& t, const BounceProbe& probe, const Products& own, const Products& paint,
+                const std::vector<Arriving>& worn, const std::vector<Arriving>& now, const BounceScale& scale,
+                const color::Rgb& of_surface) {
+  const PaintGroups& groups = t.worn.groups;
+  const std::size_t count = t.columns.count();
+  std::vector<color::Rgb> before(count), once(count), deeper(count);
+  color::Rgb weighted, all;
+  for (int g = 0; g < groups.count; ++g) {
+    const Arriving &a = worn[static_cast<std::size_t>(g)], &b = now[static_cast<std::size_t>(g)];
+    for (std::size_t k = 0; k < count; ++k) {
+      before[k] += a.base[k] + a.gloss[k] + a.deeper[k];
+      once[k] += b.base[k] + b.gloss[k], deeper[k] += b.deeper[k];
+    }
+    const color::Rgb kinds[] = {shown(own, a.base), shown(own, a.gloss), shown(own, a.deeper)};
+    for (std::size_t kind = 0; kind < 3; ++kind) {
+      all += kinds[kind];
+      weighted += kinds[kind] * scale.of_class[groups.at(g, static_cast<PaintGroups::Kind>(kind))];
+    }
+  }
+  const color::Rgb factor = ratio(weighted, all);
+  color::Rgb direct;
+  for (std::size_t k = 0; k < count; ++k)
+    if (!paint.dark(k)) direct += paint.of(k, t.light(probe.point, k, false));
+  std::vector<color::Rgb> scaled(count);
+  for (std::size_t k = 0; k < count; ++k) scaled[k] = factor * before[k];
+  const color::Rgb ours = direct + shown(paint, scaled), first = direct + shown(paint, once);
+  double worst = 0;
+  color::Rgb further = of_surface;
+  for (int times = 1; times <= 2; ++times, further = further * of_surface) {
+    std::vector<color::Rgb> sent(count);
+    for (std::size_t k = 0; k < count; ++k) sent[k] = further * deeper[k];
+    worst = std::max(worst, seen_difference(ours, first + shown(paint, sent), t.white_luminance));
+  }
+  return worst;
+}
+
+}  // namespace
+
+BounceScaler::BounceScaler(const LobeTransport& transport, const color::ReflectionOperator* reflection)
+    : state_(new State{transport, {}, {}, {}}) {
+  if (reflection != nullptr) state_->reflection = *reflection;
+}
+BounceScaler::BounceScaler(BounceScaler&&) noexcept = default;
+BounceScaler& BounceScaler::operator=(BounceScaler&&) noexcept = default;
+BounceScaler::~BounceScaler() = default;
+
+BounceScale BounceScaler::scale(const std::vector<Weights>& parts) {
+  State& s = *state_;
+  const LobeTransport& t = s.t;
   BounceScale scale;
   std::vector<Weights> now;
   const bool agree = gathered(t, parts, now);
@@ -188,12 +219,36 @@ BounceScale bounce_scale(const LobeTransport& t, const std::vector<Weights>& par
     scale.of_class.assign(t.worn.groups.classes(), {1, 1, 1});
     return scale;
   }
-  Scaling scaling(t, parts, now, reflection);
-  scaling.add_factors(scale);
+  const std::vector<Products> of_groups = products_of(s.op(), now), of_parts = products_of(s.op(), parts);
+  const auto at_probes = [&](const auto& visit) {
+    parallel_for(t.probes.size(), kProbesAtOnce, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) visit(i, t.probes[i]);
+    });
+  };
+  if (s.before.empty()) {
+    s.worn = products_of(s.op(), t.worn.weights);
+    s.before.resize(t.probes.size());
+    at_probes([&](std::size_t i, const BounceProbe& probe) { s.before[i] = arriving(t, probe, s.worn); });
+  }
+  std::vector<std::vector<Arriving>> after(t.probes.size());
+  std::vector<OfClasses> classes(t.probes.size());
+  at_probes([&](std::size_t i, const BounceProbe& probe) {
+    after[i] = arriving(t, probe, of_groups);
+    classes[i] = of_classes(t, s.worn_at(probe), s.before[i], after[i]);
+  });
+  const color::Rgb further = add_factors(t, classes, scale);
   std::vector<double> errors(static_cast<std::size_t>(t.probed), 0.0);
-  for (std::size_t i = 0; i < t.probes.size(); ++i) errors[i] = scaling.error(t.probes[i], scale);
+  at_probes([&](std::size_t i, const BounceProbe& probe) {
+    const Products& paint = of_parts[static_cast<std::size_t>(t.part[probe.point])];
+    errors[i] = error_at(t, probe, s.worn_at(probe), paint, s.before[i], after[i], scale, further);
+  });
   scale.error_p95_de00 = agree ? percentile_95(std::move(errors)) : std::numeric_limits<double>::infinity();
   return scale;
+}
+
+BounceScale bounce_scale(const LobeTransport& t, const std::vector<Weights>& parts,
+                         const color::ReflectionOperator* reflection) {
+  return BounceScaler(t, reflection).scale(parts);
 }
 
 color::Rgb bounce_factor(const LobeTransport& t, std::size_t point, const BounceScale& scale) {

@@ -2,6 +2,7 @@
 // error of that. goniochrome-theory(7), TRANSPORT.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "color/reflection.h"
@@ -17,8 +18,25 @@ struct BounceScale {
   double error_p95_de00 = 0;
 };
 
+// Asks many paints of one transport, which must outlive it: what the paints worn sent is summed up once.
+class BounceScaler {
+ public:
+  // `reflection` null: channel by channel; it must be that of the tracing.
+  BounceScaler(const LobeTransport& transport, const color::ReflectionOperator* reflection);
+  BounceScaler(BounceScaler&&) noexcept;
+  BounceScaler& operator=(BounceScaler&&) noexcept;
+  ~BounceScaler();
+
+  // As bounce_scale(). Bit-identical for any number of threads. Not for several threads at once.
+  BounceScale scale(const std::vector<std::vector<color::Rgb>>& weights);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 // For paints `weights` (by part, then by column, as column_weights() has them), of as many parts as the transport has.
-// `reflection` null: channel by channel; it must be that of the tracing.
+// `reflection` as BounceScaler takes it.
 BounceScale bounce_scale(const LobeTransport& transport, const std::vector<std::vector<color::Rgb>>& weights,
                          const color::ReflectionOperator* reflection);
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/parallel.h"
 #include "render/internal/seen.h"
 #include "render/path/path_tracer.h"
 #include "render/path/transport_shading.h"
@@ -76,6 +77,36 @@ TEST(TenPaints, FromOneTransportAreThoseThatAreTracedAnew) {
     controls += percentile_95(undone) > bound ? 1 : 0;
   }
   EXPECT_GE(controls, 8);
+}
+
+// One that is asked paint after paint sums up what the paints worn sent once. It says the same as one that is new, to
+// the last bit, by any number of threads. The control is another paint.
+TEST(TenPaints, AreScaledAsEachAlone) {
+  std::mt19937_64 random(3);
+  const paint::LobeFit cup = random_paint(random), ball = random_paint(random);
+  const Stage stage(cup, ball, kWidth, kHeight);
+  LobeTransportRequest request;
+  request.tolerance_de00 = 20, request.bounces = 2;
+  const LobeTransport t = stage.traced(request).transport;
+  const color::ReflectionOperator iso = color::iso_rgb_operator();
+  BounceScaler scaler(t, &iso);
+  BounceScale last;
+  for (const int threads : {1, 2, 5}) {
+    std::vector<std::vector<color::Rgb>> weights(5, weights_of(t.columns, random_paint(random)));
+    weights.push_back(weights_of(t.columns, ball));
+    set_threads(threads);
+    const BounceScale scale = scaler.scale(weights);
+    set_threads(1);
+    const BounceScale alone = bounce_scale(t, weights, &iso);
+    EXPECT_TRUE(scale.changed);
+    EXPECT_EQ(scale.of_class, alone.of_class);
+    EXPECT_EQ(scale.error_p95_de00, alone.error_p95_de00);
+    EXPECT_NE(scale.of_class, last.of_class) << "the control";
+    last = scale;
+  }
+  set_threads(0);
+  const std::vector<std::vector<color::Rgb>> as_worn(5, weights_of(t.columns, cup));
+  EXPECT_FALSE(scaler.scale(as_worn).changed);
 }
 
 }  // namespace

@@ -28,9 +28,10 @@ void BM_EditedPaint(benchmark::State& state) {
   std::vector<std::vector<color::Rgb>> weights(5, weights_of(t.columns, edited));
   weights.push_back(weights_of(t.columns, ball));
   image::Image picture{640, 360, 4, std::vector<float>(4UL * 640 * 360, 0.0F), {}};
+  BounceScaler scaler(t, op);
   BounceScale scale;
   for (auto _ : state) {
-    scale = bounce_scale(t, weights, op);
+    scale = scaler.scale(weights);
     shader.shade(paints, op, scale, 1, picture);
     benchmark::DoNotOptimize(picture.data.data());
   }

@@ -51,7 +51,8 @@ Result<ViewPane> ViewPane::make(std::string_view bytes, JsonReader& request) {
   const render::LobeTransport& light = view.light;
   if (pane.parts_.size() != light.worn.brushed.size())
     return input_error("the view has {} parts, and the mesh {}", light.worn.brushed.size(), pane.parts_.size());
-  pane.probes_ = render::of_probes(light);
+  pane.probes_ = std::make_unique<const render::LobeTransport>(render::of_probes(light));
+  pane.scaler_.emplace(*pane.probes_, render::operator_or_null(pane.reflection_));
   pane.full_.picture = view.beside.data.empty() ? blank(light.width, light.height) : std::move(view.beside);
   const int step = std::max(1, static_cast<int>(std::lround(static_cast<double>(light.width) / kTileWidth)));
   const render::Thinned few = render::thinned(light, step);
@@ -71,9 +72,9 @@ Result<Json> ViewPane::show(const paint::Paint& paint, const paint::LobeFit& fit
     else
       parts.push_back({&fit, paint.anisotropy.value_or(paint::Anisotropy{}), gloss_deg, paint.name, parts_[i]});
   }
-  GONIO_ASSIGN(const render::ShownPaints shown, render::shown_paints(probes_.columns, probes_.worn, parts));
+  GONIO_ASSIGN(const render::ShownPaints shown, render::shown_paints(probes_->columns, probes_->worn, parts));
   const color::ReflectionOperator* reflection = render::operator_or_null(reflection_);
-  const render::BounceScale scale = render::bounce_scale(probes_, shown.weights, reflection);
+  const render::BounceScale scale = scaler_->scale(shown.weights);
   Shaded& shaded = small ? small_ : full_;
   shaded.shader->shade(shown.paints, reflection, scale, 1, shaded.picture);
   is_small_ = small;

@@ -40,7 +40,10 @@ class ViewPane {
 
   ViewPane() = default;
 
-  render::LobeTransport probes_;  // columns, paints that were worn, and the light by which bounced light is scaled
+  // Columns, paints that were worn, and the light by which bounced light is scaled. It stays where it is when the pane
+  // is moved.
+  std::unique_ptr<const render::LobeTransport> probes_;
+  std::optional<render::BounceScaler> scaler_;
   color::ReflectionOperator reflection_;
   std::vector<std::string> parts_;
   std::vector<std::optional<paint::LobeFit>> finishes_;  // of each part; nothing where it wears the design
