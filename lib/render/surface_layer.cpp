@@ -9,6 +9,7 @@
 #include "base/angles.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
+#include "render/internal/placed_lamps.h"
 
 namespace goniochrome::render {
 
@@ -191,10 +192,12 @@ LocalPair about_normal(const Vec3& normal, const Vec3& light, const Vec3& viewer
 
 // The lobe model under a light is pi W f cos_i; the flakes' part of f, K_D and K_DD, is taken out and the map's
 // reflectance factor, pi f by definition, put in.
-color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer, bool coat) const {
+color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer, bool coat,
+                                           const Vec3& position) const {
   color::Rgb sum;
   const auto at = static_cast<std::size_t>(part);
-  for (const Light& light : scene_.lights) {
+  for (const Light& lamp : scene_.lights) {
+    const Light light = light_at(lamp, position);
     for (const DiscDirection& part_of : disc_directions(light)) {
       const auto [wi, wo] = about_normal(normal, part_of.direction, to_viewer);
       if (wi.z <= 0 || wo.z <= 0) continue;
@@ -213,8 +216,12 @@ color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const V
 namespace {
 
 SbrdfLight light_of(const Scene& scene, const Effects& effects) {
-  return {effects.environment, lights_of(scene, effects),
-          effects.reflection ? scene.reflection : color::component_wise(), true, effects.texture_lobes};
+  return {effects.environment,
+          lights_of(scene, effects),
+          effects.reflection ? scene.reflection : color::component_wise(),
+          true,
+          effects.texture_lobes,
+          effects.placed ? origin_of(*scene.mesh) : Vec3{}};
 }
 
 }  // namespace
@@ -326,7 +333,8 @@ void SurfaceLayer::add_mapped(const std::vector<VisiblePoint>& points, bool coat
                               std::vector<color::Rgb>& colors) const {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const VisiblePoint& p = points[i];
-    if (surface(p.part).color_map != nullptr) colors[i] += mapped_difference(p.part, p.normal, p.to_viewer, coat);
+    if (surface(p.part).color_map != nullptr)
+      colors[i] += mapped_difference(p.part, p.normal, p.to_viewer, coat, p.position);
   }
 }
 
@@ -350,8 +358,13 @@ void SurfaceLayer::add(const std::vector<VisiblePoint>& points, const Effects& e
       if (!(shown.share > 0)) continue;
       for (int k = 0; k < shown.probes.count(); ++k) {
         Probes& into = all[{shown.number, shown.probes.level}];
-        into.points.push_back({points[i].normal, points[i].to_viewer, points[i].part, true,
-                               probe_place(shown.repeated, 1, shown.probes, k)});
+        into.points.push_back({points[i].normal,
+                               points[i].to_viewer,
+                               points[i].part,
+                               true,
+                               probe_place(shown.repeated, 1, shown.probes, k),
+                               {},
+                               points[i].position});
         into.shares.emplace_back(i, shown.share / shown.probes.count());
       }
     }
@@ -370,7 +383,8 @@ class SurfaceLayer::Row {
       : shader_(shader), light_(light), weight_(weight), rgba_(rgba) {}
 
   // A sample covers `scale` times the footprints along each side.
-  void put(const Stack& stack, double scale, int x, int y, const float* normal, const Vec3& to_viewer) {
+  void put(const Stack& stack, double scale, int x, int y, const float* normal, const Vec3& to_viewer,
+           const std::array<float, 3>& position) {
     const float toward[3] = {static_cast<float>(to_viewer.x), static_cast<float>(to_viewer.y),
                              static_cast<float>(to_viewer.z)};
     float* pixel = rgba_.pixel(x, y);
@@ -380,12 +394,12 @@ class SurfaceLayer::Row {
       const FilterProbes& probes = shown.probes;
       const auto weight = static_cast<float>(weight_ * shown.share);
       if (probes.level == 0 && probes.count() == 1) {
-        put_one(shown.number, 0, pixel, weight, normal, toward, *shown.place, shown.repeat);
+        put_one(shown.number, 0, pixel, weight, normal, toward, position, *shown.place, shown.repeat);
         continue;
       }
       for (int i = 0; i < probes.count(); ++i) {
         put_one(shown.number, probes.level, pixel, weight / static_cast<float>(probes.count()), normal, toward,
-                probe_place(shown.repeated, scale, probes, i), 1);
+                position, probe_place(shown.repeated, scale, probes, i), 1);
       }
     }
   }
@@ -400,12 +414,12 @@ class SurfaceLayer::Row {
 
  private:
   void put_one(std::size_t texture, int level, float* pixel, float weight, const float* normal, const float* to_viewer,
-               const TexturePlace& place, double repeat) {
+               const std::array<float, 3>& position, const TexturePlace& place, double repeat) {
     const bool other = texture != texture_ || level != level_;
     if (batch_ && (other || batch_->full())) flush();
     if (!batch_ || other) batch_.emplace(shader_, texture, light_, level), texture_ = texture, level_ = level;
     pixels_[batch_->count()] = pixel, weights_[batch_->count()] = weight;
-    batch_->put(normal, to_viewer, place, repeat);
+    batch_->put(normal, to_viewer, position, place, repeat);
   }
 
   const SbrdfShader& shader_;
@@ -438,15 +452,19 @@ void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& 
         const int part = gbuffer.part(x, y);
         if (part < 0) continue;
         const PartSurface& surface = surfaces_[static_cast<std::size_t>(part)];
+        const Vec3 position = effects.placed ? mesh_point(*scene_.mesh, gbuffer, x, y).position : Vec3{};
         if (effects.maps && surface.color_map != nullptr && !surface.hides_paint()) {
-          const color::Rgb color = mapped_difference(part, gbuffer.normal(x, y), gbuffer.to_viewer(x, y), effects.coat);
+          const color::Rgb color =
+              mapped_difference(part, gbuffer.normal(x, y), gbuffer.to_viewer(x, y), effects.coat, position);
           for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] += weight * static_cast<float>(color[c]);
         }
         if (surface.texture == nullptr || !(with_textures || dims_)) continue;
         stack(part, &places[gbuffer.index(x, y)], pixels, effects, scale, seen);
         if (dims_)
           for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] *= static_cast<float>(seen.bare);
-        if (with_textures) textured->put(seen, scale, x, y, gbuffer.at(x, y), -(first + (x + 0.5) * rays.right));
+        if (with_textures)
+          textured->put(seen, scale, x, y, gbuffer.at(x, y), -(first + (x + 0.5) * rays.right),
+                        from_origin(position, light.origin));
       }
     }
     if (textured) textured->flush();

@@ -2,6 +2,7 @@
 // VARYING SURFACES; [McAllister2002] 4.1 and 6.1
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -35,6 +36,7 @@ struct SbrdfLight {
   color::ReflectionOperator reflection = color::component_wise();
   bool horizon = true;        // lobes under the environment end at the horizon
   std::uint32_t lobes = ~0U;  // by bits
+  Vec3 origin = {};           // of the positions of points, see origin_of(); for lamps at a place
 };
 
 // Segments of a row of the horizon table.
@@ -96,17 +98,21 @@ class SbrdfShader {
     Batch(const SbrdfShader& shader, std::size_t texture, const SbrdfLight& light, int level = 0);
     Batch(const Batch&) = delete;  // the kernel's tables point into it
     Batch& operator=(const Batch&) = delete;
-    // `normal` and `to_viewer` on the same side, the first unit.
-    void put(const float* normal, const float* to_viewer, const TexturePlace& place, double repeat);
+    // `normal` and `to_viewer` on the same side, the first unit; the position from SbrdfLight::origin.
+    void put(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
+             const TexturePlace& place, double repeat);
     int count() const { return count_; }
     bool full() const { return count_ == kPointsAtOnce; }
     // The colors of all, 4 floats each; the batch is empty again.
     const float* shade();
 
    private:
+    void group_texels();
+
     const PackedTexture& packed_;
     SbrdfShading shading_;
     std::vector<float> lights_, reflection_;
+    std::vector<PlacedLamp> placed_;
     SbrdfPoints points_;
     int count_ = 0;
     alignas(64) float rgba_[4 * kPointsAtOnce];
@@ -117,7 +123,8 @@ class SbrdfShader {
   void make_horizon(double low, double high);
   PackedTexture pack(const brdf::SbrdfTexture& texture) const;
   PackedTexture pack(const TextureLevel& level) const;
-  void pack_lobe(const brdf::LafortuneLobe& lobe, float* to) const;
+  // Its color relative to an albedo.
+  void pack_lobe(const brdf::LafortuneLobe& lobe, double largest, float* to) const;
 
   struct Levels {
     std::mutex mutex;

@@ -60,6 +60,7 @@ std::vector<TextureLevel> texture_levels(const brdf::SbrdfTexture& texture, std:
 TexturePlace repeated(const TexturePlace& place, double repeat) {
   constexpr double kFarthest = 1e30;  // which a float and its multiples hold
   TexturePlace result = place;
+  if (repeat == 1 && std::max(std::abs(place.u), std::abs(place.v)) <= 1) return result;
   for (float* value : {&result.u, &result.v, &result.across[0], &result.across[1], &result.down[0], &result.down[1]})
     *value = static_cast<float>(std::clamp(repeat * *value, -kFarthest, kFarthest));
   return result;
@@ -80,8 +81,12 @@ double stretch(double texels, int count, double size) {
 }  // namespace
 
 FilterProbes filter_probes(const TexturePlace& place, double scale, int width, int height, int levels) {
-  const auto texels = [&](const float* step) { return scale * std::hypot(step[0] * width, step[1] * height); };
+  const auto texels = [&](const float* step) {
+    const double x = scale * step[0] * width, y = scale * step[1] * height;
+    return std::sqrt(x * x + y * y);
+  };
   const double across = texels(place.across), down = texels(place.down);
+  if (across <= 1 && down <= 1) return {};
   const auto probes = [](double along) { return static_cast<int>(std::clamp(std::ceil(along), 1.0, 1e4)); };
   FilterProbes result;
   double size = 1;  // of a texel of the level
