@@ -33,6 +33,7 @@ SurfaceFrame surface_frame(const SbrdfTexel& texel, const Vec3& normal, const Ve
 namespace {
 
 int wrapped(double index, int n) {
+  if (index >= 0 && index < n) return static_cast<int>(index);
   const double rest = std::fmod(index, n);
   return static_cast<int>(rest < 0 ? rest + n : rest) % n;
 }

@@ -194,7 +194,7 @@ TEST(DiscLamps, LampAtAPlaceFallsWithTheSquareOfTheDistance) {
   EXPECT_NEAR(std::sin(near.radius_rad), 2 * std::sin(light.radius_rad), 1e-12);
   EXPECT_NEAR(length(near.radiance() - light.radiance()), 0, 1e-9 * light.radiance().x);
   EXPECT_NEAR(side.direction.x, -1, 1e-12);
-  EXPECT_TRUE(needs_rays(lit(glossy(6), light)));
+  EXPECT_TRUE(has_placed_lamps(lit(glossy(6), light)));
 }
 
 mesh::Mesh floor_and_edge() {

@@ -195,6 +195,7 @@ Effects effects_of(const Scene& scene) {
   const bool discs = std::ranges::any_of(scene.lights, [](const Light& light) { return light.radius_rad > 0; });
   effects.mirror = (effects.environment || discs) && has_mirror(scene.paints);
   effects.lights = scene.lights.size();
+  effects.placed = has_placed_lamps(scene);
   effects.background = scene.background;
   bool gloss = effects.mirror;
   for (const double exponent : lobe_exponents(scene.paints)) {

@@ -59,6 +59,7 @@ struct Effects {
   bool reflection = false;      // the scene's reflection operator in place of the component-wise product
   bool panes = false;           // what lies behind panes; else they mirror before black
   std::size_t lights = 0;
+  bool placed = false;   // some of them stand at a place
   bool extent = false;   // lamps as discs, which lobes and the mirror see; else as points
   RayEffects rays = {};  // effects_of() leaves them out, since no engine with prefiltered maps draws them by itself
   double ray_noise_de00 = 0.25;    // of the picture, one standard deviation at 95 of 100 points

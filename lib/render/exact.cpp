@@ -137,7 +137,7 @@ std::vector<color::Rgb> reference_radiance(const std::vector<SurfacePoint>& poin
     gather(around, gatherers);
     for (std::size_t i = begin; i < end; ++i) {
       Gatherer& gatherer = gatherers[i - begin];
-      for (const Light& light : lights) gatherer.add_light(light);
+      for (const Light& light : lights) gatherer.add_light(light_at(light, points[i].position));
       if (env != nullptr) {
         const float* texel = env->lookup(gatherer.reflected());
         gatherer.add_mirror({texel[0], texel[1], texel[2]});
@@ -160,7 +160,7 @@ std::vector<color::Rgb> textured_radiance(const std::vector<TexturedPoint>& poin
       gatherers.emplace_back(points[i], reflection, texel_rad, around.most_spread);
     gather(around, gatherers);
     for (std::size_t i = begin; i < end; ++i) {
-      for (const Light& light : lights) gatherers[i - begin].add_light(light);
+      for (const Light& light : lights) gatherers[i - begin].add_light(light_at(light, points[i].position));
       radiance[i] = gatherers[i - begin].sum();
     }
   });
@@ -203,7 +203,8 @@ void put_textured(const Scene& scene, const std::vector<VisiblePoint>& points, c
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!is_textured(scene, points[i].part)) continue;
-    textured.push_back({points[i].normal, points[i].to_viewer, scene.layer->place(points[i], i, effects)});
+    textured.push_back(
+        {points[i].normal, points[i].to_viewer, scene.layer->place(points[i], i, effects), points[i].position});
     numbers.push_back(i);
   }
   const std::vector<color::Rgb> shown =
@@ -248,7 +249,7 @@ std::vector<color::Rgb> exact_radiance(const std::vector<VisiblePoint>& points, 
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto part = static_cast<std::size_t>(points[i].part);
     if (hides_paint(scene, points[i].part)) continue;
-    surface.push_back({points[i].normal, points[i].to_viewer, &paints[part], &models[part]});
+    surface.push_back({points[i].normal, points[i].to_viewer, &paints[part], &models[part], points[i].position});
     numbers.push_back(i);
   }
   const std::vector<color::Rgb> plain =
@@ -273,7 +274,7 @@ PixelSample sampled_pixels(const Gbuffer& g, const Scene& scene, int count, std:
   for (const std::size_t i : drawn(visible.size(), static_cast<std::size_t>(count), seed)) {
     const auto [x, y] = visible[i];
     sample.places.push_back(visible[i]);
-    sample.points.push_back(g.point(x, y, places));
+    sample.points.push_back(g.point(x, y, places, scene.mesh));
   }
   return sample;
 }

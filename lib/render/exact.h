@@ -36,6 +36,7 @@ struct SurfacePoint {
   Vec3 normal, to_viewer;  // unit, on the same side
   const paint::LobeFit* paint = nullptr;
   const ExactModel* model = nullptr;  // null: that of a bare lobe model, the mirror with its Fresnel reflectance
+  Vec3 position = {};                 // for lamps at a place
 };
 
 // The light from all around, and how finely it is summed.
@@ -63,6 +64,7 @@ std::vector<color::Rgb> reference_radiance(const std::vector<SurfacePoint>& poin
 struct TexturedPoint {
   Vec3 normal, to_viewer;
   SurfaceLayer::Place place;
+  Vec3 position = {};
 };
 
 // The same for textures: the integral of the blended texels' f L cos_i. `reflection` null: component-wise.

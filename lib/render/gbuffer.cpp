@@ -17,8 +17,9 @@ Vec3 Gbuffer::normal(int x, int y) const {
   return normalized({n[0], n[1], n[2]});
 }
 
-VisiblePoint Gbuffer::point(int x, int y, const std::vector<TexturePlace>& places) const {
+VisiblePoint Gbuffer::point(int x, int y, const std::vector<TexturePlace>& places, const mesh::Mesh* mesh) const {
   VisiblePoint point{normal(x, y), to_viewer(x, y), part(x, y)};
+  if (mesh != nullptr && !triangles.empty()) point.position = mesh_point(*mesh, *this, x, y).position;
   if (places.empty()) return point;
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   point.placed = true, point.place = places[index(x, y)];

@@ -35,6 +35,7 @@ struct VisiblePoint {
   bool placed = false;  // whether its place on a texture is known
   TexturePlace place = {};
   std::vector<TexturePlace> over = {};  // on the textures that lie over that of `place`, the uppermost last
+  Vec3 position = {};                   // on the mesh, for lamps at a place
 };
 
 // What a G-buffer has in the place of a triangle's number where the mesh is not seen.
@@ -55,8 +56,10 @@ struct Gbuffer {
   Vec3 normal(int x, int y) const;
   Vec3 to_viewer(int x, int y) const { return -rays.direction(x + 0.5, y + 0.5); }
   // What is seen at this pixel, with its place on each texture that `places` tells of: as many a pixel as there are,
-  // those of all pixels on one texture after those on the texture below.
-  VisiblePoint point(int x, int y, const std::vector<TexturePlace>& places = {}) const;
+  // those of all pixels on one texture after those on the texture below. Its position is that on the mesh, if that is
+  // given and the buffer has triangles.
+  VisiblePoint point(int x, int y, const std::vector<TexturePlace>& places = {},
+                     const mesh::Mesh* mesh = nullptr) const;
 };
 
 // A point of a mesh, in the mesh's own coordinates.

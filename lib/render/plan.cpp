@@ -403,9 +403,10 @@ std::vector<ProbePixel> probe_pixels(const std::vector<std::shared_ptr<const Gbu
   return pixels;
 }
 
-std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count) {
+std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count,
+                                       const mesh::Mesh* mesh) {
   std::vector<VisiblePoint> points;
-  for (const auto& [g, x, y] : probe_pixels(gbuffers, count)) points.push_back(g->point(x, y));
+  for (const auto& [g, x, y] : probe_pixels(gbuffers, count)) points.push_back(g->point(x, y, {}, mesh));
   return points;
 }
 
@@ -414,7 +415,7 @@ namespace {
 // With the footprints on textures that one of so many samples of a pixel has; see SurfaceLayer::put_places().
 std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count,
                                        const Scene& scene, int samples) {
-  std::vector<VisiblePoint> points = probe_points(gbuffers, count);
+  std::vector<VisiblePoint> points = probe_points(gbuffers, count, scene.mesh);
   if (scene.layer == nullptr || !scene.layer->textured()) return points;
   std::size_t number = 0;
   for (const ProbePixel& pixel : probe_pixels(gbuffers, count)) {

@@ -128,7 +128,8 @@ struct ProbePixel {
 };
 std::vector<ProbePixel> probe_pixels(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count);
 // The points that they show.
-std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count);
+std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count,
+                                       const mesh::Mesh* mesh = nullptr);
 
 // The scene as far as it is seen: paints of parts that no G-buffer shows are bare, so that nothing is loaded for them.
 // Behind panes anything may be seen.

@@ -146,9 +146,11 @@ Engine& Renderer::State::engine_of(const EngineInfo& info) {
 
 Result<void> Renderer::State::can_shade(const Scene& wanted, const Engine& by) const {
   if (needs_rays(wanted) && !by.info().traces_rays)
-    return usage_error(
-        "the engine {} draws neither floors nor parts that shine nor lamps at a place: take the engine path",
-        by.info().name);
+    return usage_error("the engine {} draws neither floors nor parts that shine: take the engine path", by.info().name);
+  if (has_placed_lamps(wanted) && !by.info().draws_placed_lamps)
+    return usage_error("the engine {} draws no lamps at a place: take cpu, gl or path", by.info().name);
+  if (has_placed_lamps(wanted) && given)
+    return usage_error("a lamp at a place needs positions, which a G-buffer that is given does not have");
   GONIO_TRY(by.can_shade(wanted));
   if (has_panes(wanted) && given)
     return usage_error(
@@ -234,7 +236,7 @@ std::shared_ptr<const Gbuffer> Renderer::State::gbuffer(int sample) {
   std::shared_ptr<Gbuffer>& g = kept[place];
   if (!g) g = std::make_shared<Gbuffer>();
   // Triangles of samples are memory that only textures, and engines that need the mesh, make use of.
-  const bool with_triangles = sample == 0 || effects.rays.any() || effects.panes ||
+  const bool with_triangles = sample == 0 || effects.rays.any() || effects.panes || effects.placed ||
                               (engine != nullptr && engine->info().needs_mesh) ||
                               (scene.layer != nullptr && scene.layer->textured());
   const bool complete = g->width != 0 && (!with_triangles || !g->triangles.empty());

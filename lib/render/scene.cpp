@@ -24,8 +24,11 @@ double luminance(const color::Rgb& rgb) {
 }  // namespace
 
 bool needs_rays(const Scene& scene) {
-  return scene.ground || std::ranges::any_of(scene.emission, [](const color::Rgb& e) { return e != color::Rgb{}; }) ||
-         std::ranges::any_of(scene.lights, [](const Light& light) { return light.place.has_value(); });
+  return scene.ground || std::ranges::any_of(scene.emission, [](const color::Rgb& e) { return e != color::Rgb{}; });
+}
+
+bool has_placed_lamps(const Scene& scene) {
+  return std::ranges::any_of(scene.lights, [](const Light& light) { return light.place.has_value(); });
 }
 
 color::Rgb Light::radiance() const {
@@ -42,8 +45,7 @@ Light light_at(const Light& light, const Vec3& position) {
   const double distance = length(toward), radius = light.place->distance * math::sin(light.radius_rad);
   Light seen = light;
   seen.place.reset();
-  // A point lamp has no surface that a point of the mesh could touch; there it is as bright as that close by.
-  const double least = std::max(radius, 1e-6 * light.place->distance), far = std::max(distance, least);
+  const double least = std::max(radius, kNearestPoint * light.place->distance), far = std::max(distance, least);
   if (distance > 0) seen.direction = (1 / distance) * toward;
   const double closer = light.place->distance / far;
   seen.white = closer * closer * light.white;

@@ -32,7 +32,10 @@ struct Light {
   bool meets(const Vec3& toward) const;
 };
 
-// The lamp as it is seen from a point of the mesh: without a place. Within the lamp it fills half of the sphere.
+// The lamp as it is seen from a point of the mesh: without a place. Within the lamp it fills half of the sphere. A
+// point lamp has no surface that a point of the mesh could touch: nearer than this part of its distance it grows no
+// brighter.
+constexpr double kNearestPoint = 1e-6;
 Light light_at(const Light& light, const Vec3& position);
 
 // Directions to parts of a disc that are alike and small enough to be a point each, for what changes slowly: the middle
@@ -83,9 +86,11 @@ struct Scene {
   std::vector<bool> panes = {};
 };
 
-// Whether the scene has what only engines that trace rays can draw: a floor, parts that shine by themselves, or lamps
-// at a place.
+// Whether the scene has what only engines that trace rays can draw: a floor, or parts that shine by themselves.
 bool needs_rays(const Scene& scene);
+
+// Whether any lamp stands at a place, so that its direction and its light are others at each point of the mesh.
+bool has_placed_lamps(const Scene& scene);
 
 // The exponents (finite, ascending) of the lobes with any weight, over all paints.
 std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints);

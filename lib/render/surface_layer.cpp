@@ -10,6 +10,7 @@
 #include "base/angles.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
+#include "render/internal/placed_lamps.h"
 
 namespace goniochrome::render {
 
@@ -199,10 +200,12 @@ LocalPair about_normal(const Vec3& normal, const Vec3& light, const Vec3& viewer
 
 // The lobe model under a light is pi W f cos_i; the flakes' part of f, K_D and K_DD, is taken out and the map's
 // reflectance factor, pi f by definition, put in.
-color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer, bool coat) const {
+color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer, bool coat,
+                                           const Vec3& position) const {
   color::Rgb sum;
   const auto at = static_cast<std::size_t>(part);
-  for (const Light& light : scene_.lights) {
+  for (const Light& lamp : scene_.lights) {
+    const Light light = light_at(lamp, position);
     for (const DiscDirection& part_of : disc_directions(light)) {
       const auto [wi, wo] = about_normal(normal, part_of.direction, to_viewer);
       if (wi.z <= 0 || wo.z <= 0) continue;
@@ -221,8 +224,12 @@ color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const V
 namespace {
 
 SbrdfLight light_of(const Scene& scene, const Effects& effects) {
-  return {effects.environment, lights_of(scene, effects),
-          effects.reflection ? scene.reflection : color::component_wise(), true, effects.texture_lobes};
+  return {effects.environment,
+          lights_of(scene, effects),
+          effects.reflection ? scene.reflection : color::component_wise(),
+          true,
+          effects.texture_lobes,
+          effects.placed ? origin_of(*scene.mesh) : Vec3{}};
 }
 
 }  // namespace
@@ -327,7 +334,8 @@ void SurfaceLayer::add_mapped(const std::vector<VisiblePoint>& points, bool coat
                               std::vector<color::Rgb>& colors) const {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const VisiblePoint& p = points[i];
-    if (surface(p.part).color_map != nullptr) colors[i] += mapped_difference(p.part, p.normal, p.to_viewer, coat);
+    if (surface(p.part).color_map != nullptr)
+      colors[i] += mapped_difference(p.part, p.normal, p.to_viewer, coat, p.position);
   }
 }
 
@@ -351,8 +359,13 @@ void SurfaceLayer::add(const std::vector<VisiblePoint>& points, const Effects& e
       if (!(shown.share > 0)) continue;
       for (int k = 0; k < shown.probes.count(); ++k) {
         Probes& into = all[{shown.number, shown.probes.level}];
-        into.points.push_back({points[i].normal, points[i].to_viewer, points[i].part, true,
-                               probe_place(shown.repeated, 1, shown.probes, k)});
+        into.points.push_back({points[i].normal,
+                               points[i].to_viewer,
+                               points[i].part,
+                               true,
+                               probe_place(shown.repeated, 1, shown.probes, k),
+                               {},
+                               points[i].position});
         into.shares.emplace_back(i, shown.share / shown.probes.count());
       }
     }
@@ -371,7 +384,8 @@ class SurfaceLayer::Row {
       : shader_(shader), light_(light), weight_(weight), rgba_(rgba) {}
 
   // A sample covers `scale` times the footprints along each side.
-  void put(const Stack& stack, double scale, int x, int y, const float* normal, const Vec3& to_viewer) {
+  void put(const Stack& stack, double scale, int x, int y, const float* normal, const Vec3& to_viewer,
+           const std::array<float, 3>& position) {
     const float toward[3] = {static_cast<float>(to_viewer.x), static_cast<float>(to_viewer.y),
                              static_cast<float>(to_viewer.z)};
     float* pixel = rgba_.pixel(x, y);
@@ -382,7 +396,7 @@ class SurfaceLayer::Row {
       const auto weight = static_cast<float>(weight_ * shown.share);
       if (probes.level == 0 && probes.count() == 1) {
         prepare(shown.number, 0);
-        next(pixel, weight).put(normal, toward, *shown.place, shown.repeat);
+        next(pixel, weight).put(normal, toward, position, *shown.place, shown.repeat);
         continue;
       }
       prepare(shown.number, probes.level);
@@ -390,7 +404,7 @@ class SurfaceLayer::Row {
           texels_.of(shown.repeated, scale, probes, batch_->width(), batch_->height());
       while (!left.empty()) {
         const std::size_t at_once = std::min(left.size(), kTexelsAtOnce);
-        next(pixel, weight).put(normal, toward, shown.repeated.tangent, left.first(at_once));
+        next(pixel, weight).put(normal, toward, position, shown.repeated.tangent, left.first(at_once));
         left = left.subspan(at_once);
       }
     }
@@ -449,15 +463,19 @@ void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& 
         const int part = gbuffer.part(x, y);
         if (part < 0) continue;
         const PartSurface& surface = surfaces_[static_cast<std::size_t>(part)];
+        const Vec3 position = effects.placed ? mesh_point(*scene_.mesh, gbuffer, x, y).position : Vec3{};
         if (effects.maps && surface.color_map != nullptr && !surface.hides_paint()) {
-          const color::Rgb color = mapped_difference(part, gbuffer.normal(x, y), gbuffer.to_viewer(x, y), effects.coat);
+          const color::Rgb color =
+              mapped_difference(part, gbuffer.normal(x, y), gbuffer.to_viewer(x, y), effects.coat, position);
           for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] += weight * static_cast<float>(color[c]);
         }
         if (surface.texture == nullptr || !(with_textures || dims_)) continue;
         stack(part, &places[gbuffer.index(x, y)], pixels, effects, scale, seen);
         if (dims_)
           for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] *= static_cast<float>(seen.bare);
-        if (with_textures) textured->put(seen, scale, x, y, gbuffer.at(x, y), -(first + (x + 0.5) * rays.right));
+        if (with_textures)
+          textured->put(seen, scale, x, y, gbuffer.at(x, y), -(first + (x + 0.5) * rays.right),
+                        from_origin(position, light.origin));
       }
     }
     if (textured) textured->flush();

@@ -123,7 +123,8 @@ class SurfaceLayer {
 
   // The color map's part at one point: radiance under the scene's lights less that of the paint's flake lobes, drawn
   // with the effect `coat` or without it.
-  color::Rgb mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer, bool coat = true) const;
+  color::Rgb mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer, bool coat = true,
+                               const Vec3& position = {}) const;
 
   // Adds to the colors of these points what color maps change under the scene's lights.
   void add_mapped(const std::vector<VisiblePoint>& points, bool coat, std::vector<color::Rgb>& colors) const;

@@ -95,8 +95,8 @@ void add_light(cli::ToolSpec& spec, Options& o) {
           "the lamp spans, from 0 to 180, and 0.53 as that of the sun if not given. The lamp is a disc of even "
           "radiance, and a wider one sends as much light as a narrow one. Its highlight and its mirror image are those "
           "of the disc; with the extent 0 it is a point, which has no mirror image. A lamp at a place is a sphere, has "
-          "that extent and that white in the middle of the mesh, and its light falls with the square of the distance; "
-          "the engine path draws it.");
+          "that extent and that white in the middle of the mesh, and its light falls with the square of the distance. "
+          "auto takes the engine path for it. cpu and gl draw it on textures, and on paint if it is a point, @0.");
   spec.option("emit", "PART=LIGHT", "Lamp=20,18,15", &o.emissions, "make a part or material shine by itself")
       .more(
           "LIGHT is the radiance of both sides of the part, beside what its paint reflects: R,G,B in linear Rec.2020, "
@@ -230,7 +230,8 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
             "allows, and draws every effect. At the default tolerance it takes several hundred times as long as the "
             "others, and a brushed paint takes another 50 times as long; --explain predicts the time. To pictures of "
             "these three, what the mesh does to light is added by rays, see --effects. path also draws parts that "
-            "shine, lamps at a place and floors that wear a paint. It takes the light from the image that the "
+            "shine, lamps at a place with their extent and floors that wear a paint. It takes the light from the image "
+            "that the "
             "environment was made from, and needs neither prefiltered maps nor OpenGL. It draws samples until the "
             "noise of the picture, estimated from them, is within --tolerance: that is the 95th percentile, over the "
             "visible pixels, of "

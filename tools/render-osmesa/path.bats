@@ -179,7 +179,7 @@ refused() { # STATUS TEXT ARGUMENTS...
 }
 
 @test "what does not go together is refused" {
-  refused 2 '--engine cpu draws neither parts that shine nor lamps at a place nor floors that wear a paint' $table --env even.env.exr --engine cpu --floor paints.xml#gray
+  refused 2 '--engine cpu draws neither parts that shine nor floors that wear a paint' $table --env even.env.exr --engine cpu --floor paints.xml#gray
   refused 2 '--engine gl draws neither parts that shine nor' $table --env even.env.exr --engine gl --emit Lamp=1,1,1
   refused 2 '--emit is "Lamp=1,1": write PART=R,G,B' $table --emit Lamp=1,1
   refused 2 '--emit is "Lamp=1,-1,1": light cannot be negative' $table --emit Lamp=1,-1,1

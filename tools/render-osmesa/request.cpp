@@ -79,18 +79,17 @@ Result<Request> request_of(const Options& options) {
   GONIO_ASSIGN(const FloorRequest named, parse_floor(floor, false));
   const bool has_floor = named.kind != FloorRequest::Kind::kNone;
   const bool places = std::ranges::any_of(request.lights, [](const render::Light& l) { return l.place.has_value(); });
-  // Only one engine has parts that shine, lamps at a place, floors that wear a paint, and floors where no effects of
-  // rays are drawn.
+  // Only one engine has parts that shine, floors that wear a paint, and floors where no effects of rays are drawn. It
+  // also draws the extent of lamps at a place on every paint.
   const bool spectral = options.spectral == "on";
-  const bool wants_rays = !request.emissions.empty() || places || spectral ||
-                          named.kind == FloorRequest::Kind::kPaint ||
+  const bool wants_rays = !request.emissions.empty() || spectral || named.kind == FloorRequest::Kind::kPaint ||
                           (has_floor && render::leave_out_rays(options.effects));
   const char* of_rays = !request.emissions.empty() ? "emit"
-                        : places                   ? "light place:..."
                         : spectral                 ? "spectral on"
+                        : places && !wants_rays    ? "light place:..."
                                                    : "floor";
   const auto tracer = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->traces_rays; });
-  const std::string engine = options.engine == "auto" && wants_rays ? (*tracer)->name : options.engine;
+  const std::string engine = options.engine == "auto" && (wants_rays || places) ? (*tracer)->name : options.engine;
   if (engine != "auto") {
     GONIO_ASSIGN(request.engine, render::engine_named(engine));
     request.plan.engine = engine;
@@ -101,15 +100,13 @@ Result<Request> request_of(const Options& options) {
   GONIO_ASSIGN(request.floor, parse_floor(floor, options.background == "env" && (traces || !options.env.empty())));
   request.floor_named = has_floor;
   if (wants_rays && !traces)
-    return usage_error(
-        "--engine {} draws neither parts that shine nor lamps at a place nor {}: leave out --{}, or "
-        "take --engine path",
-        options.engine,
-        named.kind == FloorRequest::Kind::kPaint ? "floors that wear a paint"
-        : spectral                               ? "light in bands"
-                                                 : "floors without effects of rays",
-        of_rays);
-  if ((wants_rays || has_floor) && !options.gbuffer.empty())
+    return usage_error("--engine {} draws neither parts that shine nor {}: leave out --{}, or take --engine path",
+                       options.engine,
+                       named.kind == FloorRequest::Kind::kPaint ? "floors that wear a paint"
+                       : spectral                               ? "light in bands"
+                                                                : "floors without effects of rays",
+                       of_rays);
+  if ((wants_rays || places || has_floor) && !options.gbuffer.empty())
     return usage_error("--{} needs the mesh: --gbuffer holds one view of surfaces without it", of_rays);
   if (!options.split.empty() && options.check > 0) return usage_error("--split and --check exclude each other");
   if (options.print_shader && options.output == "-")

@@ -74,6 +74,8 @@ class Batch {
     std::fill_n(p.vx, kPointsAtOnce, 0.0F), std::fill_n(p.vy, kPointsAtOnce, 0.0F),
         std::fill_n(p.vz, kPointsAtOnce, 1.0F);
     std::fill_n(p.part, kPointsAtOnce, 0);
+    std::fill_n(p.px, kPointsAtOnce, 0.0F), std::fill_n(p.py, kPointsAtOnce, 0.0F),
+        std::fill_n(p.pz, kPointsAtOnce, 0.0F);
   }
 
   bool full() const { return count_ == kPointsAtOnce; }
@@ -81,11 +83,13 @@ class Batch {
   std::size_t index(int i) const { return index_[i]; }
   const float* rgba(int i) const { return rgba_ + 4 * i; }
 
-  void add(std::size_t index, const float* normal, const float* to_viewer, int part) {
+  void add(std::size_t index, const float* normal, const float* to_viewer, int part,
+           const std::array<float, 3>& position = {}) {
     PointArrays& p = points_;
     p.nx[count_] = normal[0], p.ny[count_] = normal[1], p.nz[count_] = normal[2];
     p.vx[count_] = to_viewer[0], p.vy[count_] = to_viewer[1], p.vz[count_] = to_viewer[2];
     p.part[count_] = part;
+    p.px[count_] = position[0], p.py[count_] = position[1], p.pz[count_] = position[2];
     index_[count_++] = index;
   }
   void shade() {
@@ -115,6 +119,7 @@ const EngineInfo CpuEngine::kInfo = {
     .traces_rays = false,
     .needs_opengl = false,
     .needs_mesh = false,
+    .draws_placed_lamps = true,
     .make = [](Sight&) -> std::unique_ptr<Engine> { return std::make_unique<CpuEngine>(); }};
 
 InterleavedMaps CpuEngine::Stack::maps() const {
@@ -224,6 +229,10 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
     to += shift_floats;
   }
   shading_.weights = weights_.data();
+  bare_.clear();
+  for (const paint::LobeFit& paint : scene.paints) {
+    bare_.push_back(paint.diffuse == color::Rgb{} && paint.lobes.empty() && paint.views.empty() && paint.tilts.empty());
+  }
   set_lights(scene, effects);
   set_tilts(scene, effects);
   tilt_store_.load_paints(scene, effects);
@@ -253,6 +262,10 @@ void CpuEngine::set_lights(const Scene& scene, const Effects& effects) {
   shading_.lit_diffuse = effects.diffuse;
   shading_.fresnel = effects.fresnel;
   shading_.coat = effects.coat;
+  mesh_ = effects.placed ? scene.mesh : nullptr;
+  origin_ = mesh_ != nullptr ? origin_of(*mesh_) : Vec3{};
+  placed_ = placed_lamps(lights, origin_);
+  shading_.placed = placed_.empty() ? nullptr : placed_.data();
   set_discs(lights, effects);
 }
 
@@ -292,6 +305,11 @@ void CpuEngine::set_tilts(const Scene& scene, const Effects& effects) {
   shading_.first_tilt = first_tilt_.data();
 }
 
+std::array<float, 3> CpuEngine::position(const Gbuffer& gbuffer, int x, int y) const {
+  if (mesh_ == nullptr) return {};
+  return from_origin(mesh_point(*mesh_, gbuffer, x, y).position, origin_);
+}
+
 void CpuEngine::shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, float* rgba) const {
   const auto put = [&](std::size_t x, const float* color, float alpha) {
     float* pixel = rgba + 4 * x;
@@ -322,12 +340,17 @@ void CpuEngine::shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, f
       put(static_cast<std::size_t>(x), colored ? plain : nothing, colored ? 1 : 0);
       continue;
     }
+    if (point[3] != 0 && bare_[static_cast<std::size_t>(std::abs(point[3])) - 1]) {
+      put(static_cast<std::size_t>(x), nothing, 1);
+      continue;
+    }
     const double across = x + 0.5;
     const float to_viewer[3] = {static_cast<float>(-(first.x + across * rays.right.x)),
                                 static_cast<float>(-(first.y + across * rays.right.y)),
                                 static_cast<float>(-(first.z + across * rays.right.z))};
     Batch& batch = point[3] == 0 ? missed : seen;
-    batch.add(static_cast<std::size_t>(x), point, to_viewer, std::max(0, static_cast<int>(std::abs(point[3])) - 1));
+    batch.add(static_cast<std::size_t>(x), point, to_viewer, std::max(0, static_cast<int>(std::abs(point[3])) - 1),
+              point[3] == 0 ? std::array<float, 3>{} : position(gbuffer, x, y));
     if (batch.full()) flush(batch);
   }
   flush(seen), flush(missed);
@@ -372,7 +395,7 @@ std::vector<color::Rgb> CpuEngine::colors(const std::vector<VisiblePoint>& point
         normal[c] = static_cast<float>(point.normal[c]);
         to_viewer[c] = static_cast<float>(point.to_viewer[c]);
       }
-      batch.add(i, normal, to_viewer, point.part);
+      batch.add(i, normal, to_viewer, point.part, from_origin(point.position, origin_));
     }
     batch.shade();
     for (int i = 0; i < batch.count(); ++i) {

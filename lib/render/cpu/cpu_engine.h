@@ -12,6 +12,7 @@
 #include "render/cpu/tilt_kernel.h"
 #include "render/engine.h"
 #include "render/internal/maps.h"
+#include "render/internal/placed_lamps.h"
 #include "render/internal/product_forms.h"
 
 namespace goniochrome::render {
@@ -25,7 +26,8 @@ class CpuEngine : public Engine {
   CpuEngine& operator=(const CpuEngine&) = delete;
 
   const EngineInfo& info() const override { return kInfo; }
-  Result<void> can_shade(const Scene&) const override { return {}; }
+  // Error: a paint shows the extent of a lamp at a place.
+  Result<void> can_shade(const Scene& scene) const override { return draws_placed_lamps(scene, kInfo.name); }
   // Interleaves the maps. Error: as scene_maps(), and more face sizes than there is room for.
   Result<void> load(const Scene& scene, const Effects& effects) override;
   void load_paints(const Scene& scene) override { load_paints(scene, effects_); }
@@ -57,6 +59,8 @@ class CpuEngine : public Engine {
   void set_lights(const Scene& scene, const Effects& effects);
   void set_discs(const std::vector<Light>& lights, const Effects& effects);
   void set_tilts(const Scene& scene, const Effects& effects);
+  // Where a pixel lies, as PointArrays has it; 0 where no lamp stands at a place.
+  std::array<float, 3> position(const Gbuffer& gbuffer, int x, int y) const;
   void shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, float* rgba) const;
 
   Effects effects_;
@@ -65,11 +69,15 @@ class CpuEngine : public Engine {
   ProductForms forms_;
   std::vector<float> weights_, lights_, exponents_, tilts_, colors_of_forms_;
   std::vector<int> first_tilt_;
+  std::vector<bool> bare_;  // parts whose paint shows nothing, as it lies under a texture
   CpuShading shading_;
   TiltStore tilt_store_;
   TiltShading tilt_shading_;  // of tilted lobes
   Background background_ = Background::kNone;
   color::Rgb background_color_;
+  std::vector<PlacedLamp> placed_;
+  const mesh::Mesh* mesh_ = nullptr;  // which lamps at a place need
+  Vec3 origin_;
   std::vector<CpuShading::Disc> discs_;
   std::vector<std::shared_ptr<const brdf::DiscLobeTable>> disc_tables_;
   std::vector<const brdf::DiscLobeTable*> disc_lobes_;

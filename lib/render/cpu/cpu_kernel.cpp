@@ -9,6 +9,7 @@
 // After highway.h:
 #include "brdf/lobe_model.h"
 #include "render/cpu/cube_lookup-inl.h"
+#include "render/cpu/lamps-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace goniochrome::render {
@@ -269,14 +270,14 @@ HWY_INLINE float let_in(float c, float index2) {
 }
 
 // What every lobe sends from a light to the viewer, cos^E of the angle to the mirror direction, mean over the tilts.
-HWY_INLINE void lobe_powers(const CpuShading& s, const Direction& l, const PointArrays& points, const Frame& frame,
+HWY_INLINE void lobe_powers(const CpuShading& s, const LampSeen& lamp, const PointArrays& points, const Frame& frame,
                             const float* cos_i, float* powers) {
   const D f;
   Tilted tilted;
   for (int which = 0; which < s.most_tilts; ++which) {
     if (s.tilts != nullptr) tilt(s, points, which, tilted);
     for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
-      const Direction r = s.tilts != nullptr ? tilted.r(i) : frame.r(i);
+      const Direction r = s.tilts != nullptr ? tilted.r(i) : frame.r(i), l = lamp.toward(i);
       const Direction apart = {hn::Sub(r.x, l.x), hn::Sub(r.y, l.y), hn::Sub(r.z, l.z)};
       const V versine = hn::Mul(hn::Set(f, 0.5F), dot(apart, apart)), log_cos = log_cos_of(versine);
       const auto lit = hn::And(hn::Lt(versine, hn::Set(f, 1.0F)), hn::Gt(hn::Load(f, cos_i + i), hn::Zero(f)));
@@ -293,20 +294,23 @@ HWY_INLINE void lobe_powers(const CpuShading& s, const Direction& l, const Point
 }
 
 // The exact BRDF times cos_i, so that the gloss term's 1/cos_i is gone.
-HWY_INLINE void add_light(const CpuShading& s, const float* light, const PointArrays& points, const Frame& frame,
-                          int count, float* rgba) {
+HWY_INLINE void add_light(const CpuShading& s, int number, const PointArrays& points, const Frame& frame, int count,
+                          float* rgba) {
   const D f;
+  const float* light = s.light + 16 * number;
   HWY_ALIGN float cos_i[kPointsAtOnce], fresnel[kPointsAtOnce];
   HWY_ALIGN float powers[kMostLobes * kPointsAtOnce];
-  const Direction l = {hn::Set(f, light[0]), hn::Set(f, light[1]), hn::Set(f, light[2])};
+  LampSeen lamp;
+  see_lamp(light, s.placed != nullptr ? s.placed + number : nullptr, points, lamp);
   // 1. The cosine at the surface and the Fresnel reflectance at half the angle between light and viewer.
   for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    const Direction l = lamp.toward(i);
     hn::Store(hn::Max(dot(normal_of(points, i), l), hn::Zero(f)), f, cos_i + i);
     const V half = hn::Set(f, 0.5F), cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), l), half);
     hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, hn::Zero(f)))) : hn::Set(f, 1.0F), f, fresnel + i);
   }
   // 2. What each lobe sends to the viewer.
-  lobe_powers(s, l, points, frame, cos_i, powers);
+  lobe_powers(s, lamp, points, frame, cos_i, powers);
   // 3. Point by point, the weighted sum of diffuse part and lobes, times the light through the product's matrix.
   for (int i = 0; i < count; ++i) {
     if (!(cos_i[i] > 0)) continue;
@@ -332,7 +336,8 @@ HWY_INLINE void add_light(const CpuShading& s, const float* light, const PointAr
     reflected.store(k);
     float* pixel = rgba + 4 * i;
     Quad sum = Quad::load(pixel);
-    for (int c = 0; c < 3; ++c) sum = mul_add(Quad::filled(k[c]), Quad::load(light + 4 + 4 * c), sum);
+    for (int c = 0; c < 3; ++c)
+      sum = mul_add(Quad::filled(lamp.strength[i] * k[c]), Quad::load(light + 4 + 4 * c), sum);
     sum.store(pixel);
   }
 }
@@ -353,7 +358,7 @@ struct DiscView {
 
 // Each lobe is looked up by the chord between the mirror direction and the middle of the disc. Of what it gathers, one
 // part counts with cosine and coat at the disc and the other with those at the mirror direction. Mean over the tilts.
-HWY_INLINE void gather_disc(const CpuShading& s, int light, const Direction& l, const PointArrays& points,
+HWY_INLINE void gather_disc(const CpuShading& s, int light, const LampSeen& lamp, const PointArrays& points,
                             const Frame& frame, const DiscView& view, int count, DiscSums& sums) {
   const D f;
   const V half = hn::Set(f, 0.5F), zero = hn::Zero(f);
@@ -363,7 +368,7 @@ HWY_INLINE void gather_disc(const CpuShading& s, int light, const Direction& l, 
   for (int which = 0; which < s.most_tilts; ++which) {
     if (s.tilts != nullptr) tilt(s, points, which, tilted);
     for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
-      const Direction r = s.tilts != nullptr ? tilted.r(i) : frame.r(i);
+      const Direction r = s.tilts != nullptr ? tilted.r(i) : frame.r(i), l = lamp.toward(i);
       const Direction apart = {hn::Sub(r.x, l.x), hn::Sub(r.y, l.y), hn::Sub(r.z, l.z)};
       hn::Store(hn::Sqrt(dot(apart, apart)), f, chord + i);
       hn::Store(hn::Max(dot(normal_of(points, i), r), zero), f, cos_r + i);
@@ -397,12 +402,14 @@ HWY_INLINE void add_disc(const CpuShading& s, int light, const PointArrays& poin
   const D f;
   const float* from = s.light + 16 * light;
   const CpuShading::Disc& disc = s.discs[light];
-  const Direction l = {hn::Set(f, from[0]), hn::Set(f, from[1]), hn::Set(f, from[2])};
+  LampSeen lamp;
+  see_lamp(from, s.placed != nullptr ? s.placed + light : nullptr, points, lamp);
   const V half = hn::Set(f, 0.5F), zero = hn::Zero(f);
   // 1. How much of the disc stands above the horizon of each point, and the coat's reflectance at its middle.
   DiscView view;
   HWY_ALIGN float cosine[kPointsAtOnce], apart[kPointsAtOnce];
   for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    const Direction l = lamp.toward(i);
     hn::Store(dot(normal_of(points, i), l), f, cosine + i);
     const V cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), l), half);
     hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero))) : hn::Set(f, 1.0F), f, view.above + i);
@@ -425,7 +432,7 @@ HWY_INLINE void add_disc(const CpuShading& s, int light, const PointArrays& poin
   }
   // 2. What each lobe gathers.
   DiscSums sums;
-  gather_disc(s, light, l, points, frame, view, count, sums);
+  gather_disc(s, light, lamp, points, frame, view, count, sums);
   // 3. Point by point, the weighted sum of diffuse part, lobes and mirror, times the light through the product's
   // matrix.
   for (int i = 0; i < count; ++i) {
@@ -448,7 +455,7 @@ HWY_INLINE void add_disc(const CpuShading& s, int light, const PointArrays& poin
     reflected.store(k);
     float* pixel = rgba + 4 * i;
     Quad sum = Quad::load(pixel);
-    for (int c = 0; c < 3; ++c) sum = mul_add(Quad::filled(k[c]), Quad::load(from + 4 + 4 * c), sum);
+    for (int c = 0; c < 3; ++c) sum = mul_add(Quad::filled(lamp.strength[i] * k[c]), Quad::load(from + 4 + 4 * c), sum);
     sum.store(pixel);
   }
 }
@@ -462,7 +469,7 @@ void ShadePoints(const CpuShading& s, PointArrays& points, int count, float* rgb
     if (s.discs != nullptr) {
       add_disc(s, i, points, frame, count, rgba);
     } else {
-      add_light(s, s.light + 16 * i, points, frame, count, rgba);
+      add_light(s, i, points, frame, count, rgba);
     }
   }
 }

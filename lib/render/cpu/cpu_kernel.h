@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "brdf/disc_light.h"
+#include "render/internal/placed_lamps.h"
 
 namespace goniochrome::render {
 
@@ -55,6 +56,7 @@ struct CpuShading {
   int lights = 0;
   const float* light =
       nullptr;  // 16 a light: direction, 0, and the columns (4 floats) of pi times its product's matrix
+  const PlacedLamp* placed = nullptr;  // of each light; null: all are far away
   int lobes = 0;
   const float* exponents = nullptr;
   bool lit_diffuse = false, fresnel = false, coat = false;
@@ -75,6 +77,7 @@ struct PointArrays {
   float nx[kPointsAtOnce], ny[kPointsAtOnce], nz[kPointsAtOnce];
   float vx[kPointsAtOnce], vy[kPointsAtOnce], vz[kPointsAtOnce];  // toward the viewer, of any length
   std::int32_t part[kPointsAtOnce];
+  float px[kPointsAtOnce], py[kPointsAtOnce], pz[kPointsAtOnce];  // from origin_of() the mesh, for lamps at a place
 };
 
 // rgba: 4 floats a point, of which the fourth has no meaning.

@@ -8,6 +8,7 @@
 #include "render/gl/exact_lookups.h"
 #include "render/gl/gl_weights.h"
 #include "render/gl/shader.h"
+#include "render/gl/shader_parts.h"
 #include "render/gl/tilt_shader.h"
 #include "render/internal/coat_stretch.h"
 #include "render/internal/map_cost.h"
@@ -58,10 +59,11 @@ const EngineInfo GlEngine::kInfo = {
     .traces_rays = false,
     .needs_opengl = true,
     .needs_mesh = true,
+    .draws_placed_lamps = true,
     .make = [](Sight& sight) -> std::unique_ptr<Engine> { return std::make_unique<GlEngine>(sight.gl()); }};
 
-Result<void> GlEngine::can_shade(const Scene&) const {
-  if (gl_ != nullptr) return {};
+Result<void> GlEngine::can_shade(const Scene& scene) const {
+  if (gl_ != nullptr) return draws_placed_lamps(scene, kInfo.name);
   return usage_error("the engine gl draws the mesh: a G-buffer that is given is shaded by cpu");
 }
 
@@ -124,7 +126,8 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
   GONIO_TRY(upload_textures(scene));
   const int units = gl_->integer(GL_MAX_TEXTURE_IMAGE_UNITS);
   const std::size_t needed = 2 + (effects.anisotropy ? 1 : 0) + (tilt_exponents_.empty() ? 0 : 1) +
-                             (effects.discs() ? 1 : 0) + cubes_.size() + (layers_.empty() ? 0 : layers_.size() + 3);
+                             (effects.discs() ? 1 : 0) + (finds_lamps(effects) ? 1 : 0) + cubes_.size() +
+                             (layers_.empty() ? 0 : layers_.size() + 3);
   if (static_cast<int>(needed) > units) {
     return input_error(
         "the paints use {} lobes and the mesh wears {} textures, but OpenGL has only {} texture units: fit the paints "
@@ -207,6 +210,40 @@ void GlEngine::upload_discs() {
   discs_ = gl_->float_texture(discs.columns, discs.rows, discs.rgba.data());
 }
 
+// Of each pixel, as the processor finds it.
+void GlEngine::upload_positions(const Gbuffer& gbuffer) {
+  const auto wide = static_cast<std::size_t>(gbuffer.width), high = static_cast<std::size_t>(gbuffer.height);
+  std::vector<float> texels(4 * wide * high, 0.0F);
+  parallel_for(high, 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin * wide; i < end * wide; ++i) {
+      const auto x = static_cast<int>(i % wide), y = static_cast<int>(i / wide);
+      if (gbuffer.part(x, y) < 0) continue;
+      std::ranges::copy(from_origin(mesh_point(*mesh_, gbuffer, x, y).position, origin_), &texels[4 * i]);
+    }
+  });
+  gl_->DeleteTextures(1, &positions_);
+  positions_ = gl_->float_texture(gbuffer.width, gbuffer.height, texels.data());
+}
+
+void GlEngine::set_lamps() {
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    gl_->set(program_, fmt::format("light_direction[{}]", i), lights_[i].direction);
+    gl_->set(program_, fmt::format("light_white[{}]", i), lights_[i].white);
+    const auto at = [&](const char* name) {
+      return gl_->GetUniformLocation(program_, fmt::format("{}[{}]", name, i).c_str());
+    };
+    if (layer_ != nullptr) {
+      const double variance = 0.25 * lights_[i].radius_rad * lights_[i].radius_rad;
+      gl_->Uniform1f(at("light_variance"), static_cast<float>(variance));
+    }
+    if (discs_ != 0) gl_->set(program_, fmt::format("light_disc[{}]", i), disc_uniform(lights_[i]));
+    if (placed_.empty()) continue;
+    const PlacedLamp& lamp = placed_[i];
+    gl_->Uniform4f(at("lamp_place"), lamp.position[0], lamp.position[1], lamp.position[2], lamp.reach2);
+    gl_->Uniform2f(at("lamp_size"), lamp.least2, lamp.radius2);
+  }
+}
+
 void GlEngine::load_paints(const Scene& scene) {
   const WeightTable table = weight_table(scene, effects_, stretched_parts(scene, effects_));
   gl_->DeleteTextures(1, &weights_);
@@ -219,6 +256,9 @@ void GlEngine::load_paints(const Scene& scene) {
   tilted_ = 0;
   if (!tilt_exponents_.empty()) upload_tilted(scene);
   lights_ = single_lights(scene, effects_);
+  mesh_ = finds_lamps(effects_) ? scene.mesh : nullptr;
+  origin_ = mesh_ != nullptr ? origin_of(*mesh_) : Vec3{};
+  placed_ = placed_lamps(lights_, origin_);
   gl_->DeleteTextures(1, &discs_);
   discs_ = 0;
   if (effects_.discs() && !lights_.empty()) upload_discs();
@@ -239,6 +279,7 @@ Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, ima
     gl_->DeleteTextures(1, &places_);
     places_ = layered(place_layers(*layer_, effects_, *sight.gbuffer(sample), sight.places(sample), gain));
   }
+  if (mesh_ != nullptr) upload_positions(*sight.gbuffer(sample));
   gain_ = gain;
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_);
   gl_->Viewport(0, 0, width_, height_);
@@ -260,6 +301,7 @@ Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, ima
     gl_->Uniform1i(gl_->GetUniformLocation(program_, "tilt_stride"), tilt_stride_);
   }
   if (discs_ != 0) bind("discs", GL_TEXTURE_2D, discs_);
+  if (mesh_ != nullptr) bind("positions", GL_TEXTURE_2D, positions_);
   for (const auto& [sampler, texture] : cubes_) bind(sampler, GL_TEXTURE_CUBE_MAP, texture);
   if (layer_ != nullptr) {
     bind("places", GL_TEXTURE_2D_ARRAY, places_);
@@ -268,17 +310,7 @@ Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, ima
       bind("lobe_maps", GL_TEXTURE_2D, lobe_maps_), bind("lobe_horizon", GL_TEXTURE_2D, lobe_horizon_);
   }
   gl_->ActiveTexture(GL_TEXTURE0);
-  for (std::size_t i = 0; i < lights_.size(); ++i) {
-    gl_->set(program_, fmt::format("light_direction[{}]", i), lights_[i].direction);
-    gl_->set(program_, fmt::format("light_white[{}]", i), lights_[i].white);
-    if (layer_ != nullptr) {
-      const double variance = 0.25 * lights_[i].radius_rad * lights_[i].radius_rad;
-      gl_->Uniform1f(gl_->GetUniformLocation(program_, fmt::format("light_variance[{}]", i).c_str()),
-                     static_cast<float>(variance));
-    }
-    if (discs_ == 0) continue;
-    gl_->set(program_, fmt::format("light_disc[{}]", i), disc_uniform(lights_[i]));
-  }
+  set_lamps();
   if (effects_.background == Background::kColor) gl_->set(program_, "background", background_color_);
   gl_->BindVertexArray(no_vertices_);
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);

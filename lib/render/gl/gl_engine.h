@@ -9,6 +9,7 @@
 #include "render/gl/gl.h"
 #include "render/gl/texture_shader.h"
 #include "render/internal/maps.h"
+#include "render/internal/placed_lamps.h"
 #include "render/internal/product_forms.h"
 
 namespace goniochrome::render {
@@ -21,7 +22,8 @@ class GlEngine : public Engine {
   explicit GlEngine(const GlContext* gl) : gl_(gl) {}
 
   const EngineInfo& info() const override { return kInfo; }
-  // Error: there is no OpenGL, because the renderer was given a G-buffer.
+  // Error: there is no OpenGL, because the renderer was given a G-buffer; a paint shows the extent of a lamp at a
+  // place.
   Result<void> can_shade(const Scene& scene) const override;
   // Uploads maps and weights, and compiles the program if it is another. Error: as scene_maps(), and more maps than
   // there are texture units.
@@ -36,6 +38,8 @@ class GlEngine : public Engine {
  private:
   Result<void> resize(int width, int height);
   void upload_discs();
+  void upload_positions(const Gbuffer& gbuffer);
+  void set_lamps();
   Result<void> upload_textures(const Scene& scene);
   void delete_textures();
   GLuint layered(const TextureLayers& layers);
@@ -50,9 +54,12 @@ class GlEngine : public Engine {
   GLuint program_ = 0, weights_ = 0, tilts_ = 0, tilted_ = 0, discs_ = 0, no_vertices_ = 0, texture_ = 0, target_ = 0;
   std::vector<std::pair<std::string, GLuint>> cubes_;   // by the name of their sampler
   std::vector<std::pair<std::string, GLuint>> layers_;  // of textures, by the name of their sampler
-  GLuint lobe_maps_ = 0, lobe_horizon_ = 0, places_ = 0;
+  GLuint lobe_maps_ = 0, lobe_horizon_ = 0, places_ = 0, positions_ = 0;
   const SurfaceLayer* layer_ = nullptr;
   std::vector<Light> lights_;
+  std::vector<PlacedLamp> placed_;
+  const mesh::Mesh* mesh_ = nullptr;  // which lamps at a place need
+  Vec3 origin_;
   color::Rgb background_color_;
   std::vector<double> tilt_exponents_;  // of tilted lobes
   int tilt_stride_ = 0;

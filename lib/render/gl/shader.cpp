@@ -131,7 +131,7 @@ std::string disc_terms(const Effects& effects) {
     text += fmt::format("    if (distance(r, l) <= disc.y) reflected += disc.z * W({}).rgb;\n",
                         slots_of(effects).lamp_mirror_slot());
   return text +
-         fmt::format("    radiance += {} * {};\n  }}\n", glsl(kPi), times(effects, "light_white[i]", "reflected"));
+         fmt::format("    radiance += {} * {};\n  }}\n", glsl(kPi), times(effects, lamp_white(effects), "reflected"));
 }
 
 // The exact BRDF times cos_i, so that the gloss term's 1/cos_i is gone.
@@ -141,13 +141,13 @@ std::string light_terms(const Effects& effects) {
       R"(
   // the lights
   for (int i = 0; i < {}; ++i) {{
-    vec3 l = light_direction[i];
+    vec3 l = {};
     float cos_i = dot(n, l);
     if (cos_i <= 0.0) continue;
     float base = cos_i{};
     vec3 reflected = {};
 )",
-      effects.single_lights(),
+      effects.single_lights(), lamp_direction(effects),
       effects.coat ? fmt::format(" * let_in(cos_i, W({}).a)", slots_of(effects).light_slot()) : "",
       effects.diffuse ? fmt::format("base * W({}).rgb", slots_of(effects).light_slot()) : "vec3(0.0)");
   if (!effects.lobes.empty()) {
@@ -155,7 +155,7 @@ std::string light_terms(const Effects& effects) {
     text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, base, {}", fresnel));
   }
   return text +
-         fmt::format("    radiance += {} * {};\n  }}\n", glsl(kPi), times(effects, "light_white[i]", "reflected"));
+         fmt::format("    radiance += {} * {};\n  }}\n", glsl(kPi), times(effects, lamp_white(effects), "reflected"));
 }
 
 }  // namespace
@@ -206,7 +206,7 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   // 1. What the program is given, and the functions that it needs.
   std::string text = std::string(kHead) + "// goniochrome-theory(7), RENDERING\n";
   text += uniforms(effects) + tilt_uniforms(effects, tilted) + texture_uniforms(textures, effects) + kRays +
-          "layout(location = 0) out vec4 color;\n" + kWeight;
+          "layout(location = 0) out vec4 color;\n" + kWeight + placed_lamp_functions(effects, textures.any());
   if (effects.reflection && (product == Product::kOperator || effects.single_lights() > 0 || textures.any()))
     text += reflection_function(op);
   if (effects.environment && product == Product::kForms)

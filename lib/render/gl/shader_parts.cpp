@@ -159,15 +159,58 @@ std::string background_color(Background background, Product product, bool laid_g
   return "vec4(0.0)";
 }
 
+bool finds_lamps(const Effects& effects) {
+  return effects.placed && effects.lights > 0;
+}
+
+std::string placed_lamp_functions(const Effects& effects, bool variances) {
+  if (!finds_lamps(effects)) return {};
+  std::string text = fmt::format(
+      R"(
+uniform sampler2D positions;  // of what is seen, from the middle of the mesh
+uniform vec4 lamp_place[{0}];  // from there; the square of the distance of light_white, 0: far away
+uniform vec2 lamp_size[{0}];  // squares of the distance within which it grows no brighter, and of the sphere's radius
+vec4 lamps[{0}];  // as they are seen here: direction, and light relative to light_white
+{1}void see_lamps() {{
+  vec3 position = texelFetch(positions, ivec2(gl_FragCoord.xy), 0).xyz;
+  for (int i = 0; i < {0}; ++i) {{
+    vec3 to = lamp_place[i].xyz - position;
+    float squared = dot(to, to), distance2 = max(squared, lamp_size[i].x);
+    bool far = lamp_place[i].w == 0.0;
+    lamps[i] = far ? vec4(light_direction[i], 1.0)
+                   : vec4(to * inversesqrt(max(squared, 1e-30)), lamp_place[i].w / distance2);
+)",
+      effects.single_lights(), variances ? fmt::format("float lamp_variance[{}];\n", effects.single_lights()) : "");
+  if (variances)
+    text += fmt::format(R"(    if (i >= {}) continue;
+    float sine2 = far ? 0.0 : min(lamp_size[i].y / distance2, 1.0), radius = atan(sqrt(sine2), sqrt(1.0 - sine2));
+    lamp_variance[i] = far ? light_variance[i] : 0.25 * radius * radius;
+)",
+                        effects.lights);
+  return text + "  }\n}\n";
+}
+
+std::string placed_lamp_start(const Effects& effects) {
+  return finds_lamps(effects) ? "  see_lamps();\n" : "";
+}
+
+const char* lamp_direction(const Effects& effects) {
+  return finds_lamps(effects) ? "lamps[i].xyz" : "light_direction[i]";
+}
+
+const char* lamp_white(const Effects& effects) {
+  return finds_lamps(effects) ? "lamps[i].w * light_white[i]" : "light_white[i]";
+}
+
 std::string disc_loop(const Effects& effects, const std::string& index2) {
   return fmt::format(
       R"(  for (int i = 0; i < {}; ++i) {{
-    vec3 l = light_direction[i], disc = light_disc[i];
+    vec3 l = {}, disc = light_disc[i];
     float cos_i = dot(n, l);
     if (cos_i <= -disc.x) continue;
     vec2 seen = cos_i >= disc.x ? vec2(cos_i, 1.0) : disc_horizon(i, cos_i / disc.x);
 {})",
-      effects.single_lights(),
+      effects.single_lights(), lamp_direction(effects),
       // At the mean cosine of what is seen of the disc.
       effects.coat ? fmt::format("    seen.x *= let_in(min(seen.x / max(seen.y, 1e-6), 1.0), {});\n", index2) : "");
 }
@@ -188,8 +231,8 @@ void main() {{
   float c = dot(n, wo);  // = n.r
   vec3 r = 2.0 * c * n - wo;
   row = int(abs(point.w)) - 1;
-{})",
-                     more, beside, row_of_view(effects));
+{}{})",
+                     more, beside, row_of_view(effects), placed_lamp_start(effects));
 }
 
 std::string tilt_frame(const Effects& effects) {

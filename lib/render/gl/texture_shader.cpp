@@ -272,18 +272,20 @@ std::string environment_lobe(const Effects& effects) {
 
 // One lobe under the lights: the exact BRDF. Discs are Gaussians of the same variance.
 std::string lit_lobe(const Effects& effects) {
-  return fmt::format(R"(      for (int i = 0; i < {}; ++i) {{
-        vec3 l = vec3(dot(light_direction[i], t), dot(light_direction[i], b), dot(light_direction[i], n));
+  const bool finds = finds_lamps(effects);
+  return fmt::format(R"(      for (int i = 0; i < {0}; ++i) {{
+        vec3 l = vec3(dot({1}, t), dot({1}, b), dot({1}, n));
         if (l.z <= 0.0) continue;
         vec3 apart = m - vec3(turn.x * l.x + turn.y * l.y, turn.x * l.y - turn.y * l.x, l.z);
-        float versine = 0.5 * dot(apart, apart), lowered = 1.0 / (shape.w * light_variance[i] + 1.0);
+        float versine = 0.5 * dot(apart, apart), lowered = 1.0 / (shape.w * {2} + 1.0);
         if (versine >= 1.0) continue;
         vec3 of = share * l.z * lowered * bounded_exp(lowered * shape.w * log_1p(-versine) + power + lobe.w) * lobe.rgb;
-        vec3 light = 3.14159265 * light_white[i];
-        sum += {};
+        vec3 light = 3.14159265 * {3};
+        sum += {4};
       }}
 )",
-                     effects.lights, times(effects, "light", "of"));
+                     effects.lights, lamp_direction(effects), finds ? "lamp_variance[i]" : "light_variance[i]",
+                     lamp_white(effects), times(effects, "light", "of"));
 }
 
 std::string diffuse_terms(const TextureProgram& textures, const Effects& effects) {
@@ -291,9 +293,8 @@ std::string diffuse_terms(const TextureProgram& textures, const Effects& effects
   if (!textures.cubes.empty())
     text += fmt::format("  light += 3.14159265 * lobe_light({}, n);\n", textures.cubes.size() - 1);
   if (effects.lights > 0) {
-    text += fmt::format(
-        "  for (int i = 0; i < {}; ++i) light += 3.14159265 * max(dot(light_direction[i], n), 0.0) * light_white[i];\n",
-        effects.lights);
+    text += fmt::format("  for (int i = 0; i < {}; ++i) light += 3.14159265 * max(dot({}, n), 0.0) * {};\n",
+                        effects.lights, lamp_direction(effects), lamp_white(effects));
   }
   return text + fmt::format("  return sum + {};\n", times(effects, "light", "diffuse"));
 }
@@ -316,7 +317,8 @@ std::string probed_function(const TextureProgram& textures, std::uint32_t on) {
     }
     return text + "  return vec3(0.0);\n}\n";
   }
-  text += fmt::format(R"(  vec4 footprint = texelFetch(places, layer + ivec3(0, 0, 2), 0);
+  text += fmt::format(R"(  if (place.z == 0.0) return vec3(0.0);
+  vec4 footprint = texelFetch(places, layer + ivec3(0, 0, 2), 0);
   int across = int(tangent.w) % {0} + 1, down = int(tangent.w) / {0}, level = int(place.w);
   vec3 sum = vec3(0.0);
   for (int i = 0; i < across * down; ++i) {{

@@ -55,6 +55,7 @@ const EngineInfo IntegralEngine::kInfo = {
     .traces_rays = false,
     .needs_opengl = false,
     .needs_mesh = false,
+    .draws_placed_lamps = false,
     .make = [](Sight&) -> std::unique_ptr<Engine> { return std::make_unique<IntegralEngine>(); }};
 
 double spread_for(double tolerance_de00) {

@@ -22,6 +22,7 @@ const EngineInfo PathEngine::kInfo = {
     .traces_rays = true,
     .needs_opengl = false,
     .needs_mesh = true,
+    .draws_placed_lamps = true,
     .make = [](Sight& sight) -> std::unique_ptr<Engine> { return std::make_unique<PathEngine>(sight); }};
 
 PathScene path_scene_of(const Scene& scene, std::shared_ptr<const rays::RayScene> rays) {

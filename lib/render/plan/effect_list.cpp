@@ -274,7 +274,8 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
                         percent(seen, [&](const auto& p) { return is_pane(scene, static_cast<std::size_t>(p.part)); }))
           : "no part is a pane of glass",
       [](Effects& e) { e.panes = false; });
-  add("lights", all.lights > 0, fmt::format("{} directional light{}", all.lights, all.lights == 1 ? "" : "s"),
+  add("lights", all.lights > 0,
+      fmt::format("{} {}light{}", all.lights, all.placed ? "" : "directional ", all.lights == 1 ? "" : "s"),
       [](Effects& e) {
         e.lights = 0;
         e.maps = false;

@@ -42,6 +42,7 @@ PaneProbe pane_probe(const rays::RayScene* whole, const Scene& scene, const std:
       spot = whole->spot(passed.hit, spot.position, direction);
       VisiblePoint behind;
       behind.normal = rays::vec3(spot.shading), behind.to_viewer = to_viewer, behind.part = spot.part;
+      behind.position = whole->world(spot.position);
       probe.shares.push_back({point, probe.behind.size(), share});
       probe.behind.push_back(behind);
       probe.ray_points.push_back({spot, -direction});

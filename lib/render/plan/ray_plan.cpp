@@ -253,7 +253,7 @@ RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<con
   std::vector<RayPoint> ray_points;
   const std::vector<ProbePixel> pixels_seen = probe_pixels(gbuffers, kRayProbe);
   for (const auto& [gbuffer, x, y] : pixels_seen) {
-    points.push_back(gbuffer->point(x, y));
+    points.push_back(gbuffer->point(x, y, {}, scene.mesh));
     ray_points.push_back(ray_point(rays.transport->rays(), *scene.mesh, *gbuffer, x, y));
   }
   // Points behind panes count as if nothing were before them.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <unordered_map>
 
 #include "base/angles.h"
 #include "base/parallel.h"
@@ -159,8 +161,7 @@ void SbrdfShader::make_horizon(double low, double high) {
   }
 }
 
-void SbrdfShader::pack_lobe(const brdf::LafortuneLobe& lobe, float* to) const {
-  const double largest = std::max({lobe.albedo.x, lobe.albedo.y, lobe.albedo.z});
+void SbrdfShader::pack_lobe(const brdf::LafortuneLobe& lobe, double largest, float* to) const {
   to[kLobeEnergy] = to[kLobeAlbedo] = kNoLobe;
   if (largest > 0) {
     for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(lobe.albedo[c] / largest);
@@ -177,8 +178,61 @@ void SbrdfShader::pack_lobe(const brdf::LafortuneLobe& lobe, float* to) const {
   to[kLobeHorizon + 1] = static_cast<float>(horizon.upper_weight);
 }
 
+namespace {
+
+double largest_channel(const brdf::LafortuneLobe& lobe) {
+  return std::max({lobe.albedo.x, lobe.albedo.y, lobe.albedo.z});
+}
+
+// The texels of a texture by the shape of their lobes: frame, axes and exponents.
+class Shapes {
+ public:
+  explicit Shapes(const brdf::SbrdfTexture& texture) : lobes_(static_cast<std::size_t>(texture.lobes)) {
+    const auto stride = static_cast<std::size_t>(texture.stride());
+    std::unordered_map<std::string, int> known;
+    std::string bytes, before;
+    for (std::size_t i = 0; i < texture.values.size(); i += stride) {
+      const float* at = &texture.values[i];
+      bytes.assign(reinterpret_cast<const char*>(at + 3), 2 * sizeof(float));
+      for (std::size_t lobe = 0; lobe < lobes_; ++lobe)
+        bytes.append(reinterpret_cast<const char*>(at + 5 + 7 * lobe + 3), 4 * sizeof(float));
+      if (bytes != before || of_.empty()) {
+        before = bytes;
+        const auto found = known.find(bytes);
+        number_ = found != known.end() ? found->second : 0;
+        if (found == known.end() && known.size() < kMost) {
+          number_ = known[bytes] = static_cast<int>(known.size()) + 1;
+          largest_.resize(known.size() * lobes_, 0.0F);
+        }
+      }
+      of_.push_back(number_);
+      for (std::size_t lobe = 0; number_ > 0 && lobe < lobes_; ++lobe) {
+        float& most = largest_[(static_cast<std::size_t>(number_) - 1) * lobes_ + lobe];
+        most = std::max(most, *std::max_element(at + 5 + 7 * lobe, at + 8 + 7 * lobe));
+      }
+    }
+  }
+
+  int of(std::size_t texel) const { return of_[texel]; }
+  // The largest albedo of this lobe in texels of a shape.
+  double largest(int shape, std::size_t lobe) const {
+    return largest_[(static_cast<std::size_t>(shape) - 1) * lobes_ + lobe];
+  }
+
+ private:
+  // A texture of more has texels that are measured one by one, of which no two are alike.
+  static constexpr std::size_t kMost = 4096;
+  std::size_t lobes_;
+  int number_ = 0;
+  std::vector<int> of_;  // 0: kOwnShape
+  std::vector<float> largest_;
+};
+
+}  // namespace
+
 PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
   PackedTexture result{texture.width, texture.height, texture.lobes, {}, texture.alpha.empty()};
+  const Shapes shapes(texture);
   const std::size_t size = result.stride();
   const auto texels = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
   result.texels.assign(size * texels, 0.0F);
@@ -190,9 +244,12 @@ PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
       for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(texel.surface.diffuse[c]);
       to[kTexelAlpha] = result.covers ? 1 : texture.alpha[i];
       to[4] = static_cast<float>(texel.x_tangent), to[5] = static_cast<float>(texel.x_bitangent);
+      const int shape = shapes.of(i);
+      to[kTexelShape] = shape > 0 ? static_cast<float>(shape) : kOwnShape;
       to += kTexelFloats;
-      for (const brdf::LafortuneLobe& lobe : texel.surface.lobes) {
-        pack_lobe(lobe, to);
+      for (std::size_t k = 0; k < texel.surface.lobes.size(); ++k) {
+        const brdf::LafortuneLobe& lobe = texel.surface.lobes[k];
+        pack_lobe(lobe, shape > 0 ? shapes.largest(shape, k) : largest_channel(lobe), to);
         to[kLobeTurn] = static_cast<float>(texel.x_tangent), to[kLobeTurn + 1] = static_cast<float>(texel.x_bitangent);
         to += kTexelLobeFloats;
       }
@@ -214,7 +271,7 @@ PackedTexture SbrdfShader::pack(const TextureLevel& level) const {
     for (std::size_t lobe = 0; lobe < static_cast<std::size_t>(result.lobes); ++lobe, to += kTexelLobeFloats) {
       const bool there = lobe < level.texels[i].lobes.size();
       const brdf::TurnedLobe turned = there ? level.texels[i].lobes[lobe] : brdf::TurnedLobe{};
-      pack_lobe(turned.lobe, to);
+      pack_lobe(turned.lobe, largest_channel(turned.lobe), to);
       to[kLobeTurn] = static_cast<float>(std::cos(turned.turn_rad));
       to[kLobeTurn + 1] = static_cast<float>(std::sin(turned.turn_rad));
     }
@@ -271,6 +328,8 @@ SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const 
   }
   shading_.lights = static_cast<int>(light.lights.size());
   shading_.light = lights_.data();
+  placed_ = placed_lamps(light.lights, light.origin);
+  if (!placed_.empty()) shading_.placed = placed_.data();
   if (light.reflection.k != color::component_wise().k) {
     for (const auto& plane : light.reflection.k)
       for (const auto& row : plane)
@@ -279,36 +338,40 @@ SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const 
   }
   points_.taps = packed_.width * packed_.height > 1 ? 4 : 1;
   constexpr float kUp[3] = {0, 0, 1};
-  for (int i = 0; i < kPointsAtOnce; ++i) put(kUp, kUp, {}, 1);
-  count_ = 0;
+  for (int i = 0; i < kPointsAtOnce; ++i) put(kUp, kUp, {}, {}, 1);
+  count_ = 0, points_.groups = 0;
 }
 
-void SbrdfShader::Batch::put_frame(const float* normal, const float* to_viewer, const float* tangent) {
+void SbrdfShader::Batch::put_frame(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
+                                   const float* tangent) {
   SbrdfPoints& p = points_;
   p.nx[count_] = normal[0], p.ny[count_] = normal[1], p.nz[count_] = normal[2];
   p.vx[count_] = to_viewer[0], p.vy[count_] = to_viewer[1], p.vz[count_] = to_viewer[2];
   p.tx[count_] = tangent[0], p.ty[count_] = tangent[1], p.tz[count_] = tangent[2];
+  p.px[count_] = position[0], p.py[count_] = position[1], p.pz[count_] = position[2];
 }
 
-// The kernel shades as many texels of every point; those that a point lacks have no share.
-void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const float* tangent,
-                             std::span<const SeenTexels::Seen> texels) {
-  put_frame(normal, to_viewer, tangent);
+// The kernel adds as many texels of every point; those that a point lacks are in no group and have no share.
+void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
+                             const float* tangent, std::span<const SeenTexels::Seen> texels) {
+  put_frame(normal, to_viewer, position, tangent);
   SbrdfPoints& p = points_;
   for (std::size_t k = 0; k < static_cast<std::size_t>(p.taps); ++k) {
     const bool there = k < texels.size();
     p.texel[k][count_] = &packed_.texels[there ? texels[k].texel * packed_.stride() : 0];
     p.share[k][count_] = there ? texels[k].share : 0.0F;
   }
-  ++count_;
+  group_texels(std::min(static_cast<int>(texels.size()), p.taps));
 }
 
-void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const TexturePlace& place, double repeat) {
-  put_frame(normal, to_viewer, place.tangent);
+void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
+                             const TexturePlace& place, double repeat) {
+  put_frame(normal, to_viewer, position, place.tangent);
   SbrdfPoints& p = points_;
   if (p.taps == 1) {
     p.texel[0][count_] = packed_.texels.data();
-    p.share[0][count_++] = 1;
+    p.share[0][count_] = 1;
+    group_texels(1);
     return;
   }
   const auto taps = brdf::texture_taps(packed_.width, packed_.height, repeat * place.u, repeat * place.v);
@@ -316,12 +379,40 @@ void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const 
     p.texel[k][count_] = packed_.at(taps[k].column, taps[k].row);
     p.share[k][count_] = static_cast<float>(taps[k].weight);
   }
+  group_texels(p.taps);
+}
+
+// Of the first so many texels of the point that was put last: each group begins with the first that is in none yet.
+void SbrdfShader::Batch::group_texels(int count) {
+  SbrdfPoints& p = points_;
+  const auto all = (1U << static_cast<unsigned>(count)) - 1;
+  float shapes[kTexelsAtOnce] = {};
+  bool same = true;
+  for (int k = 0; k < count; ++k) {
+    shapes[k] = p.texel[k][count_][kTexelShape];
+    same = same && shapes[k] == shapes[0];
+  }
+  int groups = 0;
+  for (unsigned left = all; left != 0; ++groups) {
+    const int first = std::countr_zero(left);
+    unsigned members = 1U << first;
+    if (same && shapes[0] != kOwnShape) {
+      members = all;
+    } else if (shapes[first] != kOwnShape) {
+      for (int k = first + 1; k < count; ++k)
+        if (shapes[k] == shapes[first]) members |= 1U << k;
+    }
+    p.group[groups][count_] = static_cast<std::uint8_t>(members);
+    left &= ~members;
+  }
+  p.groups = std::max(p.groups, groups);
+  for (; groups < static_cast<int>(kTexelsAtOnce); ++groups) p.group[groups][count_] = 0;
   ++count_;
 }
 
 const float* SbrdfShader::Batch::shade() {
   shade_texels(shading_, points_, count_, rgba_);
-  count_ = 0;
+  count_ = 0, points_.groups = 0;
   return rgba_;
 }
 
@@ -339,7 +430,7 @@ std::vector<color::Rgb> SbrdfShader::shade(std::size_t texture, const SbrdfLight
     for (int c = 0; c < 3; ++c) {
       normal[c] = static_cast<float>(point.normal[c]), to_viewer[c] = static_cast<float>(point.to_viewer[c]);
     }
-    batch.put(normal, to_viewer, point.place, 1);
+    batch.put(normal, to_viewer, from_origin(point.position, light.origin), point.place, 1);
     if (batch.full()) flush();
   }
   if (batch.count() > 0) flush();

@@ -2,6 +2,7 @@
 // VARYING SURFACES; [McAllister2002] 4.1 and 6.1
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -36,6 +37,7 @@ struct SbrdfLight {
   color::ReflectionOperator reflection = color::component_wise();
   bool horizon = true;        // lobes under the environment end at the horizon
   std::uint32_t lobes = ~0U;  // by bits
+  Vec3 origin = {};           // of the positions of points, see origin_of(); for lamps at a place
 };
 
 // Segments of a row of the horizon table.
@@ -97,10 +99,11 @@ class SbrdfShader {
     Batch(const SbrdfShader& shader, std::size_t texture, const SbrdfLight& light, int level = 0);
     Batch(const Batch&) = delete;  // the kernel's tables point into it
     Batch& operator=(const Batch&) = delete;
-    // `normal` and `to_viewer` on the same side, the first unit.
-    void put(const float* normal, const float* to_viewer, const TexturePlace& place, double repeat);
+    // `normal` and `to_viewer` on the same side, the first unit; the position from SbrdfLight::origin.
+    void put(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
+             const TexturePlace& place, double repeat);
     // The same of up to kTexelsAtOnce texels and their shares, with the tangent of a place.
-    void put(const float* normal, const float* to_viewer, const float* tangent,
+    void put(const float* normal, const float* to_viewer, const std::array<float, 3>& position, const float* tangent,
              std::span<const SeenTexels::Seen> texels);
     int count() const { return count_; }
     bool full() const { return count_ == kPointsAtOnce; }
@@ -111,11 +114,14 @@ class SbrdfShader {
     int height() const { return packed_.height; }
 
    private:
-    void put_frame(const float* normal, const float* to_viewer, const float* tangent);
+    void put_frame(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
+                   const float* tangent);
+    void group_texels(int count);
 
     const PackedTexture& packed_;
     SbrdfShading shading_;
     std::vector<float> lights_, reflection_;
+    std::vector<PlacedLamp> placed_;
     SbrdfPoints points_;
     int count_ = 0;
     alignas(64) float rgba_[4 * kPointsAtOnce];
@@ -126,7 +132,8 @@ class SbrdfShader {
   void make_horizon(double low, double high);
   PackedTexture pack(const brdf::SbrdfTexture& texture) const;
   PackedTexture pack(const TextureLevel& level) const;
-  void pack_lobe(const brdf::LafortuneLobe& lobe, float* to) const;
+  // Its color relative to an albedo.
+  void pack_lobe(const brdf::LafortuneLobe& lobe, double largest, float* to) const;
 
   struct Levels {
     std::mutex mutex;

@@ -1,6 +1,7 @@
 #include "render/textures/sbrdf_kernel.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -10,6 +11,7 @@
 #include <hwy/highway.h>
 // After highway.h:
 #include "render/cpu/cube_lookup-inl.h"
+#include "render/cpu/lamps-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace goniochrome::render {
@@ -64,22 +66,63 @@ HWY_INLINE void set_up_frames(const SbrdfPoints& p, SurfaceFrames& frames) {
   }
 }
 
+// A lamp in the frames of all points: its direction there, its light relative to that of the scene, and the variance of
+// its disc.
+struct LampInFrames {
+  HWY_ALIGN float t[kPointsAtOnce], b[kPointsAtOnce], n[kPointsAtOnce];
+  HWY_ALIGN float strength[kPointsAtOnce], variance[kPointsAtOnce];
+};
+
+HWY_INLINE void find_lamp(const SbrdfShading& s, int number, const SbrdfPoints& p, const SurfaceFrames& frames,
+                          LampInFrames& lamp) {
+  const D f;
+  const float* light = s.light + 8 * number;
+  const PlacedLamp* placed = s.placed != nullptr ? s.placed + number : nullptr;
+  LampSeen seen;
+  see_lamp(light, placed, p, seen);
+  const bool sphere = placed != nullptr && placed->radius2 > 0;
+  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    const Direction to = seen.toward(i);
+    hn::Store(dot(to, loaded(frames.tx, frames.ty, frames.tz, i)), f, lamp.t + i);
+    hn::Store(dot(to, loaded(frames.bx, frames.by, frames.bz, i)), f, lamp.b + i);
+    hn::Store(dot(to, loaded(p.nx, p.ny, p.nz, i)), f, lamp.n + i);
+    hn::Store(hn::Load(f, seen.strength + i), f, lamp.strength + i);
+    V variance = hn::Set(f, light[3]);
+    if (sphere) {
+      const V sine2 = hn::Div(hn::Set(f, placed->radius2), hn::Load(f, seen.distance2 + i)), one = hn::Set(f, 1.0F);
+      const V radius = hn::Asin(f, hn::Sqrt(hn::Min(sine2, one)));
+      variance = hn::Mul(hn::Set(f, 0.25F), hn::Mul(radius, radius));
+    }
+    hn::Store(variance, f, lamp.variance + i);
+  }
+}
+
 // One lobe of one texel for each point, its values side by side.
 struct LobeValues {
   HWY_ALIGN float cos_x[kPointsAtOnce], sin_x[kPointsAtOnce];  // of the lobe's frame
   HWY_ALIGN float ax[kPointsAtOnce], ay[kPointsAtOnce], az[kPointsAtOnce], exponent[kPointsAtOnce];
   HWY_ALIGN float energy[kPointsAtOnce], albedo[kPointsAtOnce];  // logarithms
+  HWY_ALIGN float color[4 * kPointsAtOnce];                      // of all texels of the group, times their shares
   const float* lobe[kPointsAtOnce];
 };
 
-HWY_INLINE void gather_lobe(const SbrdfPoints& p, int tap, int lobe, LobeValues& values) {
+// That of the group of this number; none where a point has fewer.
+HWY_INLINE void gather_lobe(const SbrdfPoints& p, int group, int lobe, LobeValues& values) {
+  const std::size_t at = kTexelFloats + kTexelLobeFloats * static_cast<std::size_t>(lobe);
   for (int i = 0; i < kPointsAtOnce; ++i) {
-    const float* texel = p.texel[tap][i];
-    const float* l = texel + kTexelFloats + kTexelLobeFloats * static_cast<std::size_t>(lobe);
+    const unsigned members = p.group[group][i];
+    const float* l = p.texel[members != 0 ? std::countr_zero(members) : 0][i] + at;
+    Quad color = Quad::filled(0);
+    for (unsigned left = members; left != 0; left &= left - 1) {
+      const int tap = std::countr_zero(left);
+      color = mul_add(Quad::filled(p.share[tap][i]), Quad::load(p.texel[tap][i] + at), color);
+    }
+    color.store(values.color + 4 * i);
     values.cos_x[i] = l[kLobeTurn], values.sin_x[i] = l[kLobeTurn + 1];
     values.ax[i] = l[kLobeAxes], values.ay[i] = l[kLobeAxes + 1], values.az[i] = l[kLobeAxes + 2];
     values.exponent[i] = l[kLobeExponent];
-    values.energy[i] = l[kLobeEnergy], values.albedo[i] = l[kLobeAlbedo];
+    values.energy[i] = members != 0 ? l[kLobeEnergy] : kNoLobe;
+    values.albedo[i] = members != 0 ? l[kLobeAlbedo] : kNoLobe;
     values.lobe[i] = l;
   }
 }
@@ -88,13 +131,27 @@ HWY_INLINE void gather_lobe(const SbrdfPoints& p, int tap, int lobe, LobeValues&
 struct LobeMiddles {
   HWY_ALIGN float x[kPointsAtOnce], y[kPointsAtOnce], z[kPointsAtOnce];
   HWY_ALIGN float log_power[kPointsAtOnce];
+  bool any[kPointsAtOnce];  // whether a lobe of the points from there on is lit and seen; else the others are not set
 };
 
+// log(1 + x), from x itself near 0.
+HWY_INLINE V log_beside_one(V x, V one_and_x) {
+  const D f;
+  const V series = hn::Mul(
+      x,
+      hn::NegMulAdd(x, hn::NegMulAdd(x, hn::NegMulAdd(x, hn::Set(f, 0.25F), hn::Set(f, 0.33333333F)), hn::Set(f, 0.5F)),
+                    hn::Set(f, 1.0F)));
+  return hn::IfThenElse(hn::Lt(hn::Abs(x), hn::Set(f, 0.02F)), series, hn::Log(f, one_and_x));
+}
+
 // |p|^2 - 1 is taken from the axes, (C^2 - 1) wo^2 summed, which is exact where a lobe mirrors.
-HWY_INLINE void find_middles(const SurfaceFrames& frames, const LobeValues& l, LobeMiddles& middles) {
+HWY_INLINE void find_middles(const SurfaceFrames& frames, const float* lit, const LobeValues& l, LobeMiddles& middles) {
   const D f;
   const V one = hn::Set(f, 1.0F);
   for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    const auto there = hn::Gt(hn::Load(f, l.energy + i), hn::Set(f, kNoLobe));
+    middles.any[i] = !hn::AllFalse(f, hn::And(there, hn::Gt(hn::Load(f, lit + i), hn::Zero(f))));
+    if (!middles.any[i]) continue;
     const V c = hn::Load(f, l.cos_x + i), s = hn::Load(f, l.sin_x + i);
     const V vt = hn::Load(f, frames.vt + i), vb = hn::Load(f, frames.vb + i);
     const Direction v = {hn::MulAdd(c, vt, hn::Mul(s, vb)), hn::MulSub(c, vb, hn::Mul(s, vt)),
@@ -106,8 +163,7 @@ HWY_INLINE void find_middles(const SurfaceFrames& frames, const LobeValues& l, L
     };
     const V excess = hn::Add(beyond_one(axes.x, v.x), hn::Add(beyond_one(axes.y, v.y), beyond_one(axes.z, v.z)));
     const V size2 = hn::Max(dot(p, p), hn::Set(f, 1e-30F)), half = hn::Set(f, 0.5F);
-    const V near_one = hn::Log1p(f, hn::Max(excess, hn::Neg(half)));
-    const V log_size2 = hn::IfThenElse(hn::Lt(size2, half), hn::Log(f, size2), near_one);
+    const V log_size2 = log_beside_one(excess, size2);
     const V inverse = hn::Div(one, hn::Sqrt(size2));
     hn::Store(hn::Mul(p.x, inverse), f, middles.x + i), hn::Store(hn::Mul(p.y, inverse), f, middles.y + i);
     hn::Store(hn::Mul(p.z, inverse), f, middles.z + i);
@@ -166,13 +222,14 @@ HWY_INLINE Seen seen_of(const SbrdfShading& s, const float* lobe, float cosine) 
 // Adds what one lobe of one texel shows of the environment.
 template <bool reflection>
 HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const SurfaceFrames& frames,
-                             const LobeValues& l, const LobeMiddles& middles, int tap, int count, float* sums) {
+                             const LobeValues& l, const LobeMiddles& middles, int count, float* sums) {
   const D f;
   const hn::RebindToSigned<D> whole;
   HWY_ALIGN std::int32_t sizes[2][kPointsAtOnce];
   HWY_ALIGN float weight[kPointsAtOnce], cosine[kPointsAtOnce], shift[kPointsAtOnce];
   // 1. The cosine and shift that the horizon gives each lobe, and the sizes of the two maps around its exponent.
   for (int i = 0; i < kPointsAtOnce; ++i) {
+    if (!middles.any[i - i % static_cast<int>(hn::Lanes(f))]) continue;
     const Seen seen = seen_of(s, l.lobe[i], middles.z[i]);
     cosine[i] = seen.cosine, shift[i] = seen.shift;
     const auto map = static_cast<std::size_t>(l.lobe[i][kLobeMap]);
@@ -182,6 +239,10 @@ HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const 
   Taps taps[2];
   // 2. The middle of each lobe in the world, its addresses in both maps, and its weight.
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
+    if (!middles.any[i]) {
+      hn::Store(hn::Zero(f), f, weight + i);
+      continue;
+    }
     const V c = hn::Load(f, l.cos_x + i), q = hn::Load(f, l.sin_x + i);
     const Direction m = loaded(middles.x, middles.y, middles.z, i);
     const V along_t = hn::MulSub(c, m.x, hn::Mul(q, m.y)), along_b = hn::MulAdd(q, m.x, hn::Mul(c, m.y));
@@ -195,8 +256,7 @@ HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const 
     for (const int k : {0, 1}) address(face, hn::Load(whole, sizes[k] + i), i, taps[k]);
     const V power = bounded_exp(hn::Add(hn::Load(f, l.energy + i), hn::Load(f, middles.log_power + i)));
     const auto seen = hn::And(hn::Gt(m.z, hn::Zero(f)), hn::Gt(hn::Load(f, frames.vn + i), hn::Zero(f)));
-    const V share = hn::Mul(hn::Load(f, cosine + i), hn::LoadU(f, p.share[tap] + i));
-    hn::Store(hn::IfThenElseZero(seen, hn::Mul(power, share)), f, weight + i);
+    hn::Store(hn::IfThenElseZero(seen, hn::Mul(power, hn::Load(f, cosine + i))), f, weight + i);
   }
   // 3. Point by point, the light from both maps, blended, times the color of the lobe.
   for (int i = 0; i < count; ++i) {
@@ -210,7 +270,8 @@ HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const 
       light = mul_add(Quad::filled(1 - upper), light,
                       mul_add(Quad::filled(upper), fetched(s.maps[map + 1], taps[1], i), Quad::filled(0)));
     }
-    add_product<reflection>(light, mul_add(Quad::filled(w), Quad::load(lobe), Quad::filled(0)), sums + 12 * i);
+    add_product<reflection>(light, mul_add(Quad::filled(w), Quad::load(l.color + 4 * i), Quad::filled(0)),
+                            sums + 12 * i);
   }
 }
 
@@ -218,43 +279,51 @@ HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const 
 // (p.wi)^n = |p|^n (m.wi)^n, the second from 1 - m.wi = |m - wi|^2/2. The disc of a lamp is taken as a Gaussian of the
 // same variance, which makes the lobe wider and lower by one factor.
 template <bool reflection>
-HWY_INLINE void add_lit(const float* light, const SbrdfPoints& p, const SurfaceFrames& frames, const LobeValues& l,
-                        const LobeMiddles& middles, int tap, int count, float* sums) {
+HWY_INLINE void add_lit(const float* light, const LampInFrames& lamp, const SurfaceFrames& frames, const LobeValues& l,
+                        const LobeMiddles& middles, int count, float* sums) {
   const D f;
   HWY_ALIGN float weight[kPointsAtOnce];
-  const Direction to_light = {hn::Set(f, light[0]), hn::Set(f, light[1]), hn::Set(f, light[2])};
-  const V zero = hn::Zero(f), half = hn::Set(f, 0.5F);
+  const V zero = hn::Zero(f), half = hn::Set(f, 0.5F), one = hn::Set(f, 1.0F);
   for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
-    const V lt = dot(to_light, loaded(frames.tx, frames.ty, frames.tz, i));
-    const V lb = dot(to_light, loaded(frames.bx, frames.by, frames.bz, i));
-    const V cos_i = dot(to_light, loaded(p.nx, p.ny, p.nz, i));
+    hn::Store(zero, f, weight + i);
+    if (!middles.any[i]) continue;
+    const V lt = hn::Load(f, lamp.t + i), lb = hn::Load(f, lamp.b + i), cos_i = hn::Load(f, lamp.n + i);
     const V c = hn::Load(f, l.cos_x + i), q = hn::Load(f, l.sin_x + i);
     const Direction m = loaded(middles.x, middles.y, middles.z, i);
     const Direction apart = {hn::Sub(m.x, hn::MulAdd(c, lt, hn::Mul(q, lb))),
                              hn::Sub(m.y, hn::MulSub(c, lb, hn::Mul(q, lt))), hn::Sub(m.z, cos_i)};
     const V versine = hn::Mul(half, dot(apart, apart));
-    const V exponent = hn::Load(f, l.exponent + i), one = hn::Set(f, 1.0F);
-    const V lowered = hn::Div(one, hn::MulAdd(exponent, hn::Set(f, light[3]), one));
+    const auto seen =
+        hn::And(hn::And(hn::Gt(cos_i, zero), hn::Gt(hn::Load(f, frames.vn + i), zero)), hn::Lt(versine, one));
+    if (hn::AllFalse(f, seen)) continue;
+    const V exponent = hn::Load(f, l.exponent + i);
+    const V lowered = hn::Div(one, hn::MulAdd(exponent, hn::Load(f, lamp.variance + i), one));
     const V log_lobe = hn::MulAdd(hn::Mul(lowered, exponent), log_cos_of(versine), hn::Load(f, middles.log_power + i));
     const V power = hn::Mul(lowered, bounded_exp(hn::Add(log_lobe, hn::Load(f, l.albedo + i))));
-    const auto seen = hn::And(hn::And(hn::Gt(cos_i, zero), hn::Gt(hn::Load(f, frames.vn + i), zero)),
-                              hn::Lt(versine, hn::Set(f, 1.0F)));
-    hn::Store(hn::IfThenElseZero(seen, hn::Mul(hn::Mul(power, cos_i), hn::LoadU(f, p.share[tap] + i))), f, weight + i);
+    hn::Store(hn::IfThenElseZero(seen, hn::Mul(power, hn::Mul(cos_i, hn::Load(f, lamp.strength + i)))), f, weight + i);
   }
   for (int i = 0; i < count; ++i) {
     if (!(weight[i] > 0)) continue;
     add_product<reflection>(Quad::load(light + 4),
-                            mul_add(Quad::filled(weight[i]), Quad::load(l.lobe[i]), Quad::filled(0)), sums + 12 * i);
+                            mul_add(Quad::filled(weight[i]), Quad::load(l.color + 4 * i), Quad::filled(0)),
+                            sums + 12 * i);
   }
 }
 
-// The diffuse part: the texels' colors blended, in the irradiance and in the lights.
+// So many lamps are found at once: their directions stay in the first cache.
+constexpr int kLampsAtOnce = 4;
+struct Lamps {
+  int first = 0, count = 0;
+  LampInFrames seen[kLampsAtOnce];
+};
+
+// The diffuse part: the texels' colors blended, in the irradiance and in these lamps.
 template <bool reflection>
-HWY_INLINE void add_diffuse(const SbrdfShading& s, const SbrdfPoints& p, const SurfaceFrames& frames, int count,
-                            float* sums) {
+HWY_INLINE void add_diffuse(const SbrdfShading& s, const SbrdfPoints& p, const SurfaceFrames& frames,
+                            bool with_environment, const Lamps& lamps, int count, float* sums) {
   const D f;
   Taps taps;
-  if (s.diffuse.texels != nullptr) {
+  if (with_environment) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f))
       address(loaded(p.nx, p.ny, p.nz, i), s.diffuse.size, i, taps);
   }
@@ -264,33 +333,49 @@ HWY_INLINE void add_diffuse(const SbrdfShading& s, const SbrdfPoints& p, const S
     for (int tap = 0; tap < p.taps; ++tap)
       color = mul_add(Quad::filled(p.share[tap][i]), Quad::load(p.texel[tap][i]), color);
     Quad light = Quad::filled(0);
-    if (s.diffuse.texels != nullptr)
-      light = mul_add(Quad::filled(std::numbers::pi_v<float>), fetched(s.diffuse, taps, i), light);
-    for (int k = 0; k < s.lights; ++k) {
-      const float* l = s.light + 8 * k;
-      const float cos_i = l[0] * p.nx[i] + l[1] * p.ny[i] + l[2] * p.nz[i];
-      if (cos_i > 0) light = mul_add(Quad::filled(cos_i), Quad::load(l + 4), light);
+    if (with_environment) light = mul_add(Quad::filled(std::numbers::pi_v<float>), fetched(s.diffuse, taps, i), light);
+    for (int k = 0; k < lamps.count; ++k) {
+      const float cos_i = lamps.seen[k].n[i] * lamps.seen[k].strength[i];
+      if (cos_i > 0) light = mul_add(Quad::filled(cos_i), Quad::load(s.light + 8 * (lamps.first + k) + 4), light);
     }
     add_product<reflection>(light, color, sums + 12 * i);
   }
 }
 
-// The diffuse part, and then each lobe of each texel under the environment and under the lights.
+// Above 0 where a point shows lobes at all.
+HWY_INLINE void find_lit(const SurfaceFrames& frames, bool with_environment, const Lamps& lamps, float* lit) {
+  const D f;
+  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    V highest = hn::Set(f, with_environment ? 1.0F : 0.0F);
+    for (int k = 0; k < lamps.count; ++k) highest = hn::Max(highest, hn::Load(f, lamps.seen[k].n + i));
+    hn::Store(hn::Min(highest, hn::Load(f, frames.vn + i)), f, lit + i);
+  }
+}
+
+// The diffuse part, and then each lobe of each group of texels under the environment and under the lights.
 template <bool reflection>
 HWY_INLINE void add_all(const SbrdfShading& s, const SbrdfPoints& p, int count, float* sums) {
   SurfaceFrames frames;
   LobeValues values;
   LobeMiddles middles;
+  Lamps lamps;
+  HWY_ALIGN float lit[kPointsAtOnce];
   set_up_frames(p, frames);
-  add_diffuse<reflection>(s, p, frames, count, sums);
-  for (int tap = 0; tap < p.taps; ++tap) {
-    for (int lobe = 0; lobe < s.lobes; ++lobe) {
-      if ((s.lobes_on >> lobe & 1U) == 0) continue;
-      gather_lobe(p, tap, lobe, values);
-      find_middles(frames, values, middles);
-      if (s.diffuse.texels != nullptr) add_filtered<reflection>(s, p, frames, values, middles, tap, count, sums);
-      for (int k = 0; k < s.lights; ++k)
-        add_lit<reflection>(s.light + 8 * k, p, frames, values, middles, tap, count, sums);
+  for (; lamps.first == 0 || lamps.first < s.lights; lamps.first += kLampsAtOnce) {
+    const bool with_environment = s.diffuse.texels != nullptr && lamps.first == 0;
+    lamps.count = std::min(kLampsAtOnce, s.lights - lamps.first);
+    for (int k = 0; k < lamps.count; ++k) find_lamp(s, lamps.first + k, p, frames, lamps.seen[k]);
+    add_diffuse<reflection>(s, p, frames, with_environment, lamps, count, sums);
+    find_lit(frames, with_environment, lamps, lit);
+    for (int group = 0; group < p.groups; ++group) {
+      for (int lobe = 0; lobe < s.lobes; ++lobe) {
+        if ((s.lobes_on >> lobe & 1U) == 0) continue;
+        gather_lobe(p, group, lobe, values);
+        find_middles(frames, lit, values, middles);
+        if (with_environment) add_filtered<reflection>(s, p, frames, values, middles, count, sums);
+        for (int k = 0; k < lamps.count; ++k)
+          add_lit<reflection>(s.light + 8 * (lamps.first + k), lamps.seen[k], frames, values, middles, count, sums);
+      }
     }
   }
 }

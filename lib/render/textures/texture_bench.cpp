@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/testdata_for_test.h"
+#include "image/surface_file.h"
 #include "render/exact.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
@@ -89,6 +91,57 @@ BENCHMARK(BM_Texture)
     ->Args({0, 1, 0})
     ->Args({0, 3, 0})
     ->Args({0, 1, 1})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
+// The maps of testdata and, last, a paint of two lobes. A picture of 800 x 600, whose view stands still, of a sphere
+// that fills it as a teapot would; arguments: which of them, and whether an environment or a lamp lights it. A map of
+// two lobes is to take at most 1.5 times what the paint takes.
+constexpr const char* kMaps[] = {"nameplate", "wood", "brushed"};
+void BM_MapOrPaint(benchmark::State& state) {
+  const auto which = static_cast<std::size_t>(state.range(0));
+  const bool painted = which == std::size(kMaps);
+  const mesh::Mesh mesh = sphere_mesh(160);
+  const std::vector<double> exponents = {1.1, 4, 16, 64, 256};
+  const envmap::PrefilteredEnvironment env = uneven_env(exponents, {16, 32, 64, 64, 64});
+  brdf::SbrdfTexture texture;
+  Scene scene;
+  scene.mesh = &mesh;
+  scene.paints = {{}};
+  if (painted) {
+    scene.paints[0].diffuse = {0.05, 0.04, 0.03};
+    scene.paints[0].lobes = {{16, {0.1, 0.08, 0.05}, {0.02, 0.02, 0.02}}, {64, {0.2, 0.1, 0.1}, {0.1, 0.1, 0.1}}};
+  } else {
+    auto read = image::read_sbrdf(testdata(std::string(kMaps[which]) + ".sbrdf.exr"));
+    if (!read.ok()) return state.SkipWithError(read.error().message.c_str());
+    texture = *std::move(read);
+  }
+  if (state.range(1) != 0) {
+    scene.env = &env;
+  } else {
+    scene.lights = {{normalized({0.3, 1, 1}), {1, 1, 1}}};
+  }
+  const SurfaceLayer layer(scene, {painted ? PartSurface{} : PartSurface{&texture, 1, nullptr}},
+                           brdf::CriticalAngle::kSlide);
+  scene.layer = &layer;
+  auto renderer = Renderer::create();
+  if (!renderer.ok() || !renderer->load(scene, "cpu").ok()) return state.SkipWithError("no renderer");
+  const View view{Camera::orbit(mesh, 35, 12, 0.7, 30, 4.0 / 3), 800, 600, 1, false};
+  Frame frame;
+  for (auto _ : state) {
+    if (!renderer->draw(view, frame).ok()) return state.SkipWithError("nothing drawn");
+  }
+  std::size_t seen = 0;
+  double sum = 0;  // of what is drawn, by which pictures before and after a change can be told apart
+  for (std::size_t i = 3; i < frame.gbuffer->data.size(); i += 4) seen += frame.gbuffer->data[i] != 0;
+  for (const float value : frame.picture.data) sum += value;
+  state.counters["seen"] = static_cast<double>(seen);
+  state.counters["sum"] = sum;
+  state.SetLabel(painted ? "paint" : kMaps[which]);
+}
+BENCHMARK(BM_MapOrPaint)
+    ->ArgsProduct({{0, 1, 2, 3}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();

@@ -61,6 +61,7 @@ std::vector<TextureLevel> texture_levels(const brdf::SbrdfTexture& texture, std:
 TexturePlace repeated(const TexturePlace& place, double repeat) {
   constexpr double kFarthest = 1e30;  // which a float and its multiples hold
   TexturePlace result = place;
+  if (repeat == 1 && std::max(std::abs(place.u), std::abs(place.v)) <= 1) return result;
   for (float* value : {&result.u, &result.v, &result.across[0], &result.across[1], &result.down[0], &result.down[1]})
     *value = static_cast<float>(std::clamp(repeat * *value, -kFarthest, kFarthest));
   return result;
@@ -102,7 +103,10 @@ bool is_between_texels(const TexturePlace& place, double scale, int width, int h
 
 FilterProbes filter_probes(const TexturePlace& place, double scale, int width, int height, int levels) {
   if (is_between_texels(place, scale, width, height)) return {};
-  const auto texels = [&](const float* step) { return scale * std::hypot(step[0] * width, step[1] * height); };
+  const auto texels = [&](const float* step) {
+    const double x = scale * step[0] * width, y = scale * step[1] * height;
+    return std::sqrt(x * x + y * y);
+  };
   const double across = texels(place.across), down = texels(place.down);
   const auto probes = [](double along) { return static_cast<int>(std::clamp(std::ceil(along), 1.0, 1e4)); };
   FilterProbes result;

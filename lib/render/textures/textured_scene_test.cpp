@@ -181,6 +181,7 @@ TEST_F(Alpha, MapsLieOverOneAnother) {
       double worst = 0, apart = 0;
       for (std::size_t i = 0; i < gl.picture.data.size(); i += 4) {
         const float *a = &gl.picture.data[i], *b = &cpu.picture.data[i], *c = &control.picture.data[i];
+        ASSERT_TRUE(std::isfinite(a[0] + a[1] + a[2])) << i;
         worst = std::max(worst, seen_difference({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, 1));
         apart = std::max(apart, seen_difference({c[0], c[1], c[2]}, {b[0], b[1], b[2]}, 1));
       }

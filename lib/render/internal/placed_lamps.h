@@ -1,0 +1,31 @@
+// Lamps at a place, as the kernels and the programs of OpenGL have them: they find direction and strength at each
+// point. goniochrome-theory(7), RENDERING, Lamps.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "render/scene.h"
+
+namespace goniochrome::render {
+
+// What light_at() needs of a lamp, in single precision. Lengths are in units of the mesh.
+struct PlacedLamp {
+  float position[3] = {0, 0, 0};  // from origin_of() the mesh
+  float reach2 = 0;   // the square of the distance at which its light is that of the scene; 0: it is far away
+  float least2 = 0;   // the square of the distance within which its light grows no more
+  float radius2 = 0;  // of the sphere, squared
+};
+
+// Of each lamp, in order; nothing if all are far away.
+std::vector<PlacedLamp> placed_lamps(const std::vector<Light>& lights, const Vec3& origin);
+
+// Points and lamps are told from the middle of the mesh, so that single precision serves meshes far from 0.
+Vec3 origin_of(const mesh::Mesh& mesh);
+std::array<float, 3> from_origin(const Vec3& position, const Vec3& origin);
+
+// Error: a paint that is seen shows the extent of a lamp at a place. What its lobes gather of a disc is tabulated for
+// one radius, and the lamp has another at each point. `engine` is the name of the engine that asks.
+Result<void> draws_placed_lamps(const Scene& scene, const char* engine);
+
+}  // namespace goniochrome::render
