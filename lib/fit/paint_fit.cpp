@@ -47,8 +47,7 @@ std::vector<double> chosen_exponents(const FitOptions& options, const FlakeTarge
 // without a coat and not under it.
 std::vector<FlakePoint> fit_flake(const FitOptions& options, const FlakeTarget& together, const FlakeTarget& by_view,
                                   const std::vector<double>& views_deg, const std::vector<double>& exponents,
-                                  double first_rad, PaintFit& out) {
-  const Deadline deadline(options.time_limit_s);
+                                  double first_rad, const Deadline& deadline, PaintFit& out) {
   PaintFitReport& report = out.report;
   const std::vector<double> seen = seen_exponents(exponents, first_rad);
   FlakeModel model{chosen_exponents(options, together, seen, deadline)};
@@ -234,8 +233,10 @@ void PaintFitter::finish(const std::vector<paint::LabReading>& readings, const c
 }
 
 // Readings beyond glare, one angle of incidence after the other. A paint without readings at any other angle has none
-// to be predicted from.
-std::vector<IncidenceFigures> PaintFitter::incidences(const paint::Paint& paint, const paint::LobeFit& together) const {
+// to be predicted from. The figures end where the time of the paint does, because weights that were found in no time
+// would tell a disagreement that is not there.
+std::vector<IncidenceFigures> PaintFitter::incidences(const paint::Paint& paint, const paint::LobeFit& together,
+                                                      const Deadline& deadline) const {
   const auto white = color::white_point(paint::condition_of(paint));
   if (!paint.measurement || !white.ok()) return {};
   std::map<double, std::vector<paint::LabReading>> groups;
@@ -249,7 +250,8 @@ std::vector<IncidenceFigures> PaintFitter::incidences(const paint::Paint& paint,
     others.measurement->spectra.clear();
     std::erase_if(others.measurement->rows,
                   [at = incidence_deg](const paint::LabReading& row) { return row.geometry.incidence_deg == at; });
-    const auto alone = fit_all(others);
+    const auto alone = fit_all(others, deadline);
+    if (deadline.passed()) break;
     if (alone.ok())
       figures.push_back({incidence_deg, here.size(), mean_de00(errors_at(here, *white, together)),
                          mean_de00(errors_at(here, *white, alone->lobes))});
@@ -258,12 +260,13 @@ std::vector<IncidenceFigures> PaintFitter::incidences(const paint::Paint& paint,
 }
 
 Result<PaintFit> PaintFitter::fit(const paint::Paint& paint) const {
-  GONIO_ASSIGN(PaintFit all, fit_all(paint));
-  if (options_.by_incidence) all.report.incidences = incidences(paint, all.lobes);
+  const Deadline deadline(options_.time_limit_s);
+  GONIO_ASSIGN(PaintFit all, fit_all(paint, deadline));
+  if (options_.by_incidence) all.report.incidences = incidences(paint, all.lobes, deadline);
   return all;
 }
 
-Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint) const {
+Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint, const Deadline& deadline) const {
   const Stopwatch clock;
   const std::vector<paint::GlossReading>& readings = paint.gloss.empty() ? options_.assumed_gloss : paint.gloss;
   GONIO_ASSIGN(const double coat, coat_index(paint, readings));
@@ -274,15 +277,16 @@ Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint) const {
                coated_target(options_, paint, target, white, basis_.exponents, coat, false));
   const double first_rad = target.first_deg * kDegree;
   const auto fit_views = [&](const std::vector<double>& views_deg) -> Result<std::vector<FlakePoint>> {
-    if (views_deg.empty()) return fit_flake(options_, together, together, {}, basis_.exponents, first_rad, out);
+    if (views_deg.empty())
+      return fit_flake(options_, together, together, {}, basis_.exponents, first_rad, deadline, out);
     GONIO_ASSIGN(const Target rows, target_rows(paint, options_.target, white, basis_.exponents, coat, true));
     GONIO_ASSIGN(const FlakeTarget by_view, coated_target(options_, paint, rows, white, basis_.exponents, coat, true));
-    return fit_flake(options_, together, by_view, views_deg, basis_.exponents, first_rad, out);
+    return fit_flake(options_, together, by_view, views_deg, basis_.exponents, first_rad, deadline, out);
   };
   const Twins twins = twins_of(target.readings);
   GONIO_ASSIGN(std::vector<FlakePoint> lost,
                fit_views(options_.views_where_needed ? twins.views_deg : options_.views_deg));
-  if (options_.views_where_needed && !lost.empty()) {
+  if (options_.views_where_needed && !lost.empty() && !deadline.passed()) {
     out = started(coat);
     GONIO_ASSIGN(lost, fit_views(views_of(target.readings)));
   }
@@ -317,12 +321,13 @@ Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint) const {
 
 Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
   const Stopwatch clock;
+  const Deadline deadline(options_.time_limit_s);
   PaintFit out = started(options_.coat_index.value_or(paint::kNoCoat));
   GONIO_ASSIGN(const color::Xyz white, color::white_point({"D65", 2}));
   GONIO_ASSIGN(const BrdfRows rows, brdf_rows(brdf, white, options_, basis_.exponents));
   static const std::vector<double> kEvery15_deg = {0, 15, 30, 45, 60, 75};
   fit_flake(options_, rows.flake, rows.flake, options_.views_where_needed ? kEvery15_deg : options_.views_deg,
-            basis_.exponents, rows.first_rad, out);
+            basis_.exponents, rows.first_rad, deadline, out);
   out.report.gamut_de00 = rows.gamut_de00;
   out.report.brdf = BrdfFigures{.fitted = rows.fitted.size(), .glare = rows.glare.size(), .steep = rows.steep};
   add_spike(rows, spike_exponents(options_, basis_.exponents, out.report), out);
@@ -337,20 +342,20 @@ Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
   finish(brdf.paint.measurement ? brdf.paint.measurement->rows : std::vector<paint::LabReading>(), white, out);
   compare(rows, white, out);
   if (brdf.paint.measurement) {
-    GONIO_ASSIGN(out.report.brdf->from_five_angles, from_five_angles(brdf));
+    GONIO_ASSIGN(out.report.brdf->from_five_angles, from_five_angles(brdf, deadline));
   }
   out.report.time_us = clock.elapsed_s() * 1e6;
   return out;
 }
 
 // Without views, which five readings know nothing of, and without gloss, which no direction beyond glare shows.
-Result<FiveAngleFigures> PaintFitter::from_five_angles(const BrdfTarget& brdf) const {
+Result<FiveAngleFigures> PaintFitter::from_five_angles(const BrdfTarget& brdf, const Deadline& deadline) const {
   const double coat = options_.coat_index.value_or(paint::kNoCoat);
   PaintFit five = started(coat);
   GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(brdf.paint)));
   GONIO_ASSIGN(const Target target, target_rows(brdf.paint, options_.target, white, basis_.exponents, coat));
   const FlakeTarget flake = flake_target(options_, target, white, coat);
-  fit_flake(options_, flake, flake, {}, basis_.exponents, target.first_deg * kDegree, five);
+  fit_flake(options_, flake, flake, {}, basis_.exponents, target.first_deg * kDegree, deadline, five);
   return five_angle_figures(brdf, five.lobes);
 }
 
