@@ -129,11 +129,7 @@ class PaintPictures {
   PaintPictures(const std::string& pattern, const char* option_does) : pattern_(pattern), option_does_(option_does) {}
 
   // Error (usage): a word in braces that there is not; a second paint for one file.
-  static Result<void> check(const std::string& pattern) {
-    if (!FileNames::is_pattern(pattern)) return {};
-    GONIO_TRY(FileNames::create(pattern, words(), "--picture"));
-    return {};
-  }
+  static Result<void> check(const std::string& pattern) { return FileNames::check(pattern, words(), "--picture"); }
   Result<void> write(const paint::Paint& paint, const image::Image& image, const cli::Session& session) {
     GONIO_ASSIGN(const std::string file, next(paint));
     return write_picture(file, image, session);

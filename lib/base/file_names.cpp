@@ -35,6 +35,18 @@ std::optional<std::string> word_at(std::string_view pattern, std::size_t at) {
   return std::string(pattern.substr(at + 1, end - at - 1));
 }
 
+Error unknown_word(const std::string& pattern, const std::string& word, const std::vector<std::string>& words,
+                   const std::string& option) {
+  std::string known;
+  for (const std::string& one : words) known += (known.empty() ? "{" : ", {") + one + "}";
+  return usage_error("{} is \"{}\": {{{}}} is not known here: there is {}", option, pattern, word, known);
+}
+
+bool is_letters(std::string_view word) {
+  return !word.empty() &&
+         std::ranges::all_of(word, [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); });
+}
+
 }  // namespace
 
 std::string safe_file_name(std::string_view text) {
@@ -60,6 +72,15 @@ bool FileNames::is_pattern(std::string_view text) {
   });
 }
 
+Result<void> FileNames::check(const std::string& path, const std::vector<std::string>& words,
+                              const std::string& option) {
+  for (std::size_t at = 0; at < path.size(); ++at)
+    if (const auto word = word_at(path, at);
+        word && is_letters(*word) && std::ranges::find(words, *word) == words.end())
+      return unknown_word(path, *word, words, option);
+  return {};
+}
+
 Result<FileNames> FileNames::create(const std::string& pattern, const std::vector<std::string>& words,
                                     const std::string& option) {
   FileNames names;
@@ -70,11 +91,7 @@ Result<FileNames> FileNames::create(const std::string& pattern, const std::vecto
       plain += pattern[at];
       continue;
     }
-    if (std::ranges::find(words, *word) == words.end()) {
-      std::string known;
-      for (const std::string& one : words) known += (known.empty() ? "{" : ", {") + one + "}";
-      return usage_error("{} is \"{}\": {{{}}} is not known here: there is {}", option, pattern, *word, known);
-    }
+    if (std::ranges::find(words, *word) == words.end()) return unknown_word(pattern, *word, words, option);
     if (!plain.empty()) names.pieces_.push_back({plain, false});
     plain.clear();
     names.pieces_.push_back({*word, true});

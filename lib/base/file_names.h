@@ -23,6 +23,10 @@ class FileNames {
   // Whether the text has one of the words in braces.
   static bool is_pattern(std::string_view text);
 
+  // For the name of one file, which may have braces of its own. Error (usage): it has letters in braces that are none
+  // of `words`, as {nme} is, so that somebody meant a pattern. `option` is what the error calls the name.
+  static Result<void> check(const std::string& path, const std::vector<std::string>& words, const std::string& option);
+
   // Error (usage): a word in braces that is none of `words`, with those that there are. `option` is what the error
   // calls the pattern.
   static Result<FileNames> create(const std::string& pattern, const std::vector<std::string>& words,

@@ -60,5 +60,17 @@ TEST(FileName, PatternIsKnownByItsWords) {
   EXPECT_EQ(FileNames::create("a{b.png", {"name"}, "--output")->next(1, "x", ""), "a{b.png");
 }
 
+TEST(FileName, MisspelledWordIsToldAndOtherBracesAreNot) {
+  const std::vector<std::string> words = {"name", "code"};
+  for (const char* wrong : {"{nme}.png", "a/{Name}.png", "{name}-{cod}.png", "{{x}.png"}) {
+    const auto checked = FileNames::check(wrong, words, "--picture");
+    ASSERT_FALSE(checked.ok()) << wrong;
+    EXPECT_EQ(checked.error().kind, ErrorKind::kUsage);
+    EXPECT_THAT(checked.error().message, HasSubstr("is not known here: there is {name}, {code}"));
+  }
+  for (const char* fine : {"{name}.png", "a.png", "{1}.png", "{}.png", "{a b}.png", "{nme", "nme}", "{3f2a-11}.png"})
+    EXPECT_TRUE(FileNames::check(fine, words, "--picture").ok()) << fine;
+}
+
 }  // namespace
 }  // namespace goniochrome

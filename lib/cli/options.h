@@ -104,7 +104,8 @@ std::string man_page(const ToolSpec& spec);
 std::string bash_completion(const ToolSpec& spec);
 
 // Returns one sentence for each fault of the table: an option without a heading, a unit or an example, an example that
-// the option itself refuses, a help line that is not one. It parses the examples into the targets.
+// the option itself refuses, a help line that is not one, a text with a blank too many. It parses the examples into the
+// targets.
 std::vector<std::string> table_faults(const ToolSpec& spec);
 
 }  // namespace goniochrome::cli

@@ -3,17 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <span>
 #include <string_view>
 
 #include "base/paths.h"
+#include "base/text.h"
 
 namespace goniochrome::cli {
 
 namespace {
 
 // The options that name files to write, in all tools.
-constexpr std::array<std::string_view, 7> kOutputs = {"output", "report",  "table",   "plot",
-                                                      "curve",  "picture", "residual"};
+constexpr std::array<std::string_view, 9> kOutputs = {"output",  "report",   "table", "plot",     "curve",
+                                                      "picture", "residual", "cloud", "error-map"};
 
 struct File {
   std::string what;  // "--output", or "PAINTS" for a positional word
@@ -28,20 +30,40 @@ bool is_file(const std::string& path) {
   return !path.empty() && path != "-" && (!is_there(path) || is_plain_file(path));
 }
 
-// The values of the options that take a FILE: those that are written, or those that are read.
+bool has_any_of(const std::string& value, std::span<const std::string_view> words) {
+  return std::ranges::any_of(words, [&](std::string_view word) { return value.find(word) != std::string::npos; });
+}
+
+// `text` and what may be the name of a file in it: FILE#NAMES, FILE@X,Y, PART=FILE*N, FILE,FILE.
+std::vector<std::string> names_in(const std::string& text) {
+  std::vector<std::string> names = {text};
+  for (const std::string_view piece : split(text, ',')) {
+    const std::string word(piece.substr(piece.find('=') + 1));  // all of it where there is no such sign
+    names.push_back(word);
+    for (std::size_t at = word.find_first_of("#@*"); at != std::string::npos; at = word.find_first_of("#@*", at + 1))
+      names.push_back(word.substr(0, at));
+  }
+  return names;
+}
+
+// The values of the options that name files: of those that are written, or of those that are read.
 std::vector<File> named_files(const ToolSpec& spec, bool written) {
+  constexpr std::array<std::string_view, 2> kWritten = {"FILE", "PATTERN"};
+  constexpr std::array<std::string_view, 5> kRead = {"FILE", "PAINT", "IMAGE", "TABLE", "DROPPER"};
   std::vector<File> files;
-  const auto add = [&](const std::string& what, const std::string& path) {
-    if (is_file(path)) files.push_back({what, path});
+  const auto add = [&](const std::string& what, const std::string& text) {
+    for (const std::string& path : written ? std::vector{text} : names_in(text))
+      if (is_file(path)) files.push_back({what, path});
   };
   for (const Option& option : spec.options) {
-    if (option.value != "FILE" || writes(option) != written) continue;
+    if (writes(option) != written) continue;
+    if (!(written ? has_any_of(option.value, kWritten) : has_any_of(option.value, kRead))) continue;
     if (const auto* one = std::get_if<std::string*>(&option.target)) add("--" + option.name, **one);
     if (const auto* many = std::get_if<std::vector<std::string>*>(&option.target))
-      for (const std::string& path : **many) add("--" + option.name, path);
+      for (const std::string& text : **many) add("--" + option.name, text);
   }
   if (!written && spec.inputs)
-    for (const std::string& path : *spec.inputs->target) add(spec.inputs->value, path);
+    for (const std::string& word : *spec.inputs->target) add(spec.inputs->value, word);
   return files;
 }
 

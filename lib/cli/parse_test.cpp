@@ -164,8 +164,19 @@ TEST(Texts, WhatATableLacksIsTold) {
   EXPECT_EQ(fault([](Option& o) { o.unit = ""; }), "sample-tool --tolerance: its unit is not told");
   EXPECT_EQ(fault([](Option& o) { o.help = "error."; }),
             "sample-tool --tolerance: its help is not one line without a full stop");
+  EXPECT_EQ(fault([](Option& o) { o.details = "It is  relative."; }),
+            "sample-tool --tolerance: a blank too many in its text");
   EXPECT_EQ(fault([](Option& o) { o.example = "2"; }),
             "sample-tool --tolerance: refuses its own example: --tolerance is \"2\": give a number from 0 to 1");
+}
+
+TEST(Texts, ThePageNamesEveryOtherPageOnce) {
+  Values v;
+  ToolSpec spec = table(v);
+  spec.see_also = {"goniochrome-theory(7)", "fit-paint(1)"};
+  const std::string man = man_page(spec);
+  EXPECT_EQ(man.substr(man.find(".SH SEE ALSO")),
+            ".SH SEE ALSO\n.BR goniochrome\\-theory (7),\n.BR fit\\-paint (1),\n.BR goniochrome\\-paint (5)\n");
 }
 
 int run_tool(const std::vector<std::string>& words, const std::function<Result<Verdict>(Session&)>& run) {

@@ -204,12 +204,15 @@ std::string man_page(const ToolSpec& spec) {
   for (std::size_t i = 0; i < spec.examples.size(); ++i)
     text += fmt::format("{}{}\n.PP\n.nf\n.RS\n{}\n.RE\n.fi\n", i ? ".PP\n" : "",
                         roff(sentence(spec.examples[i].effect)), roff(spec.examples[i].command));
+  std::vector<std::string> pages = spec.see_also;
+  for (const char* of_all : {"goniochrome-paint(5)", "goniochrome-theory(7)"})
+    if (std::ranges::find(pages, of_all) == pages.end()) pages.emplace_back(of_all);
   text += ".SH SEE ALSO\n";
-  for (const std::string& page : spec.see_also) {
+  for (const std::string& page : pages) {
     const auto open = page.find('(');
-    text += fmt::format(".BR {} {},\n", roff(page.substr(0, open)), page.substr(open));
+    text +=
+        fmt::format(".BR {} {}{}\n", roff(page.substr(0, open)), page.substr(open), page == pages.back() ? "" : ",");
   }
-  text += ".BR goniochrome\\-paint (5),\n.BR goniochrome\\-theory (7)\n";
   return text;
 }
 
@@ -237,6 +240,16 @@ std::string bash_completion(const ToolSpec& spec) {
 
 std::vector<std::string> table_faults(const ToolSpec& spec) {
   std::vector<std::string> faults;
+  // Texts are put together from pieces of a line each, where a blank is soon written twice.
+  const auto check_blanks = [&](const std::string& where, const std::string& text) {
+    if (text.find("  ") != std::string::npos || text.starts_with(' ') || text.ends_with(' '))
+      faults.push_back(fmt::format("{} {}: a blank too many in its text", spec.name, where));
+  };
+  check_blanks("NAME", spec.summary);
+  for (const std::string& paragraph : spec.description) check_blanks("DESCRIPTION", paragraph);
+  for (const Option& option : spec.options) check_blanks("--" + option.name, option.help + "." + option.details);
+  for (const ReportKey& key : spec.report) check_blanks("REPORT " + key.key, key.meaning);
+  for (const Example& example : spec.examples) check_blanks("EXAMPLES", example.effect);
   const auto fault = [&](const Option& option, const std::string& what) {
     faults.push_back(fmt::format("{} --{}: {}", spec.name, option.name, what));
   };

@@ -98,10 +98,13 @@ image::Image without_corners(image::Image square) {
   return square;
 }
 
-std::string envmap_attribute(const image::ImagePart& part) {
-  const auto found = part.attributes.find("envmap");
-  const auto* value = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
-  return value ? *value : "";
+// The maps of a prefiltered environment are means of its light, and filtering these again would blur it twice. Maps in
+// a layout for other programs, which the attribute envmap tells, are images as those of others are.
+Result<void> check_not_prefiltered(const image::ImagePart& part, const std::string& name) {
+  if (text_attribute(part, "goniochrome:texels").empty() || !text_attribute(part, "envmap").empty()) return {};
+  const std::string source = text_attribute(part, "goniochrome:source");
+  return input_error("{}: is prefiltered already: give the image that it was made from{}", name,
+                     source.empty() ? "" : ", " + source);
 }
 
 }  // namespace
@@ -118,7 +121,8 @@ class EnvironmentReader {
   }
 
   static Result<Environment> from_part(image::ImagePart part, BadPixels bad_pixels, const std::string& name) {
-    const std::string envmap = envmap_attribute(part);
+    GONIO_TRY(check_not_prefiltered(part, name));
+    const std::string envmap = text_attribute(part, "envmap");
     GONIO_ASSIGN(Picture picture, picture_of(std::move(part), bad_pixels, name));
     return arranged(std::move(picture.rgb), envmap, picture.counts, name);
   }

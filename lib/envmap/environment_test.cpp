@@ -325,6 +325,22 @@ TEST_F(EnvironmentFile, FinerTexelsShowTheSameRadianceEverywhere) {
   }
 }
 
+// The first map of a prefiltered environment has the shape of a cube, and would be taken for one.
+TEST_F(EnvironmentFile, MapsThatArePrefilteredAreNoEnvironment) {
+  const std::string cube = (folder_ / "cube.exr").string(), prefiltered = (folder_ / "x.env.exr").string();
+  image::ImagePart part = {"diffuse", {2, 12, 3, std::vector<float>(72, 1.0F), {}}, {}, image::PixelType::kHalf};
+  ASSERT_TRUE(image::write_exr(cube, {part}).ok());
+  EXPECT_TRUE(Environment::read(cube, BadPixels::kError).ok()) << "the control";
+  part.attributes["goniochrome:texels"] = std::string("center");
+  part.attributes["goniochrome:source"] = std::string("hall.hdr");
+  ASSERT_TRUE(image::write_exr(prefiltered, {part}).ok());
+  const auto env = Environment::read(prefiltered, BadPixels::kError);
+  ASSERT_FALSE(env.ok());
+  EXPECT_EQ(env.error().kind, ErrorKind::kInput);
+  EXPECT_THAT(env.error().message,
+              HasSubstr("x.env.exr: is prefiltered already: give the image that it was made from, hall.hdr"));
+}
+
 TEST_F(EnvironmentFile, FacesOfDifferentSizeAreRefused) {
   std::vector<std::string> paths;
   for (int f = 0; f < 6; ++f) {

@@ -119,12 +119,6 @@ double number_attribute(const image::ImagePart& part, const std::string& name) {
   return number_attribute(part.attributes, name);
 }
 
-std::string text_attribute(const image::ImagePart& part, const std::string& name) {
-  const auto found = part.attributes.find(name);
-  const auto* text = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
-  return text ? *text : "";
-}
-
 Result<PrefilteredLobe> lobe_of(image::ImagePart part, const std::string& path) {
   const auto refused = [&](const std::string& why) {
     return input_error("{}: part {}: {}: write it with prefilter-envmap, in its own layout", path, part.name, why);

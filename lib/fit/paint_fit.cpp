@@ -244,8 +244,10 @@ void PaintFitter::finish(const std::vector<paint::LabReading>& readings, const c
 }
 
 // Readings beyond glare, one angle of incidence after the other. A paint without readings at any other angle has none
-// to be predicted from.
-std::vector<IncidenceFigures> PaintFitter::incidences(const paint::Paint& paint, const paint::LobeFit& together) const {
+// to be predicted from. The figures end where the time of the paint does, because weights that were found in no time
+// would tell a disagreement that is not there.
+std::vector<IncidenceFigures> PaintFitter::incidences(const paint::Paint& paint, const paint::LobeFit& together,
+                                                      const Deadline& deadline) const {
   const auto white = color::white_point(paint::condition_of(paint));
   if (!paint.measurement || !white.ok()) return {};
   std::map<double, std::vector<paint::LabReading>> groups;
@@ -259,7 +261,8 @@ std::vector<IncidenceFigures> PaintFitter::incidences(const paint::Paint& paint,
     others.measurement->spectra.clear();
     std::erase_if(others.measurement->rows,
                   [at = incidence_deg](const paint::LabReading& row) { return row.geometry.incidence_deg == at; });
-    const auto alone = fit_all(others);
+    const auto alone = fit_all(others, deadline);
+    if (deadline.passed()) break;
     if (alone.ok())
       figures.push_back({incidence_deg, here.size(), mean_de00(errors_at(here, *white, together)),
                          mean_de00(errors_at(here, *white, alone->lobes))});
@@ -268,12 +271,13 @@ std::vector<IncidenceFigures> PaintFitter::incidences(const paint::Paint& paint,
 }
 
 Result<PaintFit> PaintFitter::fit(const paint::Paint& paint) const {
-  GONIO_ASSIGN(PaintFit all, fit_all(paint));
-  if (options_.by_incidence) all.report.incidences = incidences(paint, all.lobes);
+  const Deadline deadline(options_.time_limit_s);
+  GONIO_ASSIGN(PaintFit all, fit_all(paint, deadline));
+  if (options_.by_incidence) all.report.incidences = incidences(paint, all.lobes, deadline);
   return all;
 }
 
-Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint) const {
+Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint, const Deadline& deadline) const {
   const Stopwatch clock;
   const std::vector<paint::GlossReading>& readings = paint.gloss.empty() ? options_.assumed_gloss : paint.gloss;
   GONIO_ASSIGN(const double coat, coat_index(paint, readings));
@@ -282,7 +286,6 @@ Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint) const {
   GONIO_ASSIGN(const Target target, target_rows(paint, options_.target, white, basis_.exponents, coat));
   GONIO_ASSIGN(const FlakeTarget together,
                coated_target(options_, paint, target, white, basis_.exponents, coat, false));
-  const Deadline deadline(options_.time_limit_s);
   const auto [model, lost_by_all] =
       fit_flake(options_, together, basis_.exponents, target.first_deg * kDegree, deadline, out);
   std::vector<FlakePoint> lost = lost_by_all;
@@ -297,7 +300,8 @@ Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint) const {
       options_.view_sets == ViewSets::kWhereNeeded && options_.views_deg.empty() ? twins.views_deg : options_.views_deg;
   if (!views_asked.empty()) GONIO_TRY(fit_views(views_asked));
   const std::vector<double> all_views = views_of(target.readings);
-  if (options_.view_sets != ViewSets::kNone && options_.views_deg.empty() && !lost.empty() && all_views.size() > 1) {
+  if (options_.view_sets != ViewSets::kNone && options_.views_deg.empty() && !lost.empty() && all_views.size() > 1 &&
+      !deadline.passed()) {
     GONIO_TRY(fit_views(all_views));
     out.report.views_for_coat = true;
   }
@@ -332,11 +336,11 @@ Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint) const {
 
 Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
   const Stopwatch clock;
+  const Deadline deadline(options_.time_limit_s);
   PaintFit out = started(options_.coat_index.value_or(paint::kNoCoat));
   GONIO_ASSIGN(const color::Xyz white, color::white_point({"D65", 2}));
   GONIO_ASSIGN(const BrdfRows rows, brdf_rows(brdf, white, options_, basis_.exponents));
   static const std::vector<double> kEvery15_deg = {0, 15, 30, 45, 60, 75};
-  const Deadline deadline(options_.time_limit_s);
   const FlakeStart flake = fit_flake(options_, rows.flake, basis_.exponents, rows.first_rad, deadline, out);
   const bool every_15 = options_.views_deg.empty() && options_.view_sets == ViewSets::kWhereNeeded;
   const std::vector<double>& views_deg = every_15 ? kEvery15_deg : options_.views_deg;
@@ -355,20 +359,20 @@ Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
   finish(brdf.paint.measurement ? brdf.paint.measurement->rows : std::vector<paint::LabReading>(), white, out);
   compare(rows, white, out);
   if (brdf.paint.measurement) {
-    GONIO_ASSIGN(out.report.brdf->from_five_angles, from_five_angles(brdf));
+    GONIO_ASSIGN(out.report.brdf->from_five_angles, from_five_angles(brdf, deadline));
   }
   out.report.time_us = clock.elapsed_s() * 1e6;
   return out;
 }
 
 // Without views, which five readings know nothing of, and without gloss, which no direction beyond glare shows.
-Result<FiveAngleFigures> PaintFitter::from_five_angles(const BrdfTarget& brdf) const {
+Result<FiveAngleFigures> PaintFitter::from_five_angles(const BrdfTarget& brdf, const Deadline& deadline) const {
   const double coat = options_.coat_index.value_or(paint::kNoCoat);
   PaintFit five = started(coat);
   GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(brdf.paint)));
   GONIO_ASSIGN(const Target target, target_rows(brdf.paint, options_.target, white, basis_.exponents, coat));
   const FlakeTarget flake = flake_target(options_, target, white, coat);
-  fit_flake(options_, flake, basis_.exponents, target.first_deg * kDegree, Deadline(options_.time_limit_s), five);
+  fit_flake(options_, flake, basis_.exponents, target.first_deg * kDegree, deadline, five);
   return five_angle_figures(brdf, five.lobes);
 }
 

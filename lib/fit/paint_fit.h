@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/clock.h"
 #include "base/result.h"
 #include "brdf/gloss.h"
 #include "brdf/rough_coat.h"
@@ -48,7 +49,7 @@ struct FitOptions {
   ViewSets view_sets = ViewSets::kWhereLost;
   Satin satin = Satin::kBySeveral;
   double steepest_deg = 75;   // measured BRDFs: directions farther from the normal are left out
-  double time_limit_s = 0;    // for one paint; 0: none
+  double time_limit_s = 0;    // for one paint, all of its fits together; 0: none
   bool by_incidence = false;  // PaintFitReport::incidences, of paints with several angles: a fit more for each of them
 };
 
@@ -150,7 +151,7 @@ struct PaintFitReport {
   std::optional<brdf::CoatRange> coat_range = {};  // where several readings are those of a coat of two scales
   std::optional<BrdfFigures> brdf;
   std::optional<ViewFigures> views;
-  std::vector<IncidenceFigures> incidences;  // where they were asked for, and there are two or more
+  std::vector<IncidenceFigures> incidences;  // where they were asked for, there are two or more, and there was time
   double time_us = 0;                        // without that
 };
 
@@ -179,10 +180,11 @@ class PaintFitter {
  private:
   Result<double> coat_index(const paint::Paint& paint, const std::vector<paint::GlossReading>& readings) const;
   PaintFit started(double coat_index) const;
-  Result<FiveAngleFigures> from_five_angles(const BrdfTarget& brdf) const;
+  Result<FiveAngleFigures> from_five_angles(const BrdfTarget& brdf, const Deadline& deadline) const;
   void finish(const std::vector<paint::LabReading>& readings, const color::Xyz& white, PaintFit& fit) const;
-  Result<PaintFit> fit_all(const paint::Paint& paint) const;
-  std::vector<IncidenceFigures> incidences(const paint::Paint& paint, const paint::LobeFit& together) const;
+  Result<PaintFit> fit_all(const paint::Paint& paint, const Deadline& deadline) const;
+  std::vector<IncidenceFigures> incidences(const paint::Paint& paint, const paint::LobeFit& together,
+                                           const Deadline& deadline) const;
 
   formats::Basis basis_;
   FitOptions options_;

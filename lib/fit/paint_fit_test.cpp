@@ -78,8 +78,13 @@ TEST(PaintFit, TellsByHowMuchTheReadingsOfTwoIncidencesDisagree) {
   ASSERT_EQ(incidences.size(), 2u);
   EXPECT_GT(incidences[0].predicted_de00_mean, 4);
   EXPECT_LT(incidences[0].de00_mean, incidences[0].predicted_de00_mean);
-  // Neither is told where it was not asked for, or where there is one angle of incidence.
+  // Neither is told where it was not asked for, where there is one angle of incidence, or where there is no time.
   EXPECT_TRUE(report_of(paint, {}).incidences.empty());
+  FitOptions hurried = options;
+  hurried.time_limit_s = 1e-9;
+  EXPECT_TRUE(report_of(paint, hurried).incidences.empty());
+  hurried.time_limit_s = 1e9;
+  EXPECT_EQ(report_of(paint, hurried).incidences.size(), 2u) << "the control";
   EXPECT_TRUE(report_of(metallic_blue(), options).incidences.empty());
 }
 

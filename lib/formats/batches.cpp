@@ -16,7 +16,8 @@ constexpr double kSlowBatch_s = 0.02;
 Result<PaintBatches> PaintBatches::open(std::vector<std::string> paths, const std::vector<std::string>& only) {
   if (paths.empty()) paths = {"-"};
   PaintBatches batches;
-  batches.only_ = batches.unmet_ = {only.begin(), only.end()};
+  batches.only_ = {only.begin(), only.end()};
+  for (const std::string& name : batches.only_) batches.unmet_.emplace(name, WantedName(name));
   for (const std::string& path : paths) {
     GONIO_ASSIGN(PaintReader reader, PaintReader::open(path));
     batches.readers_.push_back(std::move(reader));
@@ -40,6 +41,7 @@ std::vector<std::string> PaintBatches::foreign() const {
 
 bool PaintBatches::is_wanted(const std::string& name) {
   unmet_.erase(name);
+  for (auto& [unmet, wanted] : unmet_) wanted.see(name);
   return only_.empty() || only_.contains(name);
 }
 
@@ -57,8 +59,7 @@ Result<std::vector<paint::Paint>> PaintBatches::next(const std::function<void(co
       ++current_;
     }
   }
-  if (batch.empty() && !unmet_.empty())
-    return input_error("no paint is named \"{}\": names are taken letter by letter", *unmet_.begin());
+  if (batch.empty() && !unmet_.empty()) return input_error("{}", unmet_.begin()->second.not_found());
   size_ = filling.elapsed_s() < kSlowBatch_s ? std::min(2 * size_, kLargestBatch) : 1;
   return batch;
 }

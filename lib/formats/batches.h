@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
+#include "formats/reference.h"
 #include "formats/xml.h"
 
 namespace goniochrome::formats {
@@ -30,7 +32,8 @@ class PaintBatches {
   bool is_wanted(const std::string& name);
 
   std::vector<PaintReader> readers_;
-  std::set<std::string> only_, unmet_;
+  std::set<std::string> only_;
+  std::map<std::string, WantedName> unmet_;
   std::size_t current_ = 0, size_ = 1;
 };
 

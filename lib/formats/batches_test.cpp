@@ -60,7 +60,7 @@ TEST_F(PaintBatchesTest, GiveOnlyThePaintsOfTheNamesAsked) {
 TEST_F(PaintBatchesTest, ANameThatNoPaintHasIsToldAtTheEnd) {
   const Outcome none = read_all({first_}, {"b", "B"});
   EXPECT_THAT(none.names, ElementsAre("b"));
-  EXPECT_EQ(none.error, "no paint is named \"B\": names are taken letter by letter");
+  EXPECT_EQ(none.error, "no paint is named \"B\": names are taken letter by letter; did you mean \"b\"?");
 }
 
 TEST_F(PaintBatchesTest, AWrongPaintIsTheErrorOrToldAndPassedOver) {

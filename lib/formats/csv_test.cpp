@@ -381,6 +381,12 @@ TEST(PaintCsv, ReadsSpectraAndTheirColors) {
   EXPECT_NEAR(percent.paints.at(0).measurement->spectra.at(0).factors.at(3), 0.02, 1e-12);
   EXPECT_THAT(reading_of_text(spectral_table("sample,geometry", "gray,45as25", 21)).errors,
               ElementsAre(HasSubstr("write factors, where 1 is the perfect diffuser")));
+  const char* too_low = "a reflectance factor is -0.2: 0 is black, and noise goes no lower than -0.1";
+  EXPECT_THAT(reading_of_text(spectral_table("sample,geometry", "gray,45as25", -0.2)).errors,
+              ElementsAre(HasSubstr(too_low)));
+  EXPECT_THAT(reading_of_text(spectral_table("sample,geometry,L,a,b", "gray,45as25,15.487,0,0", -20)).errors,
+              ElementsAre(HasSubstr(too_low)));
+  EXPECT_THAT(reading_of_text(spectral_table("sample,geometry", "gray,45as25", -0.09)).errors, ElementsAre());
   EXPECT_THAT(reading_of_text("sample,geometry,400,410,420,430,450\nx,45as15,1,1,1,1,1\n").errors,
               ElementsAre(HasSubstr("the column of 450 nm stands where that of 440 nm would")));
   EXPECT_THAT(reading_of_text("sample,geometry,400,410,420,430,440\nx,45as15,,,,,\n").errors,

@@ -18,6 +18,7 @@ namespace goniochrome::formats {
 namespace {
 
 constexpr std::string_view kNamespace = "http://colorexchangeformat.com/CxF3-core";
+constexpr double kSmallestStep_nm = 1, kLargestStep_nm = 20;  // of the schema
 
 // One value of an object, as it stands: Lab, or a spectrum to become one.
 struct RawColor {
@@ -357,8 +358,13 @@ class CxfResolver {
       fault = "spectra without a WavelengthRange were left out";
     else if (color.spectrum.size() < 2)
       fault = "spectra of a single wavelength were left out";
-    else if (std::ranges::any_of(color.spectrum, [](double factor) { return std::abs(factor) > kLargestFactor; }))
+    else if (found->second.step_nm < kSmallestStep_nm || found->second.step_nm > kLargestStep_nm)
+      fault = fmt::format("spectra in steps of {} nm were left out: CxF3 has steps of 1, 2, 5, 10 or 20 nm",
+                          shortest(found->second.step_nm));
+    else if (std::ranges::any_of(color.spectrum, [](double factor) { return factor > kLargestFactor; }))
       fault = fmt::format("spectra with factors beyond {} were left out: 1 is the perfect diffuser", kLargestFactor);
+    else if (std::ranges::any_of(color.spectrum, [](double factor) { return factor <= kSmallestFactor; }))
+      fault = fmt::format("spectra with factors of {} or less were left out: 0 is black", kSmallestFactor);
     if (!fault.empty()) remarks_.note(fault, open_->paint.name);
     return fault.empty();
   }

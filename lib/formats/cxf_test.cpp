@@ -215,7 +215,11 @@ TEST_F(Cxf, SpectraThatAreNoneAreNamedAndTheirLabIsKept) {
         {"0.1 0.2", "<WavelengthRange StartWL=\"400\" Increment=\"-10\"/>", "without a WavelengthRange"},
         {"0.1", range.c_str(), "of a single wavelength"},
         {"0.1 1e308", range.c_str(), "with factors beyond 20 were left out"},
-        {"0.1 -21", range.c_str(), "with factors beyond 20 were left out"}}) {
+        {"0.1 -21", range.c_str(), "with factors of -0.1 or less were left out"},
+        {"0.1 -0.1", range.c_str(), "with factors of -0.1 or less were left out"},
+        {"0.1 0.2", "<WavelengthRange StartWL=\"400\" Increment=\"1000\"/>", "in steps of 1000 nm were left out"},
+        {"0.1 0.2", "<WavelengthRange StartWL=\"400\" Increment=\"20.5\"/>", "in steps of 20.5 nm were left out"},
+        {"0.1 0.2", "<WavelengthRange StartWL=\"400\" Increment=\"0.1\"/>", "in steps of 0.1 nm were left out"}}) {
     const auto beside = good(text(wrong.factors, wrong.range, true));
     ASSERT_EQ(beside.paints.size(), 1u) << wrong.told;
     EXPECT_EQ(beside.paints[0].measurement->rows[0].lab.L, 50);
@@ -225,7 +229,13 @@ TEST_F(Cxf, SpectraThatAreNoneAreNamedAndTheirLabIsKept) {
     EXPECT_THAT(alone.paints, IsEmpty()) << wrong.told;
     EXPECT_THAT(alone.warnings, Contains(HasSubstr(wrong.told)));
   }
-  EXPECT_EQ(good(text("0.1 20", range, true)).paints[0].measurement->spectra.size(), 1u) << "the control";
+  // A reading of black may be a little below it, and a step that CxF3 does not have is still a step.
+  for (const char* step : {"1", "7", "20"})
+    EXPECT_EQ(good(text("-0.09 20", fmt::format("<WavelengthRange StartWL=\"400\" Increment=\"{}\"/>", step), true))
+                  .paints[0]
+                  .measurement->spectra.size(),
+              1u)
+        << step;
   for (const bool with_lab : {false, true})
     EXPECT_THAT(refusal(text(" ", range, with_lab)), HasSubstr("ReflectanceSpectrum is empty: write its factors"));
 }

@@ -1,5 +1,6 @@
 #include "formats/reference.h"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -39,17 +40,42 @@ PaintReference paint_reference(const std::string& text) {
   return {text.substr(0, last), text.substr(last + 1)};
 }
 
+// Nobody mistypes a longer name, and comparing two names takes the product of their lengths.
+constexpr std::size_t kLongestCompared = 100;
+
+// A third of the letters may differ, and no more than three; upper and lower case are alike.
+WantedName::WantedName(std::string name)
+    : name_(std::move(name)), lower_(lower(name_)), distance_(std::min<std::size_t>(name_.size() / 3, 3) + 1) {}
+
+void WantedName::see(std::string_view other) {
+  const std::size_t longer = std::max(other.size(), name_.size()), shorter = std::min(other.size(), name_.size());
+  if (longer - shorter >= distance_ || longer > kLongestCompared) return;
+  const std::size_t distance = edit_distance(lower(other), lower_);
+  if (distance < distance_) distance_ = distance, nearest_ = other;
+}
+
+std::string WantedName::not_found() const {
+  return fmt::format("no paint is named \"{}\": names are taken letter by letter{}", name_,
+                     nearest_.empty() ? "" : fmt::format("; did you mean \"{}\"?", shown(nearest_)));
+}
+
 NameChoice::NameChoice(std::string names) : whole_(std::move(names)) {
-  for (const std::string_view name : split(whole_, ',')) patterns_.push_back({std::string(trimmed(name))});
+  for (const std::string_view piece : split(whole_, ',')) {
+    const std::string name(trimmed(piece));
+    patterns_.push_back({name, WantedName(name)});
+  }
 }
 
 bool NameChoice::takes(const std::string& name) {
   bool taken = name == whole_;
   whole_met_ = whole_met_ || taken;
   for (Pattern& pattern : patterns_) {
-    if (!matches(pattern.text, name)) continue;
-    pattern.met = true;
-    taken = true;
+    if (matches(pattern.text, name)) {
+      pattern.met = true;
+      taken = true;
+    } else if (!pattern.met) {
+      pattern.wanted.see(name);
+    }
   }
   return taken;
 }
@@ -57,8 +83,7 @@ bool NameChoice::takes(const std::string& name) {
 Result<void> NameChoice::check_all_met(const std::string& file) const {
   if (whole_met_) return {};
   for (const Pattern& pattern : patterns_)
-    if (!pattern.met)
-      return input_error("{}: no paint is named \"{}\": names are taken letter by letter", file, pattern.text);
+    if (!pattern.met) return input_error("{}: {}", file, pattern.wanted.not_found());
   return {};
 }
 

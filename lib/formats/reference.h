@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -17,6 +18,22 @@ struct PaintReference {
 // FILE or FILE#NAMES, taken apart at the last # before which a file's name stands, or else at the last #. If there is a
 // file of the whole name, it is meant.
 PaintReference paint_reference(const std::string& text);
+
+// A name that a paint is to have, and the most similar name of those that were seen. It keeps one of them alone.
+class WantedName {
+ public:
+  explicit WantedName(std::string name);
+
+  const std::string& name() const { return name_; }
+  void see(std::string_view other);
+
+  // That no paint has the name, and which name may have been meant.
+  std::string not_found() const;
+
+ private:
+  std::string name_, lower_, nearest_;
+  std::size_t distance_;  // of the nearest name; at the beginning the least one that is too large
+};
 
 // Which paints NAMES means: the one of this very name; or several names, separated by commas, in which * stands for any
 // text and ? for any character.
@@ -33,6 +50,7 @@ class NameChoice {
  private:
   struct Pattern {
     std::string text;
+    WantedName wanted;
     bool met = false;
   };
   std::string whole_;

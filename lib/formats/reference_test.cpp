@@ -60,6 +60,21 @@ TEST(NameChoice, ANameThatNoPaintHasIsTold) {
   EXPECT_TRUE(whole.check_all_met("lib.xml").ok());
 }
 
+TEST(NameChoice, ASimilarNameIsNamed) {
+  const auto told = [](const char* wanted) {
+    NameChoice choice(wanted);
+    for (const char* name : {"candy_red", "candy_blue", "RM331", "a"}) choice.takes(name);
+    return choice.check_all_met("x").error().message;
+  };
+  const std::string miss = ": names are taken letter by letter";
+  EXPECT_EQ(told("candy_rde"), "x: no paint is named \"candy_rde\"" + miss + "; did you mean \"candy_red\"?");
+  EXPECT_EQ(told("Candy_Blue"), "x: no paint is named \"Candy_Blue\"" + miss + "; did you mean \"candy_blue\"?");
+  EXPECT_EQ(told("RM313"), "x: no paint is named \"RM313\"" + miss);
+  EXPECT_EQ(told("RM333"), "x: no paint is named \"RM333\"" + miss + "; did you mean \"RM331\"?");
+  EXPECT_EQ(told("gold"), "x: no paint is named \"gold\"" + miss);
+  EXPECT_EQ(told("b"), "x: no paint is named \"b\"" + miss) << "a letter is like every other";
+}
+
 // Matching by trying every * anew takes time that grows exponentially with their number.
 TEST(NameChoice, ManyStarsTakeNoTime) {
   std::string stars;

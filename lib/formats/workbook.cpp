@@ -335,6 +335,8 @@ Result<void> WorkbookReader::integrate(Gathered& paint) {
   for (std::size_t i = 0; i < open.spectra.size(); ++i) {
     paint::SpectrumReading& spectrum = open.spectra[i];
     for (double& factor : spectrum.factors) factor *= unit_;
+    if (const auto checked = check_not_negative(spectrum.factors); !checked.ok())
+      return input_error("{}: {}: {}", file_, paint.places[i], checked.error().message);
     for (const color::ViewingCondition& condition : conditions) {
       const auto lab = meter_.lab(spectrum, condition);
       if (!lab.ok()) {

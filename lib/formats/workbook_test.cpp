@@ -208,6 +208,13 @@ TEST_F(Workbook, TellsPercentAndDisagreement) {
   EXPECT_THAT(other.warnings, Contains(testing::AllOf(HasSubstr("at 1 of the readings"), HasSubstr("gray at 45as45"))));
 }
 
+TEST_F(Workbook, RefusesReflectancesBelowBlack) {
+  const std::string too_low = "gray at 45as45: a reflectance factor is -0.2: 0 is black";
+  EXPECT_THAT(refused(parts_of({{"s", data(spectra("-0.2", ""))}})), HasSubstr(too_low));
+  EXPECT_THAT(refused(parts_of({{"s", data(spectra("-20", "15.4872"))}})), HasSubstr(too_low));
+  EXPECT_EQ(good_workbook(parts_of({{"s", data(spectra("-0.09", ""))}})).paints.size(), 1u);
+}
+
 TEST_F(Workbook, RefusesWhatIsNoTableOfReadings) {
   EXPECT_THAT(refused(parts_of({{"One", data({{"a", "b"}, {"1", "2"}})}})), HasSubstr("none of its sheets (\"One\")"));
   EXPECT_THAT(refused({{"a.txt", "x"}}), HasSubstr("ZIP archive without a workbook"));

@@ -227,6 +227,12 @@ Result<ImagePart> read_through_module(std::string content, const std::string& fo
 
 }  // namespace
 
+std::string text_attribute(const ImagePart& part, const std::string& name) {
+  const auto found = part.attributes.find(name);
+  const auto* text = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
+  return text ? *text : "";
+}
+
 Result<ImagePart> read_image(const std::string& path, Inks inks) {
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
   GONIO_ASSIGN(std::string content, input.rest(std::string::npos));

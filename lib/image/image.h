@@ -51,6 +51,9 @@ struct ImagePart {
   PixelType type = PixelType::kHalf;
 };
 
+// The text of an attribute; "" where there is none, or no text.
+std::string text_attribute(const ImagePart& part, const std::string& name);
+
 // All parts of an EXR file, stored as scan lines or tiles. Channels come in the order R G B A, then the others as they
 // are stored. Error: the path and the reason; a file that is cut off, deep data and subsampled channels are refused.
 Result<std::vector<ImagePart>> read_exr(const std::string& path);

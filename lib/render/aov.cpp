@@ -62,7 +62,7 @@ std::string aov_names() {
 Result<void> add_aov(image::Image& picture, const Gbuffer& gbuffer, const std::string& name, const Vec3& to_light) {
   const auto aov = std::find_if(aovs().begin(), aovs().end(), [&](const Aov& a) { return a.name == name; });
   if (aov == aovs().end()) {
-    return usage_error("there is no buffer \"{}\": there are {} and error", name, aov_names());
+    return usage_error("there is no buffer \"{}\": there are {}, error and transport", name, aov_names());
   }
   const int old_channels = picture.channels, added = static_cast<int>(aov->channels.size());
   image::Image wider{picture.width, picture.height, old_channels + added, {}, picture.channel_names};

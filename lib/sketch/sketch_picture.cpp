@@ -17,12 +17,6 @@ constexpr float kClip = 254.5F / 255;  // a signal from here on may have been an
 constexpr float kOpaque = 0.999F;
 constexpr std::size_t kRows = 16;
 
-std::string text_of(const image::ImagePart& part, const char* name) {
-  const auto found = part.attributes.find(name);
-  const auto* text = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
-  return text ? *text : "";
-}
-
 bool holds_integers(const image::ImagePart& part) {
   const auto found = part.attributes.find("goniochrome:integer");
   const int* value = found == part.attributes.end() ? nullptr : std::get_if<int>(&found->second);
@@ -88,8 +82,8 @@ void take_inks_for_filters(image::Image& image) {
 
 // What the file is taken for where it says nothing.
 void tag_untagged(image::ImagePart& part, bool integer, bool is_exr) {
-  if (!text_of(part, "colorInteropID").empty() || part.attributes.contains("chromaticities")) return;
-  if (!text_of(part, "oiio:ColorSpace").empty() && !is_exr) return;
+  if (!image::text_attribute(part, "colorInteropID").empty() || part.attributes.contains("chromaticities")) return;
+  if (!image::text_attribute(part, "oiio:ColorSpace").empty() && !is_exr) return;
   part.attributes["colorInteropID"] = std::string(integer  ? "srgb_rec709_display"
                                                   : is_exr ? "lin_rec2020_scene"
                                                            : "lin_rec709_scene");
@@ -112,7 +106,7 @@ Result<Picture> picture_of(image::ImagePart part, const std::string& name, Pictu
   if (part.image.channels == 0) return input_error("{}: has no channels", name);
   picture.state = states(part.image, integer);
   drop_to_gray(part.image);
-  if (color_channels(part.image) == 4 && text_of(part, "ICCProfile").empty()) {
+  if (color_channels(part.image) == 4 && image::text_attribute(part, "ICCProfile").empty()) {
     picture.warnings.push_back(fmt::format(
         "{} is CMYK without a profile, converted without regard to its inks: for exact color save it with its profile "
         "or as sRGB",
@@ -120,14 +114,14 @@ Result<Picture> picture_of(image::ImagePart part, const std::string& name, Pictu
     take_inks_for_filters(part.image);
     part.attributes["oiio:ColorSpace"] = std::string("sRGB");
   }
-  if (!text_of(part, "ICCProfile").empty() && integer) {
-    GONIO_ASSIGN(picture.rgb, image_through_icc(part.image, text_of(part, "ICCProfile"), name));
+  if (!image::text_attribute(part, "ICCProfile").empty() && integer) {
+    GONIO_ASSIGN(picture.rgb, image_through_icc(part.image, image::text_attribute(part, "ICCProfile"), name));
     picture.space = "its ICC profile";
   } else {
     tag_untagged(part, integer, is_exr);
     GONIO_ASSIGN(picture.rgb, image::working_space_rgb(part, name));
     picture.space = integer ? "sRGB" : "linear light";
-    if (const auto id = text_of(part, "colorInteropID"); !id.empty()) picture.space = id;
+    if (const auto id = image::text_attribute(part, "colorInteropID"); !id.empty()) picture.space = id;
   }
   if (integer && view == PictureView::kPaint)
     for_pixels(picture.rgb, [](float* pixel) {

@@ -36,6 +36,11 @@ refused() {
   refused 2 'is 0: give a color difference above 0' --target-de00 0
   refused 2 '--scene goes with --target-de00' --scene signal_red
   refused 2 'expected one argument' --output
+  echo kept >file
+  run --separate-stderr report search --quick -o file
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'file: is a file: --output names the folder of the page'* ]]
+  [ "$(cat file)" = kept ]
 }
 
 @test "verdicts, numbers and pictures" {

@@ -94,7 +94,7 @@ def main(arguments=None):
         return 3
     try:
         return work(folder, options)
-    except Failed as failure:
+    except (Failed, OSError) as failure:
         print(f"accuracy-report: {failure}", file=sys.stderr)
         return 3
 
@@ -104,6 +104,8 @@ def work(folder, options):
     if options.target_de00 is not None:
         with Run(folder.resolve(), options) as run:
             return 0 if target.report(run, options.target_de00, options.scene) else 1
+    if options.output.exists() and not options.output.is_dir():
+        raise Failed(f"{options.output}: is a file: --output names the folder of the page")
     options.output.mkdir(parents=True, exist_ok=True)
     start = time.monotonic()
     studies = []

@@ -161,4 +161,17 @@ setup() {
   [[ $output == *'--env has light twice: pictures would share its name'* ]]
   run batch shard one ten
   [ "$status" -eq 2 ]
+  for command in list "shard 0" merge "book 0"; do
+    read -r name number <<<"$command"
+    # shellcheck disable=SC2086
+    run batch $name nowhere $number
+    [ "$status" -eq 3 ]
+    [[ $output == *'nowhere: there is no batch: `paint-batch plan LIBRARY --out '* ]]
+  done
+  run batch shard one 99
+  [ "$status" -eq 3 ]
+  [[ $output == *'there is no shard 99: they are numbered 0 to '* ]]
+  run batch book one 99
+  [ "$status" -eq 3 ]
+  [[ $output == *'there is no chapter 99: they are numbered 0 to '* ]]
 }

@@ -392,10 +392,18 @@ PY
   tiles_of travel.html >tiles
   [ "$(cut -d'|' -f1 tiles | paste -sd,)" = "Travel -16,Travel -12,Travel -8,Travel -4,As it was,Travel +4,Travel +8,Travel +12,Travel +16" ]
   sed -n 9p tiles | grep -qF "paint-edit 'some.paints.xml#candy_red.travel+16' --variations travel --step 4 |"
-  # A name that only looks like one of a variation is a paint beside its own, of unknown kind.
+  # A name that only looks like one of a variation is that of another paint, which is left out and told.
   sed 's/name="candy_red.travel+16"/name="candy_red.travel-e"/' some.paints.xml >odd.paints.xml
-  book --variations odd.paints.xml --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 --quiet -o odd.html
-  tiles_of odd.html | grep -F 'candy_red.travel-e' | grep -qF -- '--variations face |'
+  run book --variations odd.paints.xml --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 -o odd.html
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ warning:\ ([0-9]+)\ paints\ left\ out ]]
+  [ "${BASH_REMATCH[1]}" -eq "$(($(grep -c '<paint ' odd.paints.xml) - 8))" ]
+  ! grep -qF 'candy_red.travel-e' odd.html
+  [ "$(tiles_of odd.html | wc -l)" -eq 8 ]
+  sed 's/name="candy_red[.]travel\([^"]*\)"/name="candy_red.layer\1"/' some.paints.xml >layers.paints.xml
+  run book --variations layers.paints.xml -o layers.html
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "there are no variations in it" ]]
   paint-edit -q 'all.paints.xml#candy_red,jet_black' --variations gloss --step 3 |
     book --variations - --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 --quiet -o gloss.html
   [ "$(grep -c '<section' gloss.html)" -eq 2 ]

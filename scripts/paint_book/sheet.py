@@ -21,17 +21,26 @@ KINDS = {"face": r"face-[a-z]+", "flop": r"flop-[a-z]+", "travel": "travel" + NU
 OPPOSITES = [("lighter", "darker"), ("red", "cyan"), ("yellow", "blue"), ("green", "magenta")]
 
 
+def variation_of(name, of):
+    """What paint-edit --variations varied to make the paint `name` of the paint `of`, such as travel of red.travel+4; None where it
+    did not make it."""
+    if not of or not name.startswith(f"{of}."):
+        return None
+    change = name[len(of) + 1:]
+    return next((kind for kind, form in KINDS.items() if re.fullmatch(form, change)), None)
+
+
 def families(paints):
-    """Each paint that variations follow, with them, as lists of at most nine numbers of paints: the paint first. A variation has the
-    name of its paint, a point and what was varied, as paint-edit(1) writes it."""
-    found, leader = [], None
+    """Each paint that its variations follow, with them, as lists of at most nine numbers of paints: the paint first. A variation has
+    the name of its paint, a point and what was varied, as paint-edit(1) writes it, and those of a family vary the same."""
+    found, leader, kind = [], "", None
     for index, paint in enumerate(paints):
-        if leader is not None and paint.name.startswith(f"{leader}.") and len(found[-1]) < 2 * MIDDLE + 1:
+        if kind is not None and variation_of(paint.name, leader) == kind and len(found[-1]) < 2 * MIDDLE + 1:
             found[-1].append(index)
             continue
-        follower = paints[index + 1].name if index + 1 < len(paints) else ""
-        leader = paint.name if paint.name and follower.startswith(f"{paint.name}.") else None
-        if leader is not None:
+        leader = paint.name
+        kind = variation_of(paints[index + 1].name, leader) if index + 1 < len(paints) else None
+        if kind is not None:
             found.append([index])
     return found
 
@@ -50,12 +59,6 @@ def change_of(paint, of):
 def worded(change):
     """The words of a change: face lighter, travel -8."""
     return re.sub(r"-(?=[a-z])|(?<=[a-z])(?=[+-][0-9])", " ", change)
-
-
-def kind_of(paint, around):
-    """What --variations of paint-edit made these paints, or face."""
-    changes = [change_of(one, paint) for one in around]
-    return next((kind for kind, form in KINDS.items() if all(re.fullmatch(form, change) for change in changes)), "face")
 
 
 def step_of(kind, paint, around):
@@ -138,7 +141,7 @@ def variations_page(title, summary, paints, sheets, pictures, size, commands, st
     sections = []
     for members in sheets:
         middle, around = paints[members[0]], [paints[index] for index in members[1:]]
-        kind = kind_of(middle, around)
+        kind = variation_of(around[0].name, middle.name)
         step = step_of(kind, middle, around)
         tiles = []
         for index in in_tiles(members):

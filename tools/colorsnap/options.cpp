@@ -151,7 +151,7 @@ void add_report(cli::ToolSpec& spec) {
        "hand a design over with the code of the paint nearest to it"}};
   spec.report = {
       {"queries[].name", "name of the query"},
-      {"queries[].status", "ok, or outside, off_radial, no_match"},
+      {"queries[].status", "one of ok, outside, off_radial and no_match"},
       {"queries[].geometries[]", "geometries at which it was compared"},
       {"queries[].hue_shift, matched_hue_shift",
        "signed distance of the flop from the face's hue line, for the query and for the nearest paint"},
@@ -159,11 +159,11 @@ void add_report(cli::ToolSpec& spec) {
        "name, code, class, distance, mean_de, dL, dC, dH, de_by_geometry{}; with --illuminant also illuminant"},
       {"library_size", "number of paints in the library"},
       {"candidates", "number of paints that pass the filters and have a color"},
-      {"index", "mapped, built, or in_memory where it could not be written"},
+      {"index", "one of mapped, built, and in_memory where it could not be written"},
       {"index_s", "time to map the index, or to build and write it"},
       {"read_s", "time to read the library; 0 where the index was mapped"},
       {"index_bytes", "size of the index"},
-      {"method", "tree, scan, or both where parts of the library differ"},
+      {"method", "one of tree, scan, and both where parts of the library differ"},
       {"query_us", "mean time of a search on one core"},
       {"queries_per_s", "searches a second on all threads, without reading and writing"},
       {"searched", "number of queries that were answered"},

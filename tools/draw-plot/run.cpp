@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "output_names.h"
 #include "report/plot.h"
 
 namespace goniochrome::tool {
@@ -31,8 +32,11 @@ Result<Columns> columns_of(const std::string& name, int line, const std::vector<
   std::map<std::string, std::size_t> at;
   for (std::size_t i = 0; i < words.size(); ++i) at[lower(trimmed(words[i]))] = i;
   for (const char* heading : {"series", "x", "y"})
-    if (!at.contains(heading))
-      return input_error("{}:{}: there is no heading {}: begin with a line such as series,x,y", name, line, heading);
+    if (!at.contains(heading)) {
+      const bool apart_otherwise = words.size() == 1 && words[0].find_first_of(";\t") != std::string_view::npos;
+      return input_error("{}:{}: there is no heading {}: begin with a line such as series,x,y{}", name, line, heading,
+                         apart_otherwise ? ", with commas between the cells and points in numbers" : "");
+    }
   Columns columns{at["series"], at["x"], at["y"], words.size(), std::nullopt, std::nullopt};
   if (at.contains("style")) columns.style = at["style"];
   if (at.contains("color")) columns.color = at["color"];
@@ -65,8 +69,8 @@ Result<std::vector<report::Series>> read_table(const std::string& path) {
   std::map<std::string, std::size_t> number_of;  // where the series of a label stands
   std::optional<Columns> columns;
   int line = 0;
-  for (const std::string_view raw : split(text, '\n')) {
-    ++line;
+  for (std::string_view raw : split(text, '\n')) {
+    if (++line == 1 && raw.starts_with("\xEF\xBB\xBF")) raw.remove_prefix(3);
     if (trimmed(raw).empty()) continue;
     const auto words = split(trimmed(raw), ',');
     if (!columns) {
@@ -110,6 +114,7 @@ int left_out(const report::Series& series, const report::Plot& plot) {
 }  // namespace
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
+  GONIO_TRY(check_output_name(options.output, "an SVG", ".svg"));
   report::Plot plot;
   plot.title = options.title;
   plot.x = {options.x_label, options.logarithmic == "x" || options.logarithmic == "both"};

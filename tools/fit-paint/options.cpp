@@ -70,7 +70,9 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "angle. none gives no paint such weights; what a coat changes is then told under lost_to_coat.");
   spec.option("paint-time-limit", "S", "0.5", &o.paint_time_limit_s, "longest time for one paint; 0 is no limit")
       .from(0)
-      .more("After this time the best weights so far are taken.");
+      .more(
+          "After this time the best weights so far are taken. It holds for all fits that a paint takes, also for those "
+          "of the report.");
   spec.heading = "output";
   spec.option("output,o", "FILE", "fitted.paints.xml", &o.output, "where the paints go; - is standard output");
   spec.option("color-map", "FOLDER", "maps", &o.color_map, "also make color maps, as FOLDER/name.exr")
@@ -103,12 +105,13 @@ void add_report(cli::ToolSpec& spec) {
        "keep only the report, which has the color difference at each geometry of each paint"}};
   spec.report = {
       {"paints[].name", "name of the paint"},
-      {"paints[].method", "l1, l2 or deltae"},
+      {"paints[].method", "one of l1, l2 and deltae"},
       {"paints[].status",
-       "optimal; not_converged, where a solver gave up and the best weights found are written; stalled, where deltae "
+       "one of optimal; not_converged, where a solver gave up and the best weights found are written; stalled, where "
+       "deltae "
        "ended with a gap, as it may at nearly gray colors, whose hues jump; bounded, where it ended with a gap because "
        "its mean difference would have become larger than that of l1; "
-       "time_limit, where the best weights until then are written; or failed, where the paint is passed on unfitted"},
+       "time_limit, where the best weights until then are written; and failed, where the paint is passed on unfitted"},
       {"paints[].time_us", "time of the fit, without reading and writing XML"},
       {"paints[].objective", "weighted norm of the error over rows and channels, in L* if the weights are perceptual"},
       {"paints[].plain_objective", "the same norm without weights, in reflectance factor"},
@@ -131,15 +134,14 @@ void add_report(cli::ToolSpec& spec) {
       {"paints[].floor_de00_mean", "for such readings, the least de00_mean that weights for all views can have"},
       {"paints[].incidences[]",
        "of a paint that was read at several angles of incidence, which are all fitted together: incidence_deg; "
-       "readings, "
-       "their number; de00_mean, their mean difference in this fit; and predicted_de00_mean, the same in a fit to the "
-       "readings at the other angles alone, which tells by how much they disagree"},
+       "readings, their number; de00_mean, their mean difference in this fit; and predicted_de00_mean, the same in a "
+       "fit to the readings at the other angles alone, which tells by how much they disagree. Angles for which "
+       "--paint-time-limit left no time are missing"},
       {"paints[].gamut_de00", "color that is lost because the working space has no negative channels"},
       {"paints[].glare_rows", "readings that are left out because they are within 10 degrees of specular"},
       {"paints[].gloss[]",
        "of each meter angle_deg and simulated_gu; where the paint states its gloss also stated_gu, and misfit_gu, "
-       "which is the "
-       "simulated gloss minus the stated one"},
+       "which is the simulated gloss minus the stated one"},
       {"paints[].coat_range",
        "where several gloss readings are those of a coat of two scales: slopes, which is ggx or gaussian, and "
        "least_haze, probable and most_haze, each with the k, slope and haze of a coat (goniochrome-theory(7), SATIN). "
@@ -168,7 +170,7 @@ void add_report(cli::ToolSpec& spec) {
       {"color_maps[].beyond_rows",
        "readings out of plane for which the map has no place, because they are beyond the critical angle; the map is "
        "compared with them"},
-      {"color_maps[].model", "isolines or aspecular"},
+      {"color_maps[].model", "one of isolines and aspecular"},
       {"color_maps[].isolines_power",
        "1, 0.75 or 0.5, whichever predicts readings from others best: the smaller, the less a reading tells of other "
        "places"},

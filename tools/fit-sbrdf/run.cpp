@@ -8,6 +8,7 @@
 #include "capture/photo_stack.h"
 #include "capture/photo_table.h"
 #include "image/surface_file.h"
+#include "output_names.h"
 #include "tool.h"
 
 namespace goniochrome::tool {
@@ -15,6 +16,7 @@ namespace goniochrome::tool {
 namespace {
 
 Result<void> check(const Options& options) {
+  GONIO_TRY(check_output_name(options.output, "an EXR", ".exr"));
   if (options.method == "nonlinear" && options.lobes > 2)
     return usage_error("--method nonlinear takes 1 or 2 lobes, and --lobes is {}: take --method dictionary",
                        options.lobes);

@@ -130,7 +130,7 @@ void add_report(cli::ToolSpec& spec) {
        "judge the seam between hood and bumper in one silver by a table, a picture and advice"}};
   spec.report = {
       {"paints[].name", "the paint"},
-      {"paints[].status", "done, or failed with a message: the paint has no color"},
+      {"paints[].status", "one of done, and failed with a message: the paint has no color"},
       {"paints[].residual_de00",
        "worst row of the curve that was fitted; null where the paint states its curve; the largest of several lights"},
       {"paints[].geometries[].light_deg", "the light, from the normal of the first panel"},

@@ -64,7 +64,7 @@ void add_report(cli::ToolSpec& spec) {
       {"written", "number of paints written"},
       {"skipped", "number of rows or paints that --keep-going left out"},
       {"measured[].name", "name of the paint that a measured BRDF became"},
-      {"measured[].format", "merl, cornell, mbsdf or rgl; description holds the file's own words"},
+      {"measured[].format", "one of merl, cornell, mbsdf and rgl; description holds the file's own words"},
       {"measured[].illuminant", "illuminant that the Lab values are relative to; observer stands beside it"},
       {"measured[].samples", "how many numbers the file has; negative_share and zero_share are parts of them"},
       {"measured[].reciprocity_error", "median difference with light and viewer swapped, relative to the mean"},

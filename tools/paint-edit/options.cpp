@@ -160,7 +160,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "then reads exactly what was asked for.");
   spec.option("set", "GEOMETRY=L,A,B", "45as45=50,12.5,-3", &o.readings, "what the paint shall read at this geometry")
       .more(
-          "The option may be given several times. It is made after all other moves of the color. The other rows stay, "
+          "It is made after all other moves of the color. The other rows stay, "
           "and face, flop and travel are fitted to all rows, unless one of them is given on the command line.");
   spec.option("gloss", "GU", "90", &o.gloss, "gloss to reach").from(0, 100);
   spec.option("gloss-shift", "GU", "-5", &o.gloss_shift, "what is added to the gloss").from(-100, 100);

@@ -1,10 +1,12 @@
 #include "tool.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "at_pixel.h"
 #include "base/text.h"
+#include "formats/reference.h"
 #include "paint/curve.h"
 #include "source.h"
 #include "stated.h"
@@ -47,7 +49,9 @@ class Run {
       : options_(options),
         edit_(std::move(edit)),
         session_(session),
-        wanted_(options.only.begin(), options.only.end()) {}
+        wanted_(options.only.begin(), options.only.end()) {
+    for (const std::string& name : wanted_) unmet_.emplace(name, formats::WantedName(name));
+  }
 
   Result<cli::Verdict> operator()() {
     if (!options_.new_name.empty()) return make();
@@ -77,8 +81,9 @@ class Run {
 
   Result<void> take(paint::Paint paint) {
     if (options_.gradient > 0) return lead_to(std::move(paint));
+    unmet_.erase(paint.name);
+    for (auto& [name, unmet] : unmet_) unmet.see(paint.name);
     if (!wanted_.empty() && !wanted_.contains(paint.name)) return write(paint);
-    met_.insert(paint.name);
     if (!options_.variations.empty()) return vary(paint);
     if (!options_.rename.empty() && changes_ > 0)
       return usage_error(
@@ -176,11 +181,10 @@ class Run {
 
   cli::Verdict finish() {
     bool negative = skipped_ > 0;
-    for (const std::string& name : wanted_)
-      if (!met_.contains(name)) {
-        session_.warn(fmt::format("no paint is named \"{}\": names are taken letter by letter", name));
-        negative = true;
-      }
+    for (const auto& [name, unmet] : unmet_) {
+      session_.warn(unmet.not_found());
+      negative = true;
+    }
     if (options_.gradient > 0 && read_ < 2) {
       session_.warn(fmt::format("{} paint was read: a gradient takes two or more", read_));
       negative = true;
@@ -205,7 +209,8 @@ class Run {
   const std::set<std::string> wanted_;
   std::optional<formats::PaintWriter> writer_;
   std::optional<paint::Paint> last_;
-  std::set<std::string> met_, dropped_;
+  std::map<std::string, formats::WantedName> unmet_;  // of those that are wanted
+  std::set<std::string> dropped_;
   std::size_t read_ = 0, written_ = 0, changes_ = 0, skipped_ = 0;
 };
 

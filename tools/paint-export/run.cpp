@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/file.h"
+#include "base/file_names.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "formats/batches.h"
@@ -124,10 +125,10 @@ class Run {
 
   std::string pattern_with(const std::string& identifier) const {
     std::string file = options_.output;
-    const auto at = file.find(kName);
-    if (at == std::string::npos) return file;
     if (file.ends_with(kName)) file += target_.ending;
-    return file.replace(at, kName.size(), identifier);
+    for (auto at = file.find(kName); at != std::string::npos; at = file.find(kName, at + identifier.size()))
+      file.replace(at, kName.size(), identifier);
+    return file;
   }
 
   // The second file stands beside the first, under the same name with an ending of its own.
@@ -168,6 +169,7 @@ class Run {
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (options.output.empty())
     return usage_error("--output is empty: give a pattern such as 'materials/{{name}}', or - for standard output");
+  GONIO_TRY(FileNames::check(options.output, {"name"}, "--output"));
   const materials::Target& target = target_of(options.to);
   if (options.output == "-" && target.companion)
     return usage_error("--output -: a material for {} has two files: give a pattern such as '{{name}}'", target.name);

@@ -43,8 +43,8 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.option("probe", "X,Y", "320,180", &o.probes, "tell what this pixel of a picture with buffers shows")
       .in("pixels from the upper left, from 0")
       .more(
-          "The picture is an EXR of render-osmesa(1) with --aov normal,part. The option may be repeated, and - reads "
-          "X,Y from the lines of standard input and answers each at once. The output is a table with the part and its "
+          "The picture is an EXR of render-osmesa(1) with --aov normal,part. The word - in the place of X,Y takes them "
+          "from the lines of standard input, and answers each at once. The output is a table with the part and its "
           "material; the angle between the mirror direction of the viewer and each light of the picture, or, where it "
           "has none, to where the environment's irradiance is largest; the angle of the viewer from the normal; the "
           "normal; the radiance in linear Rec.2020, without the exposure of the file; and L*, a* and b* of that "
@@ -75,7 +75,7 @@ cli::ToolSpec tool_spec(Options& o) {
                    {"render-osmesa -q --mesh testdata/speed-shape.obj --light 30,50 --aov normal,part -o view.exr && "
                     "paint-pick view.exr --probe 640,360",
                     "tell which part is in the middle of a picture, at which angles, and its color"}};
-  spec.report = {{"samples[].dropper", "face, flop or gloss"},
+  spec.report = {{"samples[].dropper", "one of face, flop and gloss"},
                  {"samples[].paint", "name of its paint"},
                  {"samples[].image", "its picture"},
                  {"samples[].x", "its place, in pixels from the left"},

@@ -122,7 +122,7 @@ cli::ToolSpec tool_spec(Options& o) {
       {"exponents", "lowest and highest exponent of a lobe that reflects; null where none does"},
       {"mirror_exponent", "exponent of the lobes that mirrors became"},
       {"surfaces[].name", "name of the paint, or file"},
-      {"surfaces[].kind", "paint, map, picture or nothing"},
+      {"surfaces[].kind", "one of paint, map, picture and nothing"},
       {"surfaces[].share", "share of the map that it covers"},
       {"surfaces[].strength_error",
        "mean relative error of the gloss of a paint over viewing angles up to 80 degrees; 0 where it has none"},

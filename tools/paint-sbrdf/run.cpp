@@ -2,6 +2,7 @@
 
 #include "build.h"
 #include "image/surface_file.h"
+#include "output_names.h"
 
 namespace goniochrome::tool {
 
@@ -33,6 +34,7 @@ std::string plan_text(const Options& options, const Surfaces& surfaces, const Pa
 }  // namespace
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
+  GONIO_TRY(check_output_name(options.output, "an EXR", ".exr"));
   GONIO_ASSIGN(const Surfaces surfaces, read_surfaces(options, session));
   GONIO_ASSIGN(const Pattern pattern, Pattern::create(options, surfaces.all.size()));
   GONIO_ASSIGN(const Layout layout, layout_of(options, surfaces, pattern));

@@ -126,7 +126,7 @@ setup() {
   done
   run plot-paint --paint nobody fitted.xml -o page.svg
   [ "$status" -eq 3 ]
-  [[ "$output" =~ 'there is no paint "nobody"' ]]
+  [[ "$output" =~ 'no paint is named "nobody"' ]]
   run plot-paint --brdf absent.brdf fitted.xml -o page.svg
   [ "$status" -eq 3 ]
   run plot-paint absent.xml -o page.svg

@@ -12,6 +12,7 @@
 #include "hud.h"
 #include "image/surface_file.h"
 #include "map_page.h"
+#include "output_names.h"
 #include "page.h"
 #include "png.h"
 
@@ -39,18 +40,19 @@ struct ChosenPaint {
 // The paints asked for, in the order of the libraries.
 Result<std::vector<ChosenPaint>> chosen_paints(const Options& options) {
   std::vector<ChosenPaint> chosen;
-  std::vector<std::string> missing = options.names;
+  std::vector<formats::WantedName> missing(options.names.begin(), options.names.end());
   for (const std::string& path : options.libraries.empty() ? std::vector<std::string>{"-"} : options.libraries) {
     GONIO_ASSIGN(std::vector<paint::Paint> paints, formats::read_paints(path));
     const std::filesystem::path folder = std::filesystem::path(formats::paint_reference(path).file).parent_path();
     for (paint::Paint& paint : paints) {
       const bool named = std::ranges::find(options.names, paint.name) != options.names.end();
+      if (named) std::erase_if(missing, [&](const formats::WantedName& wanted) { return wanted.name() == paint.name; });
+      for (formats::WantedName& wanted : missing) wanted.see(paint.name);
       if (!options.names.empty() && !named) continue;
-      std::erase(missing, paint.name);
       chosen.push_back({std::move(paint), folder});
     }
   }
-  if (!missing.empty()) return input_error("there is no paint \"{}\": see the names in the library", missing.front());
+  if (!missing.empty()) return input_error("{}", missing.front().not_found());
   if (chosen.empty()) return input_error("there is no paint to draw");
   return Result(std::move(chosen));
 }
@@ -69,13 +71,16 @@ class PageFiles {
   // Nothing where all paints are on one sheet. Error (usage): a word in braces that there is not.
   static Result<std::optional<PageFiles>> create(const Options& options) {
     const bool is_pattern = FileNames::is_pattern(options.output);
+    const std::vector<std::string> words = {"name", "code", "index"};
+    GONIO_TRY(FileNames::check(options.output, words, "--output"));
+    if (!options.output.ends_with(".png")) GONIO_TRY(check_output_name(options.output, "an SVG or a PNG", ".svg"));
     if (!is_pattern && options.pages.empty()) return std::optional<PageFiles>();
     if (is_pattern && !options.pages.empty())
       return usage_error("--pages and --output {} exclude each other: each names the pages", options.output);
     // Braces in the name of a folder are no words.
     const std::string folder = is_pattern ? "" : options.pages + "/";
     const std::string pattern = is_pattern ? options.output : "{name}." + options.format;
-    GONIO_ASSIGN(FileNames names, FileNames::create(pattern, {"name", "code", "index"}, "--output"));
+    GONIO_ASSIGN(FileNames names, FileNames::create(pattern, words, "--output"));
     return std::optional(PageFiles(folder, std::move(names)));
   }
 

@@ -99,10 +99,11 @@ void add_report(cli::ToolSpec& spec) {
   spec.report = {
       {"lobes[].exponent", "exponent of the lobe; \"mirror\" for the environment itself"},
       {"lobes[].size", "texels along a face"},
-      {"lobes[].method", "harmonics, harmonics+bright, harmonics+horizon, arcs+bright, local sums, blocks or overlaps"},
+      {"lobes[].method",
+       "one of harmonics, harmonics+bright, harmonics+horizon, arcs+bright, local sums, blocks and overlaps"},
       {"lobes[].cached", "whether the lobe came from the cache"},
       {"lobes[].degree", "degree of the harmonics"},
-      {"lobes[].storage", "half or float"},
+      {"lobes[].storage", "one of half and float"},
       {"lobes[].predicted_time_s", "time that was expected"},
       {"lobes[].time_s", "time that it took; the first lobe of a method also pays for its tables"},
       {"lobes[].predicted_error", "relative error that was allowed for, rounding included"},
@@ -120,7 +121,8 @@ void add_report(cli::ToolSpec& spec) {
       {"left_out[].share", "largest part that it has in the reflectance of any paint"},
       {"source.path", "the image"},
       {"source.layout",
-       "lat-long, cube, cube with texel centers on the edges, angular probe, or mirror ball, which is a lat-long map "
+       "one of lat-long, cube, cube with texel centers on the edges, angular probe, and mirror ball, which is a "
+       "lat-long map "
        "from there on"},
       {"source.ball.x", "middle of the ball: texels from the left edge of the picture"},
       {"source.ball.y", "middle of the ball: texels from the upper edge of the picture"},

@@ -13,6 +13,7 @@
 #include "envmap/engine_cube.h"
 #include "envmap/mip.h"
 #include "envmap/open_maps.h"
+#include "output_names.h"
 #include "prefilter/exact_lobe.h"
 #include "prefilter/lobe_cache.h"
 #include "prefilter/prefilter.h"
@@ -239,6 +240,10 @@ Result<void> check_picture(const Options& options) {
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   keep_freed_memory();  // grids, moments and maps of some megabytes follow each other
   GONIO_TRY(check_picture(options));
+  const bool is_engine_cube = options.layout == "ktx2" || options.layout == "dds";
+  GONIO_TRY(check_output_name(options.output,
+                              is_engine_cube ? "a cube texture of --layout " + options.layout : "an EXR",
+                              is_engine_cube ? "." + options.layout : ".exr"));
   GONIO_ASSIGN(const Wanted wanted, wanted_lobes(options));
   const prefilter::PrefilterRequest& request = wanted.request;
   const Stopwatch read_clock;

@@ -1,9 +1,10 @@
+#include "color/spectrum.h"
 #include "tool.h"
 
 namespace goniochrome::tool {
 
 cli::ToolSpec tool_spec(Options& o) {
-  cli::ToolSpec spec{.name = "relight", .summary = "an HDR image from one illuminant to another"};
+  cli::ToolSpec spec{.name = "relight", .summary = "convert an HDR image from one illuminant to another"};
   spec.description = {
       "relight reads an image that was made in light of one color, and writes what it would be in light of another. "
       "Every pixel is divided by the old illuminant and multiplied by the new one. This product of two colors is "
@@ -16,8 +17,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "They are counted, and kept unless --negative says zero."};
   spec.inputs = {"IMAGE", "an HDR image (EXR, HDR, TIFF or the like); - or none is standard input", &o.image, 0, 1};
   spec.heading = "light";
-  spec.option("from", "LIGHT", "D65", &o.from, "illuminant of the image: R,G,B or D65, D50, A");
-  spec.option("to", "LIGHT", "0.2,0.4,1", &o.to, "illuminant to change to: R,G,B or D65, D50, A");
+  spec.option("from", "LIGHT", "D65", &o.from, "illuminant of the image: R,G,B, " + color::spectral_illuminants());
+  spec.option("to", "LIGHT", "0.2,0.4,1", &o.to, "illuminant to change to: R,G,B, " + color::spectral_illuminants());
   spec.heading = "product of colors";
   spec.option("operator", "OP[,SHARES]", "iso709", &o.op, "how colored light and surfaces multiply")
       .more(color::operator_sentences());

@@ -6,7 +6,9 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "color/reflection_file.h"
+#include "color/spectrum.h"
 #include "image/color_space.h"
+#include "output_names.h"
 
 namespace goniochrome::tool {
 
@@ -14,18 +16,19 @@ namespace {
 
 // R,G,B or the name of an illuminant.
 Result<color::Rgb> illuminant(const std::string& option, const std::string& text) {
-  if (text.empty()) return usage_error("--{} is missing: give R,G,B or D65, D50, A", option);
+  if (text.empty()) return usage_error("--{} is missing: give R,G,B, {}", option, color::spectral_illuminants());
   const auto words = split(text, ',');
   if (words.size() == 1 && !parse_number(text)) {
     const auto white = color::white_point({text, 2});
-    if (!white.ok()) return usage_error("--{} {}: give R,G,B or D65, D50, A", option, text);
+    if (!white.ok()) return usage_error("--{} {}: give R,G,B, {}", option, text, color::spectral_illuminants());
     return color::rgb_from_xyz_d65(*white);
   }
   color::Rgb rgb;
   for (int c = 0; c < 3; ++c) {
     const auto value = words.size() == 3 ? parse_number(trimmed(words[static_cast<std::size_t>(c)])) : std::nullopt;
     if (!value || *value < 0)
-      return usage_error("--{} {}: give three values of 0 or more, such as 1,0.9,0.1, or D65, D50, A", option, text);
+      return usage_error("--{} {}: give three values of 0 or more, such as 1,0.9,0.1, or {}", option, text,
+                         color::spectral_illuminants());
     rgb[c] = *value;
   }
   return rgb;
@@ -139,6 +142,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.estimate.empty()) return estimate(options, session);
   if (!options.primaries.empty())
     return usage_error("--primaries is for --estimate: an operator of --operator has its own");
+  GONIO_TRY(check_output_name(options.output, "an EXR", ".exr"));
   GONIO_ASSIGN(const color::Rgb from, illuminant("from", options.from));
   GONIO_ASSIGN(const color::Rgb to, illuminant("to", options.to));
   GONIO_ASSIGN(const color::ReflectionOperator op, operator_of(options));
@@ -148,6 +152,9 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
 
   const std::string path = options.image.empty() ? "-" : options.image.front();
   GONIO_ASSIGN(const image::ImagePart part, image::read_image(path));
+  if (!image::text_attribute(part, "goniochrome:texels").empty() && image::text_attribute(part, "envmap").empty())
+    return input_error(
+        "{}: is a prefiltered environment, of which an image holds one map: relight its source, and filter that", path);
   if (const std::string problem = image::inks_problem(part, path); !problem.empty()) session.warn(problem);
   GONIO_ASSIGN(image::Image image, image::working_space_rgb(part, path));
   GONIO_ASSIGN(const std::size_t negative, relit(image, change->matrix, options.negative == "keep", path));
@@ -167,7 +174,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (const auto envmap = part.attributes.find("envmap"); envmap != part.attributes.end())
     out.attributes["envmap"] = envmap->second;
   GONIO_TRY(image::write_exr(options.output, {out}));
-  session.say(fmt::format("{}: {} pixels, condition number {:.3g}, {:.2g} % with a negative channel", session.tool(),
+  session.say(fmt::format("{}: {} pixels, condition number {:.3g}, {:.3g} % with a negative channel", session.tool(),
                           pixels, change->condition, 100 * share));
   return cli::Verdict::kDone;
 }

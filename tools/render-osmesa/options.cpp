@@ -102,7 +102,7 @@ void add_light(cli::ToolSpec& spec, Options& o) {
           "LIGHT is the radiance of both sides of the part, beside what its paint reflects: R,G,B in linear Rec.2020, "
           "or a light by its name, with a factor, as in A*20. Only the engine path draws such parts, and auto takes it "
           "for them.");
-  spec.option("spectral", "WHEN", "on", &o.spectral, "follow light in bands of wavelength: auto, on or off")
+  spec.option("spectral", "WHEN", "on", &o.spectral, "follow light in bands of wavelength")
       .one_of({"auto", "on", "off"})
       .more(
           "The engine path then multiplies light and paint in 31 bands from 400 to 700 nm, not in three channels, so "
@@ -428,7 +428,7 @@ void add_report(cli::ToolSpec& spec) {
       {"error: checked_pixels, worst_x, worst_y, time_s",
        "how many pixels were checked, where the worst one is, and how long the check took"},
       {"error: source", "image that the reference integrator used"},
-      {"error: against", "truth or model"},
+      {"error: against", "one of truth and model"},
       {"error: standard_error", "of the truth: the 95th percentile of its noise"},
       {"error: prefilter, occlusion, bounce, noise",
        "95th percentile of what each cause alone changes: maps and their look-up; shadow and self, if they were left "

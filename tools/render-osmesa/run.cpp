@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/file.h"
+#include "base/file_names.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "display/display.h"
@@ -403,6 +404,7 @@ Result<cli::Verdict> Shooting::check_picture() {
 }  // namespace
 
 Result<cli::Verdict> run(const Options& asked, cli::Session& session) {
+  GONIO_TRY(FileNames::check(asked.output, {"name", "code", "index"}, "--output"));
   GONIO_ASSIGN(const Options drawn, with_engine_of_gpu(asked));
   GONIO_ASSIGN(const Options options, is_stream(drawn) ? stream_options(drawn) : Result<Options>(drawn));
   GONIO_ASSIGN(Request request, request_of(options));

@@ -79,12 +79,12 @@ void add_report(cli::ToolSpec& spec) {
        "sketch-fit --image studio-scene.exr --buffers studio-scene.exr --env studio.env.exr -o sketch.paints.xml",
        "do the same under a studio"}};
   spec.report = {
-      {"status", "fitted, or diffuse_fallback"},
+      {"status", "one of fitted and diffuse_fallback"},
       {"reason", "reason of the fallback; else null"},
-      {"mode", "point, environment or transport"},
+      {"mode", "one of point, environment and transport"},
       {"bounced_de00_p95",
        "with a transport: error of the bounced light that was scaled to the paint found, 95th percentile, CIEDE2000"},
-      {"model", "lobes, quadratic, search, search with free rows, search with free lobes, or diffuse"},
+      {"model", "one of lobes, quadratic, search, search with free rows, search with free lobes, and diffuse"},
       {"rms_de76", "root mean square CIE 1976 difference of the used pixels from the paint found, relative to white"},
       {"median_de76", "their median, which outliers do not move"},
       {"travel_deg", "travel of the paint found"},
@@ -96,13 +96,13 @@ void add_report(cli::ToolSpec& spec) {
        "other angles whose color the picture leaves open, with the CIEDE2000 difference by which it may be off, or "
        "null"},
       {"gloss_60_gu", "its gloss at 60 degrees; null for the fallback, and where it is undetermined without --start"},
-      {"gloss_from", "highlight, contrast, search, start, or undetermined"},
+      {"gloss_from", "one of highlight, contrast, search, start and undetermined"},
       {"gloss_range_gu",
        "under lamps, the least and the largest gloss that explain the pixels as well, where they were looked for"},
       {"condition", "condition number of the linear fit, or of the search at its end; null where nothing was fitted"},
       {"pixels_used", "number of pixels that the fit rests on"},
       {"pixels_changed", "number of pixels that could be used and were edited"},
-      {"pixels_rule", "changed or all"},
+      {"pixels_rule", "one of changed and all"},
       {"pixels_compared_with",
        "picture, for that of the buffers, or transport, for what it shows of the paints that were worn: the one in "
        "which the edit began; null with --pixels all"},

@@ -183,7 +183,7 @@ void add_report(cli::ToolSpec& spec) {
       {"undetermined[]", "parameters that the views leave open"},
       {"at_bound[]", "parameters that a bound holds back"},
       {"solid", "whether face and flop were moved together"},
-      {"status", "converged, not_converged, or failed with a message"},
+      {"status", "one of converged, not_converged, and failed with a message"},
       {"time_ms", "time of the fit; starts tells from how many points it was begun"},
       {"misalignment_deg", "with --mesh: low, median and high misalignment of the seam"},
       {"traced[].paint", "with --environment: name of a paint whose light was traced"},

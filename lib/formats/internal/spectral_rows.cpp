@@ -27,6 +27,12 @@ std::optional<double> wavelength_in(std::string_view heading) {
   return nm && *nm >= kFirst_nm && *nm <= kLast_nm ? nm : std::nullopt;
 }
 
+Result<void> check_not_negative(const std::vector<double>& factors) {
+  const double least = *std::ranges::min_element(factors);
+  if (least > kSmallestFactor) return {};
+  return input_error("a reflectance factor is {}: 0 is black, and noise goes no lower than {}", least, kSmallestFactor);
+}
+
 Result<void> check_steps(const std::vector<WavelengthColumn>& columns) {
   for (std::size_t i = 2; i < columns.size(); ++i) {
     const double step = columns[1].nm - columns[0].nm, expected = columns[0].nm + step * static_cast<double>(i);
@@ -60,13 +66,13 @@ Result<void> SpectralMeter::make_factors(paint::SpectrumReading& spectrum, const
       return input_error(
           "a reflectance is {}: write factors, where 1 is the perfect diffuser, or L*, a* and b* beside them",
           *std::ranges::max_element(spectrum.factors));
-    return {};
+    return check_not_negative(spectrum.factors);
   }
   const auto as_factors = lab(spectrum, condition), as_percent = lab(spectrum, condition, 0.01);
-  if (!as_factors.ok() || !as_percent.ok()) return {};  // nothing tells
-  if (std::abs(as_percent->L - *L) < std::abs(as_factors->L - *L))
+  // Where the light is not known, nothing tells.
+  if (as_factors.ok() && as_percent.ok() && std::abs(as_percent->L - *L) < std::abs(as_factors->L - *L))
     for (double& factor : spectrum.factors) factor /= 100;
-  return {};
+  return check_not_negative(spectrum.factors);
 }
 
 }  // namespace goniochrome::formats

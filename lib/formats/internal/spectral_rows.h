@@ -24,6 +24,9 @@ constexpr std::size_t kFewestWavelengths = 5;
 // for any other heading.
 std::optional<double> wavelength_in(std::string_view heading);
 
+// Error: a factor is -0.1 or less.
+Result<void> check_not_negative(const std::vector<double>& factors);
+
 // Error: the wavelengths do not ascend in equal steps.
 Result<void> check_steps(const std::vector<WavelengthColumn>& columns);
 
@@ -35,7 +38,7 @@ class SpectralMeter {
                          double unit = 1);
 
   // Turns percent into factors (1 = perfect diffuser) where the L* beside the spectrum says that they are percent.
-  // Error: there is no L*, and a value is above 20, which no paint reflects.
+  // Error: there is no L*, and a value is above 20, which no paint reflects; a factor is -0.1 or less.
   Result<void> make_factors(paint::SpectrumReading& spectrum, const color::ViewingCondition& condition,
                             std::optional<double> L);
 
@@ -46,7 +49,8 @@ class SpectralMeter {
   std::vector<double> factors_;
 };
 
-// A metallic paint reflects up to ten times what a white diffuser does.
-constexpr double kLargestFactor = 20;
+// A metallic paint reflects up to ten times what a white diffuser does. A dark one may read a little below 0 for the
+// noise of the instrument; CxF3 allows no factor of -0.1 or less.
+constexpr double kLargestFactor = 20, kSmallestFactor = -0.1;
 
 }  // namespace goniochrome::formats

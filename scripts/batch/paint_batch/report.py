@@ -66,7 +66,7 @@ class Verdict:
 
 def merge(out):
     """Writes report.tsv (a line for each paint), report.json (summary and failures), fitted.paints.xml and times.json."""
-    plan = files.read_json(out / "plan.json")
+    plan = files.read_plan(out)
     summary = {"paints": 0, "fitted": 0, "pictures": 0, "rejected": files.read_json(out / "rejected.json"), "failed": []}
     errors, seconds, named = [], {}, columns(plan)
     verdict = Verdict(plan["target"]) if "target" in plan else None
@@ -123,7 +123,8 @@ def chapters(plan):
 
 def book(out, chapter):
     """Writes a chapter of the paint book, with the pictures of the first scene."""
-    plan = files.read_json(out / "plan.json")
+    plan = files.read_plan(out)
+    files.check_number(chapter, chapters(plan), "chapter", out)
     first, last = chapter * plan["chapter"], (chapter + 1) * plan["chapter"]
     scene = plan["scenes"][0]
     skipped = {entry["paint"] for entry in files.read_json(out / "report.json")["failed"]}

@@ -121,7 +121,7 @@ def wait(out, plan, job):
 
 def run(out, task_s, words):
     """Does the shards that are not done, merges the report and writes the book."""
-    plan = files.read_json(out / "plan.json")
+    plan = files.read_plan(out)
     state, started = out / "slurm.json", time.monotonic()
     first = undone(out, plan)
     if state.exists() and first:  # an array that was sent before this command was interrupted

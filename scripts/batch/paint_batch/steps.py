@@ -248,7 +248,8 @@ def row_of(number, got):
 
 def run_shard(out, number):
     """Does shard `number` of the plan in `out`, unless it is done. It is done when done.json is there, which is written last."""
-    plan = files.read_json(out / "plan.json")
+    plan = files.read_plan(out)
+    files.check_number(number, len(plan["shards"]), "shard", out)
     shard = plan["shards"][number]
     folder = out / "shards" / f"{number:04d}"
     with files.locked(folder):
