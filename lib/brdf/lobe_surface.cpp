@@ -57,12 +57,14 @@ double lobe_energy(const LafortuneLobe& lobe) {
 }
 
 LobeSurface lobe_surface(const SbrdfTexture& texture, int column, int row, std::uint32_t lobes) {
-  const SbrdfTexel texel = sbrdf_texel(texture, column, row);
-  const double turn = std::atan2(texel.x_bitangent, texel.x_tangent);
-  LobeSurface surface{texel.surface.diffuse, {}};
-  for (std::size_t i = 0; i < texel.surface.lobes.size(); ++i) {
-    const LafortuneLobe& lobe = texel.surface.lobes[i];
-    if ((lobes >> i & 1U) != 0 && !(lobe.albedo == color::Rgb{})) surface.lobes.push_back(turned_lobe(lobe, turn));
+  LobeSurface surface;
+  for (const SbrdfTexel& texel : sbrdf_texels(texture, column, row)) {
+    const double turn = std::atan2(texel.x_bitangent, texel.x_tangent);
+    surface.diffuse += texel.surface.diffuse;
+    for (std::size_t i = 0; i < texel.surface.lobes.size(); ++i) {
+      const LafortuneLobe& lobe = texel.surface.lobes[i];
+      if ((lobes >> i & 1U) != 0 && !(lobe.albedo == color::Rgb{})) surface.lobes.push_back(turned_lobe(lobe, turn));
+    }
   }
   return surface;
 }
@@ -98,17 +100,21 @@ bool has_one_frame(const LobeSurface& surface) {
          });
 }
 
-void write_texel(const LobeSurface& surface, int lobes, double unused_exponent, float* values) {
+void write_texel(const LobeSurface& surface, int lobes, double unused_exponent, float* values, float* turns) {
   const TurnedLobe* first = directed(surface);
   const double turn = first == nullptr ? 0 : first->turn_rad;
-  std::vector<const LafortuneLobe*> order;
-  for (const TurnedLobe& lobe : surface.lobes) order.push_back(&lobe.lobe);
-  std::ranges::stable_sort(order, {}, [](const LafortuneLobe* lobe) { return lobe->exponent; });
+  std::vector<const TurnedLobe*> order;
+  for (const TurnedLobe& lobe : surface.lobes) order.push_back(&lobe);
+  std::ranges::stable_sort(order, {}, [](const TurnedLobe* lobe) { return lobe->lobe.exponent; });
   for (int c = 0; c < 3; ++c) *values++ = static_cast<float>(surface.diffuse[c]);
   *values++ = static_cast<float>(std::cos(2 * turn)), *values++ = static_cast<float>(std::sin(2 * turn));
   const LafortuneLobe unused{{}, {-1, -1, 1}, unused_exponent};
   for (std::size_t i = 0; i < static_cast<std::size_t>(lobes); ++i) {
-    const LafortuneLobe& lobe = i < order.size() ? *order[i] : unused;
+    const LafortuneLobe& lobe = i < order.size() ? order[i]->lobe : unused;
+    if (turns != nullptr) {
+      const double its_turn = i < order.size() && !is_round(lobe) ? order[i]->turn_rad : turn;
+      *turns++ = static_cast<float>(std::cos(2 * its_turn)), *turns++ = static_cast<float>(std::sin(2 * its_turn));
+    }
     for (int c = 0; c < 3; ++c) *values++ = static_cast<float>(lobe.albedo[c]);
     for (int c = 0; c < 3; ++c) *values++ = static_cast<float>(lobe.axes[c]);
     *values++ = static_cast<float>(lobe.exponent);

@@ -44,8 +44,9 @@ void add_surface(LobeSurface& sum, const LobeSurface& part, double share);
 bool has_one_frame(const LobeSurface& surface);
 
 // Writes the surface to the values of a texel with so many lobes, ascending in exponent; lobes that are not needed get
-// the albedo 0 and the exponent `unused`. The surface must have one frame and no more lobes than that.
-void write_texel(const LobeSurface& surface, int lobes, double unused_exponent, float* values);
+// the albedo 0 and the exponent `unused`. The surface must have no more lobes than that, and one frame where `turns` is
+// null; else these get the frame of each lobe, as SbrdfTexture has them.
+void write_texel(const LobeSurface& surface, int lobes, double unused_exponent, float* values, float* turns = nullptr);
 
 // How a paint becomes lobes of a texel.
 struct PaintedSurface {

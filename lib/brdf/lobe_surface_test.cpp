@@ -115,5 +115,39 @@ TEST(LobeSurface, APaintKeepsItsExponentsAndReflectsLikeItsLobeModel) {
   }
 }
 
+// Three lobes of three directions, one of which is round, through a texel and back. One frame for all is the control.
+TEST(LobeSurface, LobesKeepDirectionsOfTheirOwn) {
+  const LobeSurface surface = {
+      {0.05, 0.04, 0.03},
+      {turned_lobe({{0.5, 0.4, 0.3}, {-1, -0.3, 1}, 20}, 0.2), turned_lobe({{0.2, 0.4, 0.3}, {-1, -0.5, 1}, 40}, 1.9),
+       turned_lobe({{0.1, 0.1, 0.1}, {-1, -1, 1}, 10}, 0)}};
+  ASSERT_FALSE(has_one_frame(surface));
+  SbrdfTexture texture{1, 1, 4, {}};
+  texture.values.resize(static_cast<std::size_t>(texture.stride()));
+  texture.turns.resize(8);
+  write_texel(surface, 4, 1, texture.values.data(), texture.turns.data());
+  const auto apart = [&] {
+    double most = 0;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 wi = direction(50, 45 * i), wo = direction(65, 45 * i + 170);
+      const color::Rgb wanted = brdf(surface, wi, wo);
+      const color::Rgb by_texel = brdf(lobe_surface(texture, 0, 0), wi, wo);
+      color::Rgb by_parts;
+      for (const SbrdfTexel& texel : sbrdf_texels(texture, 0, 0)) {
+        const SurfaceFrame frame = surface_frame(texel, {0, 0, 1}, {1, 0, 0});
+        by_parts += brdf(texel.surface, frame.local(wi), frame.local(wo));
+      }
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(by_parts[c], by_texel[c], 1e-12 * (1 + by_texel[c]));
+        most = std::max(most, std::abs(by_texel[c] - wanted[c]) / wanted[c]);
+      }
+    }
+    return most;
+  };
+  EXPECT_LT(apart(), 1e-5) << "single precision, to the power of 40";
+  texture.turns.clear();
+  EXPECT_GT(apart(), 0.1) << "the control";
+}
+
 }  // namespace
 }  // namespace goniochrome::brdf

@@ -5,20 +5,60 @@
 
 namespace goniochrome::brdf {
 
+// The half of an angle -180..180 deg lies at -90..90: its cosine is not negative, its sine has the sign of the whole.
+SbrdfAxis sbrdf_axis(const float* frame) {
+  const double size = std::hypot(frame[0], frame[1]), cosine = size > 0 ? frame[0] / size : 1;
+  return {std::sqrt(std::max(0.5 * (1 + cosine), 0.0)),
+          std::copysign(std::sqrt(std::max(0.5 * (1 - cosine), 0.0)), frame[1])};
+}
+
+namespace {
+
+void turn_to(const float* frame, SbrdfTexel& texel) {
+  const SbrdfAxis axis = sbrdf_axis(frame);
+  texel.x_tangent = axis.tangent, texel.x_bitangent = axis.bitangent;
+}
+
+}  // namespace
+
 SbrdfTexel sbrdf_texel(const SbrdfTexture& texture, int column, int row) {
   const float* at = texture.texel(column, row);
   SbrdfTexel texel;
   texel.surface.diffuse = {at[0], at[1], at[2]};
-  // The half of an angle -180..180 deg lies at -90..90: its cosine is not negative, its sine has the sign of the whole.
-  const double size = std::hypot(at[3], at[4]), cosine = size > 0 ? at[3] / size : 1;
-  texel.x_tangent = std::sqrt(std::max(0.5 * (1 + cosine), 0.0));
-  texel.x_bitangent = std::copysign(std::sqrt(std::max(0.5 * (1 - cosine), 0.0)), at[4]);
+  turn_to(at + 3, texel);
   texel.surface.lobes.reserve(static_cast<std::size_t>(texture.lobes));
   for (int lobe = 0; lobe < texture.lobes; ++lobe) {
     const float* l = at + 5 + 7 * lobe;
     texel.surface.lobes.push_back({{l[0], l[1], l[2]}, {l[3], l[4], l[5]}, l[6]});
   }
   return texel;
+}
+
+std::vector<SbrdfTexel> sbrdf_texels(const SbrdfTexture& texture, int column, int row) {
+  SbrdfTexel whole = sbrdf_texel(texture, column, row);
+  std::vector<SbrdfTexel> texels;
+  if (texture.turns.empty()) {
+    texels.push_back(std::move(whole));
+    return texels;
+  }
+  std::vector<bool> done(whole.surface.lobes.size(), false);
+  for (int lobe = 0; lobe < texture.lobes; ++lobe) {
+    if (done[static_cast<std::size_t>(lobe)]) continue;
+    const float* frame = texture.frame(column, row, lobe);
+    SbrdfTexel& texel = texels.emplace_back(whole);
+    if (texels.size() > 1) texel.surface.diffuse = {};
+    turn_to(frame, texel);
+    for (int other = 0; other < texture.lobes; ++other) {
+      const auto at = static_cast<std::size_t>(other);
+      const float* its = texture.frame(column, row, other);
+      if (other >= lobe && its[0] == frame[0] && its[1] == frame[1]) {
+        done[at] = true;
+      } else {
+        texel.surface.lobes[at].albedo = {};
+      }
+    }
+  }
+  return texels;
 }
 
 SurfaceFrame surface_frame(const SbrdfTexel& texel, const Vec3& normal, const Vec3& tangent) {
@@ -87,6 +127,12 @@ struct LobeSums {
   }
 };
 
+std::array<double, 2> direction_of(const std::array<double, 2>& odd) {
+  const double size = std::hypot(odd[0], odd[1]);
+  if (!(size > 0)) return {1, 0};
+  return {odd[0] / size, odd[1] / size};
+}
+
 }  // namespace
 
 SbrdfTexture mean_texture(const SbrdfTexture& texture) {
@@ -99,18 +145,22 @@ SbrdfTexture mean_texture(const SbrdfTexture& texture) {
   for (std::size_t i = 0; i < texels; ++i) {
     const float* at = &texture.values[i * static_cast<std::size_t>(texture.stride())];
     diffuse += share * color::Rgb{at[0], at[1], at[2]};
-    for (std::size_t lobe = 0; lobe < sums.size(); ++lobe) sums[lobe].add(at + 5 + 7 * lobe, at + 3, share);
+    const int column = static_cast<int>(i) % texture.width, row = static_cast<int>(i) / texture.width;
+    for (std::size_t lobe = 0; lobe < sums.size(); ++lobe)
+      sums[lobe].add(at + 5 + 7 * lobe, texture.frame(column, row, static_cast<int>(lobe)), share);
     covered += texture.alpha.empty() ? share : share * texture.alpha[i];
   }
   if (!texture.alpha.empty()) mean.alpha = {static_cast<float>(covered)};
-  double c = 0, s = 0;
-  for (const LobeSums& lobe : sums) c += lobe.odd[0], s += lobe.odd[1];
-  const double size = std::hypot(c, s);
-  c = size > 0 ? c / size : 1, s = size > 0 ? s / size : 0;
+  std::array<double, 2> all{};
+  for (const LobeSums& lobe : sums) all[0] += lobe.odd[0], all[1] += lobe.odd[1];
+  const std::array<double, 2> common = direction_of(all);
   float* to = mean.values.data();
   for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(diffuse[k]);
-  to[3] = static_cast<float>(c), to[4] = static_cast<float>(s), to += 5;
+  to[3] = static_cast<float>(common[0]), to[4] = static_cast<float>(common[1]), to += 5;
   for (const LobeSums& lobe : sums) {
+    const auto [c, s] = texture.turns.empty() ? common : direction_of(lobe.odd);
+    if (!texture.turns.empty())
+      mean.turns.push_back(static_cast<float>(c)), mean.turns.push_back(static_cast<float>(s));
     const double n1 = std::exp(lobe.log_exponent / lobe.weight), even = lobe.even / lobe.weight;
     const double odd = (c * lobe.odd[0] + s * lobe.odd[1]) / lobe.weight;
     for (const double value : {n1 * lobe.energy.x, n1 * lobe.energy.y, n1 * lobe.energy.z, even + odd, even - odd,

@@ -18,19 +18,37 @@ struct SbrdfTexture {
   int width = 0, height = 0, lobes = 0;
   std::vector<float> values;
   std::vector<float> alpha = {};  // of each texel, the part that it covers, 0 to 1; empty where that is all
+  // For each lobe of each texel, cos and sin of twice the angle from the tangent to an x axis of its own, which then
+  // takes the place of the texel's; empty where the texel's serves all of its lobes.
+  std::vector<float> turns = {};
 
   int stride() const { return 5 + 7 * lobes; }
   const float* texel(int column, int row) const {
     return &values[(static_cast<std::size_t>(row) * width + column) * static_cast<std::size_t>(stride())];
   }
+  // Cos and sin of twice the angle of the x axis of a lobe.
+  const float* frame(int column, int row, int lobe) const {
+    if (turns.empty()) return texel(column, row) + 3;
+    return &turns[2 * ((static_cast<std::size_t>(row) * width + column) * static_cast<std::size_t>(lobes) + lobe)];
+  }
 };
+
+// The x axis whose cosine and sine of twice the angle these are: tangent * t + bitangent * b.
+struct SbrdfAxis {
+  double tangent = 1, bitangent = 0;
+};
+SbrdfAxis sbrdf_axis(const float* cos_sin_twice);
 
 // One texel, ready to be shaded: its x axis is x_tangent * tangent + x_bitangent * bitangent.
 struct SbrdfTexel {
   Lafortune surface;
   double x_tangent = 1, x_bitangent = 0;
 };
+// The whole texel in its own frame, whatever frames its lobes have.
 SbrdfTexel sbrdf_texel(const SbrdfTexture& texture, int column, int row);
+// The texel as a sum of surfaces that have one frame each. All have as many lobes as the texture, of which those of
+// other frames reflect nothing; the first has the diffuse part.
+std::vector<SbrdfTexel> sbrdf_texels(const SbrdfTexture& texture, int column, int row);
 
 // The axes of a texel in the world, on a surface with unit normal. The tangent is made perpendicular; if
 // it lies along the normal, any direction in the surface takes its place.
@@ -53,9 +71,9 @@ std::array<TextureTap, 4> texture_taps(int width, int height, double u, double v
 std::vector<std::pair<int, double>> covered_texels(int at, int to, int from);
 
 // One texel in the place of all: the mean diffuse part, and for each lobe, weighted by albedo/(n+1), the mean of that,
-// of log(n+1) and of the axes as matrices of the tangent frame, whose common direction is its frame's. It is the
-// control that shows what a texture gains; it is not the mean of the texels' BRDFs, which would take as many lobes as
-// there are texels. Alpha is the mean.
+// of log(n+1) and of the axes as matrices of the tangent frame, whose common direction is its frame's; where lobes have
+// frames of their own, each keeps its own direction. It is the control that shows what a texture gains; it is not the
+// mean of the texels' BRDFs, which would take as many lobes as there are texels. Alpha is the mean.
 SbrdfTexture mean_texture(const SbrdfTexture& texture);
 
 }  // namespace goniochrome::brdf

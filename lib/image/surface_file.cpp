@@ -72,6 +72,14 @@ std::vector<std::string> channels_of(int lobes) {
   return names;
 }
 
+// The channels of the frames of lobes, in the order of SbrdfTexture::turns.
+std::vector<std::string> turns_of(int lobes) {
+  std::vector<std::string> names;
+  for (int lobe = 0; lobe < lobes; ++lobe)
+    for (const char* channel : {"c", "s"}) names.push_back(fmt::format("lobe{}.{}", lobe, channel));
+  return names;
+}
+
 // What a fitted texture tells of its texels besides their surface.
 constexpr std::array<std::string_view, 3> kBeside = {"alpha", "certainty", "error"};
 
@@ -114,8 +122,12 @@ Result<std::vector<int>> sources(const std::vector<std::string>& wanted, const s
     result.push_back(found == given.end() ? -1 : static_cast<int>(found - given.begin()));
   }
   if ((result[3] < 0) != (result[4] < 0)) return input_error("{}: give frame.c and frame.s, or neither", path);
+  const std::vector<std::string> turns = turns_of(static_cast<int>(wanted.size() - 5) / 7);
+  const auto is_among = [](const auto& names, const std::string& name) {
+    return std::ranges::find(names, name) != names.end();
+  };
   for (const std::string& name : given)
-    if (std::ranges::find(wanted, name) == wanted.end() && std::ranges::find(kBeside, name) == kBeside.end())
+    if (!is_among(wanted, name) && !is_among(turns, name) && !is_among(kBeside, name))
       return input_error("{}: channel {} is not known: there are diffuse, frame and lobe0 to lobe15", path, name);
   return result;
 }
@@ -135,6 +147,32 @@ Result<std::vector<float>> alpha_of(const Image& image, const std::string& path)
   }
   if (std::ranges::all_of(alpha, [](float value) { return value == 1; })) alpha.clear();
   return alpha;
+}
+
+// The frames of all lobes; nothing where the texels' serve.
+Result<std::vector<float>> turns_of(const Image& image, int lobes, const std::string& path) {
+  const std::vector<std::string> names = turns_of(lobes);
+  std::vector<std::ptrdiff_t> from;
+  for (const std::string& name : names) {
+    const auto found = std::ranges::find(image.channel_names, name);
+    if (found != image.channel_names.end()) from.push_back(found - image.channel_names.begin());
+  }
+  std::vector<float> turns;
+  if (from.empty()) return turns;
+  if (from.size() != names.size())
+    return input_error("{}: give c and s of every lobe, or of none: the texel's frame serves lobes that lack them",
+                       path);
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column) {
+      for (std::size_t k = 0; k < from.size(); ++k) {
+        const float value = image.pixel(column, row)[from[k]];
+        if (!std::isfinite(value))
+          return input_error("{}: {} of texel ({},{}) is {}: give a finite number", path, names[k], column, row, value);
+        turns.push_back(value);
+      }
+    }
+  }
+  return turns;
 }
 
 Result<void> check_axes(const brdf::SbrdfTexture& texture, const std::string& path) {
@@ -200,6 +238,7 @@ Result<brdf::SbrdfTexture> read_sbrdf(const std::string& path) {
   }
   GONIO_TRY(check_axes(texture, path));
   GONIO_ASSIGN(texture.alpha, alpha_of(image, path));
+  GONIO_ASSIGN(texture.turns, turns_of(image, texture.lobes, path));
   return texture;
 }
 
@@ -208,13 +247,18 @@ Result<void> write_sbrdf(const std::string& path, const brdf::SbrdfTexture& text
   std::vector<std::string> names = channels_of(texture.lobes);
   const auto stride = static_cast<std::size_t>(texture.stride());
   std::vector<float> values = texture.values;
-  if (!texture.alpha.empty()) {
-    names.emplace_back("alpha");
+  if (!texture.alpha.empty() || !texture.turns.empty()) {
+    const std::vector<std::string> turns = turns_of(texture.turns.empty() ? 0 : texture.lobes);
+    names.insert(names.end(), turns.begin(), turns.end());
+    if (!texture.alpha.empty()) names.emplace_back("alpha");
     values.clear();
-    for (std::size_t i = 0; i < texture.alpha.size(); ++i) {
-      const auto from = texture.values.begin() + static_cast<std::ptrdiff_t>(i * stride);
-      values.insert(values.end(), from, from + static_cast<std::ptrdiff_t>(stride));
-      values.push_back(texture.alpha[i]);
+    const auto put = [&](const std::vector<float>& of, std::size_t texel, std::size_t count) {
+      const auto from = of.begin() + static_cast<std::ptrdiff_t>(texel * count);
+      values.insert(values.end(), from, from + static_cast<std::ptrdiff_t>(count));
+    };
+    for (std::size_t i = 0; i * stride < texture.values.size(); ++i) {
+      put(texture.values, i, stride), put(texture.turns, i, turns.size());
+      if (!texture.alpha.empty()) values.push_back(texture.alpha[i]);
     }
   }
   const auto channels = static_cast<int>(names.size());

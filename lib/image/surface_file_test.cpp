@@ -109,6 +109,26 @@ TEST_F(SbrdfFile, ReadsBackWhatWasWrittenWhateverStandsBeside) {
   EXPECT_EQ(read_exr(path_)->at(1).image.channel_names[1], "certainty");
 }
 
+TEST_F(SbrdfFile, FramesOfLobesAreReadBackBesideAlpha) {
+  brdf::SbrdfTexture texture{
+      1, 1, 2, {0.125F, 0.25F, 0.5F, 1, 0, 1, 2, 3, -1, -0.5F, 1, 40, 3, 2, 1, -1, -0.25F, 1, 7}};
+  texture.turns = {0.6F, 0.8F, -1, 0};
+  ASSERT_TRUE(write_sbrdf(path_, texture, {}).ok());
+  const auto turned = read_sbrdf(path_);
+  ASSERT_TRUE(turned.ok()) << turned.error().message;
+  EXPECT_EQ(turned->values, texture.values);
+  ASSERT_EQ(turned->turns.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(turned->turns[i], texture.turns[i], 5e-4) << "half precision";
+  texture.alpha = {0.5F};
+  ASSERT_TRUE(write_sbrdf(path_, texture, {}).ok());
+  const auto covering = read_sbrdf(path_);
+  EXPECT_EQ(covering->turns, turned->turns);
+  EXPECT_EQ(covering->alpha, texture.alpha);
+  texture.turns.clear(), texture.alpha.clear();
+  ASSERT_TRUE(write_sbrdf(path_, texture, {}).ok());
+  EXPECT_EQ(read_exr(path_)->front().image.channels, 19) << "no channels of frames where the texel's serves";
+}
+
 TEST_F(SbrdfFile, TellsWhatIsWrong) {
   const std::vector<float> good = {0.1F, 0.2F, 0.3F, 1, 2, 3, -1, -0.5F, 1, 40};
   const auto told = [&](std::vector<std::string> channels, std::vector<float> values) {

@@ -283,10 +283,12 @@ double add_seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at
   SeenTexels seen;
   for (const SeenTexels::Seen& one : seen.of(at, 1, all, texture.width, texture.height)) {
     const auto column = static_cast<int>(one.texel % wide), row = static_cast<int>(one.texel / wide);
-    pieces.push_back({brdf::sbrdf_texel(texture, column, row), one.share, tangent});
-    std::vector<brdf::LafortuneLobe>& of = pieces.back().texel.surface.lobes;
-    for (std::size_t lobe = 0; lobe < of.size(); ++lobe)
-      if ((lobes >> lobe & 1U) == 0) of[lobe].albedo = {};
+    for (brdf::SbrdfTexel& texel : brdf::sbrdf_texels(texture, column, row)) {
+      std::vector<brdf::LafortuneLobe>& of = texel.surface.lobes;
+      for (std::size_t lobe = 0; lobe < of.size(); ++lobe)
+        if ((lobes >> lobe & 1U) == 0) of[lobe].albedo = {};
+      pieces.push_back({std::move(texel), one.share, tangent});
+    }
     covered += texture.alpha.empty() ? one.share : one.share * texture.alpha[one.texel];
   }
   return covered;

@@ -138,6 +138,12 @@ struct MadeTexel {
   double error = 0, alpha = 0;
 };
 
+// At most so many lobes. With frames of their own, as many lobes as that are kept whatever their directions are.
+fit::Refit fitted_to(const brdf::LobeSurface& sum, int most, bool own_frames) {
+  if (own_frames && sum.lobes.size() <= static_cast<std::size_t>(most)) return {sum, 0};
+  return fit::refit(sum, most);
+}
+
 class Builder {
  public:
   Builder(const Options& options, const Surfaces& surfaces, const Pattern& pattern, const Layout& layout,
@@ -174,7 +180,7 @@ class Builder {
         texel.alpha += part * wide * high * surface.alpha(x, y);
       }
     const int most = most_lobes_ > 0 ? std::min(most_lobes_, surface.lobes()) : surface.lobes();
-    fit::Refit fitted = fit::refit(sum, most);
+    fit::Refit fitted = fitted_to(sum, most, most_lobes_ == 0);
     texel.error = std::max(texel.error, fitted.error);
     brdf::add_surface(texel.surface, fitted.surface, part);
   }
@@ -201,14 +207,14 @@ double albedo_along_normal(const brdf::LobeSurface& surface) {
 }
 
 // Fits what has too many lobes, in parts so that progress can be told.
-std::vector<double> refit_all(std::vector<brdf::LobeSurface>& all, int most, cli::Session& session) {
+std::vector<double> refit_all(std::vector<brdf::LobeSurface>& all, int most, bool own_frames, cli::Session& session) {
   std::vector<double> errors(all.size(), 0.0);
   constexpr std::size_t kAtOnce = 256;
   for (std::size_t first = 0; first < all.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, all.size() - first);
     parallel_for(count, 4, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = first + begin; i < first + end; ++i) {
-        fit::Refit refit = fit::refit(all[i], most);
+        fit::Refit refit = fitted_to(all[i], most, own_frames);
         all[i] = std::move(refit.surface), errors[i] = refit.error;
       }
     });
@@ -248,7 +254,7 @@ Result<BuiltMap> built_map(const Options& options, const Surfaces& surfaces, con
     }
     session.progress(fmt::format("texels: {} of {} rows", first + count, rows));
   }
-  const std::vector<double> errors = refit_all(kinds.all, most_lobes(options, surfaces), session);
+  const std::vector<double> errors = refit_all(kinds.all, most_lobes(options, surfaces), options.lobes == 0, session);
 
   BuiltMap map;
   map.lowest = std::numeric_limits<double>::infinity();
@@ -271,19 +277,24 @@ Result<BuiltMap> built_map(const Options& options, const Surfaces& surfaces, con
 
   brdf::SbrdfTexture& texture = map.texture;
   texture = {layout.crop_width * layout.columns, layout.crop_height * layout.rows, static_cast<int>(most), {}};
-  const auto stride = static_cast<std::size_t>(texture.stride());
-  std::vector<float> texels(kinds.all.size() * stride);
+  const auto stride = static_cast<std::size_t>(texture.stride()), turned = std::size_t{2} * most;
+  map.frames = !std::ranges::all_of(kinds.all, brdf::has_one_frame);
+  std::vector<float> texels(kinds.all.size() * stride), turns(map.frames ? kinds.all.size() * turned : 0);
   for (std::size_t i = 0; i < kinds.all.size(); ++i)
-    brdf::write_texel(kinds.all[i], texture.lobes, map.lowest, &texels[i * stride]);
+    brdf::write_texel(kinds.all[i], texture.lobes, map.lowest, &texels[i * stride],
+                      map.frames ? &turns[i * turned] : nullptr);
   texture.values.reserve(stride * static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height));
   for (int row = 0; row < texture.height; ++row) {
     for (int column = 0; column < texture.width; ++column) {
-      const float* from = &texels[stride * numbers[static_cast<std::size_t>(row % layout.crop_height) * wide +
-                                                   static_cast<std::size_t>(column % layout.crop_width)]];
+      const std::size_t place = static_cast<std::size_t>(row % layout.crop_height) * wide +
+                                static_cast<std::size_t>(column % layout.crop_width);
+      const float* from = &texels[stride * numbers[place]];
       texture.values.insert(texture.values.end(), from, from + stride);
-      if (!covers)
-        texture.alpha.push_back(alpha[static_cast<std::size_t>(row % layout.crop_height) * wide +
-                                      static_cast<std::size_t>(column % layout.crop_width)]);
+      if (map.frames) {
+        const auto turn = turns.begin() + static_cast<std::ptrdiff_t>(turned * numbers[place]);
+        texture.turns.insert(texture.turns.end(), turn, turn + static_cast<std::ptrdiff_t>(turned));
+      }
+      if (!covers) texture.alpha.push_back(alpha[place]);
     }
   }
   for (const float value : alpha) map.alpha_mean += value / static_cast<double>(alpha.size());

@@ -22,6 +22,7 @@ struct BuiltMap {
   brdf::SbrdfTexture texture;
   std::vector<double> share;  // of each surface
   std::size_t refitted = 0;   // texels
+  bool frames = false;        // whether lobes have frames of their own
   double error_mean = 0, error_max = 0, albedo_max = 0;
   double alpha_mean = 0;
   double lowest = 0, highest = 0;  // exponents that reflect; highest < lowest: none does

@@ -59,10 +59,10 @@ void add_lobes(cli::ToolSpec& spec, Options& o) {
   spec.option("lobes", "N", "3", &o.lobes, "most lobes of a texel; 0 for as many as mixtures need")
       .from(0, 16)
       .more(
-          "A mixture is the sum of the lobes of its surfaces, which is exact. Where a texel has room for fewer, or "
-          "where "
-          "two brushed surfaces have different directions, new lobes are fitted to samples of that sum. With 0, a map "
-          "that is resampled keeps its number of lobes, and no texel has more than 16.");
+          "A mixture is the sum of the lobes of its surfaces, which is exact: where two surfaces are brushed in "
+          "different directions, each lobe keeps its own. A renderer takes as much longer as there are more lobes. "
+          "Where a texel has room for fewer, new lobes in one common direction are fitted to samples of that sum. With "
+          "0, a map that is resampled keeps its number of lobes, and no texel has more than 16.");
   spec.option("mirror", "EXPONENT", "3000", &o.mirror, "exponent of the lobes that mirrors become; 0 to choose")
       .from(0, 1e6)
       .in("the exponent of a cosine")
@@ -119,6 +119,7 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.report = {
       {"size", "width and height of the map in texels"},
       {"lobes", "lobes of a texel"},
+      {"lobe_frames", "whether lobes have directions of their own, since those of a texel differ"},
       {"exponents", "lowest and highest exponent of a lobe that reflects; null where none does"},
       {"mirror_exponent", "exponent of the lobes that mirrors became"},
       {"surfaces[].name", "name of the paint, or file"},

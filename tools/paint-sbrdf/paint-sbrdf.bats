@@ -124,6 +124,30 @@ gray() { # gray FILE W H BYTES...: a gray picture, bytes as octal numbers
   for channel in diffuse.R lobe0.n lobe0.R; do [ "$(channel a.exr $channel 7 7)" = "$(channel b.exr $channel 7 7)" ]; done
 }
 
+@test "brushed surfaces of different directions are mixed exactly, each lobe with a direction of its own" {
+  paint-sbrdf -q "$TESTDATA/nameplate.sbrdf.exr" --crop 0,0,1,1 -o along.exr
+  paint-sbrdf -q along.exr --turn 40 -o askew.exr
+  paint-sbrdf -q along.exr askew.exr --mix 0.5 --report r.json -o both.exr
+  [ "$(jq -c '[.results.lobes, .results.lobe_frames, .results.refitted_texels]' r.json)" = '[5,true,0]' ]  # the round lobe is the same in both
+  # A half of each lobe, with the angle of its own surface.
+  awk -v a="$(channel along.exr lobe0.R 0 0)" -v b="$(channel both.exr lobe0.R 0 0)" -v c="$(channel both.exr lobe0.c 0 0)" \
+    -v d="$(channel both.exr lobe1.c 0 0)" 'BEGIN { exit !(b > 0.499 * a && b < 0.501 * a && (c - d) ^ 2 > 0.1) }'
+  # Written and read again it is the same, and a quarter of a turn needs no further frames.
+  paint-sbrdf -q both.exr --tile 2x1 --report r.json -o again.exr
+  [ "$(jq -c '[.results.lobe_frames, .results.refitted_texels]' r.json)" = '[true,0]' ]
+  for name in lobe0.R lobe1.R lobe0.c lobe1.s lobe1.n; do
+    [ "$(channel again.exr $name 1 0)" = "$(channel both.exr $name 0 0)" ] || { echo "$name"; false; }
+  done
+  paint-sbrdf -q along.exr --turn 90 -o across.exr
+  paint-sbrdf -q along.exr across.exr --mix 0.5 --report r.json -o cross.exr
+  [ "$(jq -c '[.results.lobe_frames, .results.refitted_texels]' r.json)" = '[false,0]' ]
+  # Where fewer lobes are asked for, one direction has to do.
+  paint-sbrdf -q along.exr askew.exr --mix 0.5 --lobes 2 --report r.json -o few.exr
+  [ "$(jq -c '[.results.lobes, .results.lobe_frames, .results.refitted_texels]' r.json)" = '[2,false,1]' ]
+  oiiotool both.exr --ch "$(oiiotool --info -v both.exr | grep -oP 'channel list: \K.*' | tr -d ' ' | sed 's/lobe1.s,*//; s/,$//')" -o part.exr
+  refused 3 "give c and s of every lobe" paint-sbrdf part.exr
+}
+
 @test "where none lies, the map has alpha, which changes and mixtures keep" {
   paint-sbrdf -q none p.xml#light --stripe 0.25,0.625 --size 4x4 --report r.json -o m.exr
   for row in "0 0.000000000 0.000000000" "1 0.500000000 0.125000000" "2 1.000000000 0.250000000" "3 0.000000000 0.000000000"; do

@@ -46,6 +46,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   Json& results = session.results();
   results["size"] = {map.texture.width, map.texture.height};
   results["lobes"] = map.texture.lobes;
+  results["lobe_frames"] = map.frames;
   results["exponents"] = reflects ? Json{map.lowest, map.highest} : Json(nullptr);
   results["mirror_exponent"] = surfaces.mirror_exponent;
   results["surfaces"] = Json::array();
@@ -67,6 +68,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   std::string line =
       fmt::format("map: {} x {} texels, {} lobes", map.texture.width, map.texture.height, map.texture.lobes);
   if (reflects) line += fmt::format(" of exponents {:.4g} to {:.4g}", map.lowest, map.highest);
+  if (map.frames) line += ", each in a frame of its own";
   if (!map.texture.alpha.empty()) line += fmt::format("; alpha is {:.3g} in the mean", map.alpha_mean);
   if (map.refitted > 0)
     line += fmt::format("; {} texels fitted, with errors of {:.1f} % in the mean and {:.1f} % at most", map.refitted,

@@ -109,6 +109,29 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
   [ "$(jq -c '.results.textures[0] | [.projection, .width]' three.json)" = '["triplanar",2]' ]
 }
 
+@test "a mixture of maps that are brushed askew looks as the mean of both, in every engine" {
+  cp "$TESTDATA/brushed.sbrdf.exr" along.sbrdf.exr
+  paint-sbrdf -q along.sbrdf.exr --turn 40 -o askew.sbrdf.exr
+  paint-sbrdf -q along.sbrdf.exr askew.sbrdf.exr --mix 0.5 -o both.sbrdf.exr
+  oiiotool along.sbrdf.exr askew.sbrdf.exr --add --mulc 0.5 -o averaged.sbrdf.exr
+  shown() { # shown NAME ENGINE
+    # shellcheck disable=SC2086
+    render-osmesa -q --mesh square.obj --texture "Square=$1.sbrdf.exr" $lit --light 40,50@1 --orbit 25,35,0.9 \
+      --engine "$2" -o shown.exr
+    oiiotool shown.exr --ch R,G,B -o "$1-$2.exr"
+  }
+  for name in along askew both averaged; do shown $name cpu; done
+  oiiotool along-cpu.exr askew-cpu.exr --add --mulc 0.5 -o mean.exr
+  oiiotool mean.exr both-cpu.exr --fail 2e-4 --diff
+  # Averaged parameters are the control.
+  run oiiotool mean.exr averaged-cpu.exr --fail 1e-3 --diff
+  [ "$status" -ne 0 ]
+  for engine in gl integral path; do
+    shown both $engine
+    oiiotool both-cpu.exr both-$engine.exr --fail 0.002 --diff
+  done
+}
+
 @test "a map with alpha shows what lies beneath, in every engine and in order" {
   { echo '<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="blue"><lobes space="lin_rec2020_scene" basis="b" method="stated" max_de00="0" mean_de00="0">'
     echo '<diffuse r="0.01" g="0.01" b="0.3"/></lobes></paint></paints>'; } >p.xml

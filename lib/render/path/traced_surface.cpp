@@ -40,26 +40,27 @@ std::vector<SurfaceLayer::Place> brightest_texels(const brdf::SbrdfTexture& text
     int column, row;
   };
   std::vector<Candidate> candidates;
-  const auto whole = [&](int column, int row) {
-    brdf::SbrdfTexel texel = brdf::sbrdf_texel(texture, column, row);
-    if (texture.alpha.empty()) return texel;
+  const auto scale_of = [&](int column, int row) {
+    if (texture.alpha.empty()) return 1.0;
     const auto at =
         static_cast<std::size_t>(row) * static_cast<std::size_t>(texture.width) + static_cast<std::size_t>(column);
-    const double scale = 1 / std::max<double>(texture.alpha[at], kLeastAlpha);
-    texel.surface.diffuse = scale * texel.surface.diffuse;
-    for (brdf::LafortuneLobe& lobe : texel.surface.lobes) lobe.albedo = scale * lobe.albedo;
-    return texel;
+    return 1 / std::max<double>(texture.alpha[at], kLeastAlpha);
   };
   for (int row = 0; row < texture.height; ++row) {
     for (int column = 0; column < texture.width; ++column) {
-      const double most = most_reflected(whole(column, row).surface);
+      const double most = scale_of(column, row) * most_reflected(brdf::sbrdf_texel(texture, column, row).surface);
       if (most > 1) candidates.push_back({most, column, row});
     }
   }
   std::ranges::stable_sort(candidates, std::greater<>(), &Candidate::most);
   if (candidates.size() > count) candidates.resize(count);
   std::vector<SurfaceLayer::Place> places;
-  for (const Candidate& c : candidates) places.push_back({{{whole(c.column, c.row), 1, {1, 0, 0}}}, 0});
+  for (const Candidate& c : candidates) {
+    SurfaceLayer::Place& place = places.emplace_back();
+    for (const brdf::SbrdfTexel& texel : brdf::sbrdf_texels(texture, c.column, c.row))
+      place.pieces.push_back({texel, scale_of(c.column, c.row), {1, 0, 0}});
+    place.bare = 0;
+  }
   return places;
 }
 
@@ -104,7 +105,8 @@ bool TracedPaint::gains_light(const SurfaceLayer::Place* place) const {
     const double side = kPi * (view / kViews) / kSides;  // the other half is the same turned by 180 deg
     PaintedPoint point(*this, {0, 0, 1}, float3({sin_o * std::cos(side), sin_o * std::sin(side), cos_o}));
     if (place != nullptr) point.wear(*place);
-    const Float3 axis = point.texels_.empty() ? point.mirrored() : point.texels_.back().axis;
+    const auto sharpest = std::ranges::max_element(point.texels_, {}, &PaintedPoint::TexelLobe::exponent);
+    const Float3 axis = sharpest == point.texels_.end() ? point.mirrored() : sharpest->axis;
     const rays::Frame frame = rays::frame_about(axis);
     Vec3 lobes;
     // Rows about the mirror direction lie even in the sixth root of 1 - cos, which suits lobes up to 1e4.

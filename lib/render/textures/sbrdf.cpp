@@ -184,7 +184,7 @@ double largest_channel(const brdf::LafortuneLobe& lobe) {
   return std::max({lobe.albedo.x, lobe.albedo.y, lobe.albedo.z});
 }
 
-// The texels of a texture by the shape of their lobes: frame, axes and exponents.
+// The texels of a texture by the shape of their lobes: frames, axes and exponents.
 class Shapes {
  public:
   explicit Shapes(const brdf::SbrdfTexture& texture) : lobes_(static_cast<std::size_t>(texture.lobes)) {
@@ -196,6 +196,9 @@ class Shapes {
       bytes.assign(reinterpret_cast<const char*>(at + 3), 2 * sizeof(float));
       for (std::size_t lobe = 0; lobe < lobes_; ++lobe)
         bytes.append(reinterpret_cast<const char*>(at + 5 + 7 * lobe + 3), 4 * sizeof(float));
+      if (!texture.turns.empty())
+        bytes.append(reinterpret_cast<const char*>(&texture.turns[2 * lobes_ * of_.size()]),
+                     2 * lobes_ * sizeof(float));
       if (bytes != before || of_.empty()) {
         before = bytes;
         const auto found = known.find(bytes);
@@ -239,7 +242,8 @@ PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
   parallel_for(texels, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto wide = static_cast<std::size_t>(texture.width);
-      const brdf::SbrdfTexel texel = brdf::sbrdf_texel(texture, static_cast<int>(i % wide), static_cast<int>(i / wide));
+      const auto column = static_cast<int>(i % wide), row = static_cast<int>(i / wide);
+      const brdf::SbrdfTexel texel = brdf::sbrdf_texel(texture, column, row);
       float* to = &result.texels[size * i];
       for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(texel.surface.diffuse[c]);
       to[kTexelAlpha] = result.covers ? 1 : texture.alpha[i];
@@ -250,7 +254,8 @@ PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
       for (std::size_t k = 0; k < texel.surface.lobes.size(); ++k) {
         const brdf::LafortuneLobe& lobe = texel.surface.lobes[k];
         pack_lobe(lobe, shape > 0 ? shapes.largest(shape, k) : largest_channel(lobe), to);
-        to[kLobeTurn] = static_cast<float>(texel.x_tangent), to[kLobeTurn + 1] = static_cast<float>(texel.x_bitangent);
+        const brdf::SbrdfAxis axis = brdf::sbrdf_axis(texture.frame(column, row, static_cast<int>(k)));
+        to[kLobeTurn] = static_cast<float>(axis.tangent), to[kLobeTurn + 1] = static_cast<float>(axis.bitangent);
         to += kTexelLobeFloats;
       }
     }

@@ -257,6 +257,31 @@ TEST(SbrdfShader, ATextureIsItsTexelsShadedAndBlended) {
   EXPECT_LT(shade(mean, nullptr, lit, nullptr, point(n, kTangent, viewer)).x, 1e-3 * at(0.25));
 }
 
+// Lobes with frames of their own are the sum of two surfaces that have one each; beside a texel that differs from it
+// only in these frames, each keeps its own. One frame for all is the control.
+TEST(SbrdfShader, LobesAreDrawnInFramesOfTheirOwn) {
+  const brdf::LafortuneLobe wide{{0.5, 0.4, 0.3}, {-1, -0.3, 1}, 20}, narrow{{0.2, 0.4, 0.3}, {-1, -0.5, 1}, 60};
+  brdf::SbrdfTexel both, first, second;
+  both.surface.lobes = {wide, narrow}, first.surface.lobes = {wide}, second.surface.lobes = {narrow};
+  first.x_tangent = std::cos(0.3), first.x_bitangent = std::sin(0.3);
+  second.x_tangent = std::cos(1.1), second.x_bitangent = std::sin(1.1);
+  brdf::SbrdfTexture texture = texture_of({both, both});
+  for (const brdf::SbrdfTexel* of : {&first, &second, &second, &first}) {
+    const std::vector<float> values = texture_of({*of}).values;
+    texture.turns.insert(texture.turns.end(), values.begin() + 3, values.begin() + 5);
+  }
+  const SbrdfLight lit = lights_alone({{normalized({0.5, 1, -0.4}), {1, 1, 1}}});
+  const auto at = [&](const brdf::SbrdfTexture& of, double u) {
+    return SbrdfShader(nullptr, nullptr, {&of}).shade(0, lit, {point(kNormal, kTangent, kViewer, u)}).front();
+  };
+  const double sum = shade(first, nullptr, lit).x + shade(second, nullptr, lit).x;
+  EXPECT_NEAR(at(texture, 0.25).x / sum, 1, kFloat);
+  EXPECT_NEAR(at(texture, 0.5).x / (0.5 * (at(texture, 0.25).x + at(texture, 0.75).x)), 1, kFloat);
+  EXPECT_GT(std::abs(at(texture, 0.75).x / sum - 1), 0.05);
+  texture.turns.clear();
+  EXPECT_GT(std::abs(at(texture, 0.25).x / sum - 1), 0.05);
+}
+
 TEST(SbrdfShader, TheSameInAnyCompany) {
   const envmap::PrefilteredEnvironment env = slope_environment({4, 16, 64}, 16);
   const brdf::SbrdfTexture texture = texture_of({phong_texel(20), phong_texel(50), phong_texel(5)});
