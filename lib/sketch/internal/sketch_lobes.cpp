@@ -224,6 +224,7 @@ FreeLobes FreeLobeFit::find() const {
 
 FreeLobes FreeLobeFit::sharpened(const FreeLobes& start) const {
   const FreeLobes least = refined(start);
+  if (least.weights.back() == color::Rgb{}) return least;
   return between(std::max(0.0, least.gloss_60_gu - kGlossReach_gu), std::min(100.0, least.gloss_60_gu + kGlossReach_gu),
                  least, kLastSections);
 }

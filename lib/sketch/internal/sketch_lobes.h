@@ -72,7 +72,8 @@ class FreeLobeFit {
   // The best from that start, with its gloss.
   FreeLobes refined(const FreeLobes& start) const;
 
-  // The same, and the best gloss about that of the start.
+  // The same, and the best gloss about that of the start where the mirror has a share of it. Elsewhere gloss is known to
+  // no better than a part of a unit, and a flat search would only drift.
   FreeLobes sharpened(const FreeLobes& start) const;
 
  private:
