@@ -98,10 +98,13 @@ image::Image without_corners(image::Image square) {
   return square;
 }
 
-// The maps of a prefiltered environment are means of its light, and filtering these again would blur it twice. Maps in
-// a layout for other programs, which the attribute envmap tells, are images as those of others are.
+// The maps of a prefiltered environment, which are cubes, are means of its light, and filtering these again would blur
+// it twice. Maps in a layout for other programs, which the attribute envmap or their shape tells, are images as those
+// of others are.
 Result<void> check_not_prefiltered(const image::ImagePart& part, const std::string& name) {
-  if (text_attribute(part, "goniochrome:texels").empty() || !text_attribute(part, "envmap").empty()) return {};
+  const bool is_cube = part.image.height == 6 * part.image.width;
+  if (!is_cube || text_attribute(part, "goniochrome:texels").empty() || !text_attribute(part, "envmap").empty())
+    return {};
   const std::string source = text_attribute(part, "goniochrome:source");
   return input_error("{}: is prefiltered already: give the image that it was made from{}", name,
                      source.empty() ? "" : ", " + source);
