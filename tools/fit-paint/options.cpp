@@ -108,8 +108,8 @@ void add_report(cli::ToolSpec& spec) {
       {"paints[].method", "one of l1, l2 and deltae"},
       {"paints[].status",
        "one of optimal; not_converged, where a solver gave up and the best weights found are written; stalled, where "
-       "deltae "
-       "ended with a gap, as it may at nearly gray colors, whose hues jump; bounded, where it ended with a gap because "
+       "deltae ended with a gap, as it may at nearly gray colors, whose hues jump; bounded, where it ended with a gap "
+       "because "
        "its mean difference would have become larger than that of l1; "
        "time_limit, where the best weights until then are written; and failed, where the paint is passed on unfitted"},
       {"paints[].time_us", "time of the fit, without reading and writing XML"},
@@ -158,8 +158,7 @@ void add_report(cli::ToolSpec& spec) {
        "angle (by_aspecular) and by the angle of the flakes in the coat (by_flake)"},
       {"paints[].views",
        "where there are weights for several views: de00_mean over the readings, or over the fitted directions of a "
-       "measured BRDF; "
-       "de00_mean_without, the same by the weights for all views; and their difference gain_de00"},
+       "measured BRDF; de00_mean_without, the same by the weights for all views; and their difference gain_de00"},
       {"paints[].message", "reason why a paint failed"},
       {"color_maps[].name", "with --color-map: the paint"},
       {"color_maps[].file", "file of its map"},

@@ -41,9 +41,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .one_of({"auto", "changed", "all"})
       .more(
           "changed are those that were edited, all are those of the paint. auto takes the changed pixels, or all of "
-          "them "
-          "where none were changed, where more than half were touched and hardly any are as they were or many changed "
-          "little, and where the picture was laid on the buffers by its edges.");
+          "them where none were changed, where the picture was laid on the buffers by its edges, and where more than "
+          "half were touched, unless a tenth are as they were and four of five of those touched were plainly edited.");
   spec.option("glare", "DEG", "15", &o.glare_deg, "aspecular angle below which a pixel shows gloss and not the paint")
       .from(0, 45);
   spec.option("max-de", "DE", "5", &o.most_de76, "median difference above which the matt color is the answer")
@@ -104,8 +103,8 @@ void add_report(cli::ToolSpec& spec) {
       {"pixels_changed", "number of pixels that could be used and were edited"},
       {"pixels_rule", "one of changed and all"},
       {"pixels_compared_with",
-       "picture, for that of the buffers, or transport, for what it shows of the paints that were worn: the one in "
-       "which the edit began; null with --pixels all"},
+       "the picture that the edit began as: picture, that of the buffers, or transport, which shows the paints that "
+       "were worn in the light of the transport; null with --pixels all"},
       {"pixels_left_out", "number of pixels that were left out, by reason"},
       {"aspecular_from_deg", "smallest aspecular angle seen; null with --env"},
       {"aspecular_to_deg", "largest aspecular angle seen; null with --env"},
