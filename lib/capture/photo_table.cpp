@@ -158,8 +158,8 @@ double distance_to_hull(const std::vector<Vec3>& points) {
 Result<void> above(const Station& station, const char* what, const Photo& photo, const std::string& table) {
   if (station.where.z > 0) return {};
   return input_error(
-      "{}:{}: the {} is below the surface ({}_z is {}): the surface is z = 0, and z grows toward its front", table,
-      photo.line, what, what, shortest(station.where.z));
+      "{}:{}: the {} is below the surface ({}_z is not above 0): the surface is z = 0, and z grows toward its front",
+      table, photo.line, what, what);
 }
 
 }  // namespace

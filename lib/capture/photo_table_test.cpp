@@ -62,7 +62,7 @@ TEST(PhotoTable, StationsThatTellNothingAreRefused) {
   const std::string around = "a,0,3,4,0,-3,4,1\nb,3,0,4,-3,0,4,1\nc,0,-3,4,0,1,4,1\nd,1,1,4,1,-1,4,1\n";
   EXPECT_EQ(check(around, 4), "nothing");
   EXPECT_NE(check(around, 5).find("4 photographs to fit are too few"), std::string::npos);
-  EXPECT_NE(check(around + "e,0,0,-1,0,0,4,1\n", 4).find(":6: the light is below the surface (light_z is -1)"),
+  EXPECT_NE(check(around + "e,0,0,-1,0,0,4,1\n", 4).find(":6: the light is below the surface (light_z is not above 0)"),
             std::string::npos);
   EXPECT_NE(check(around + "e,0,0,1,0,0,0,1\n", 4).find(":6: the camera is below the surface"), std::string::npos);
   EXPECT_NE(check("a,3,0,4,3,0,4,1\nb,3,1,4,3,1,4,1\nc,3,-1,4,3,-1,4,1\nd,2,0,4,3,0,4,1\n", 4)

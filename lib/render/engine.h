@@ -25,6 +25,7 @@ namespace goniochrome::render {
 
 class Engine;
 class GlContext;
+class SeenPixels;
 
 // How much trouble an engine takes that draws by random samples.
 struct Effort {
@@ -56,6 +57,8 @@ class Sight {
   virtual std::shared_ptr<const Gbuffer> gbuffer(int sample) = 0;
   // Where the pixels of that G-buffer lie on the textures of the scene; empty where the scene has none.
   virtual const std::vector<TexturePlace>& places(int sample) = 0;
+  // What those pixels show of the textures, kept from frame to frame; null where nothing is kept.
+  virtual SeenPixels* seen_pixels(int) { return nullptr; }
   // The OpenGL context of the renderer; null where the renderer was given a G-buffer and has no mesh.
   virtual const GlContext* gl() const = 0;
   // Whether it shows the mesh of the scene, and not a G-buffer that was given.

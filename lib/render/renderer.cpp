@@ -24,6 +24,8 @@ namespace {
 
 // G-buffers are kept up to this size together: 16 samples of 1280 x 720.
 constexpr std::size_t kMostKept = std::size_t{320} << 20;
+// What they show of textures takes up to this size together.
+constexpr std::size_t kMostSeen = std::size_t{128} << 20;
 constexpr std::size_t kPixelBytes = 4 * sizeof(float) + sizeof(std::uint32_t);
 
 bool same_view(const View& a, const View& b) {
@@ -105,6 +107,7 @@ struct Renderer::State : Sight {
   Rays rays;
   std::vector<std::shared_ptr<Gbuffer>> kept;
   std::vector<std::vector<TexturePlace>> placed;  // on textures, of the same; empty: not yet
+  std::vector<SeenPixels> seen;                   // of the textures, of the same
   std::uint64_t placed_for = 0;                   // the layer
   bool placed_footprints = false;
   int in_texture = -1;
@@ -135,6 +138,8 @@ struct Renderer::State : Sight {
   const Rasterizer* rasterized(int sample) override;
   std::shared_ptr<const Gbuffer> gbuffer(int sample) override;
   const std::vector<TexturePlace>& places(int sample) override;
+  SeenPixels* seen_pixels(int sample) override;
+  std::size_t number_kept(int sample);
 };
 
 Engine& Renderer::State::engine_of(const EngineInfo& info) {
@@ -242,8 +247,8 @@ std::shared_ptr<const Gbuffer> Renderer::State::gbuffer(int sample) {
   const bool complete = g->width != 0 && (!with_triangles || !g->triangles.empty());
   if (complete && (room || sample == 0)) return g;
   const Stopwatch clock;
-  placed.resize(kept.size());
-  placed[place].clear();
+  placed.resize(kept.size()), seen.resize(kept.size());
+  placed[place].clear(), seen[place].forget();
   if (open_gl) {
     const Rasterizer& drawn = *rasterized(sample);
     open_gl->context.Finish();
@@ -267,17 +272,30 @@ const std::vector<TexturePlace>& Renderer::State::places(int sample) {
     for (std::vector<TexturePlace>& old : placed) old.clear();
     placed_for = layer.id(), placed_footprints = effects.texture_filter;
   }
-  const std::shared_ptr<const Gbuffer> of = gbuffer(sample);
-  const auto place = static_cast<std::size_t>(std::find(kept.begin(), kept.end(), of) - kept.begin());
+  const std::size_t place = number_kept(sample);
   placed.resize(kept.size());
   if (placed[place].empty()) {
     if (effects.texture_filter) {
-      placed[place] = layer.filtered_places(*of, to_middle_of_part(sample, view->samples));
+      placed[place] = layer.filtered_places(*kept[place], to_middle_of_part(sample, view->samples));
     } else {
-      placed[place] = layer.places(*of);
+      placed[place] = layer.places(*kept[place]);
     }
   }
   return placed[place];
+}
+
+SeenPixels* Renderer::State::seen_pixels(int sample) {
+  if (given) return nullptr;
+  const std::size_t place = number_kept(sample);
+  seen.resize(kept.size());
+  seen[place].set_most_bytes(kMostSeen / kept.size());
+  return &seen[place];
+}
+
+// The number of a sample's G-buffer among those that are kept.
+std::size_t Renderer::State::number_kept(int sample) {
+  const std::shared_ptr<const Gbuffer> of = gbuffer(sample);
+  return static_cast<std::size_t>(std::find(kept.begin(), kept.end(), of) - kept.begin());
 }
 
 // Makes the picture the mean of `count` samples from `first` on.

@@ -149,6 +149,12 @@ const TexturePlace& place_on(const VisiblePoint& point, std::size_t level) {
 
 }  // namespace
 
+namespace {
+
+constexpr double kTexelsOfPlace = 4;  // between which a place lies
+
+}  // namespace
+
 FilterCost SurfaceLayer::filter_cost(const std::vector<VisiblePoint>& points) const {
   FilterCost sum{0, 0};
   double count = 0;
@@ -165,7 +171,7 @@ FilterCost SurfaceLayer::filter_cost(const std::vector<VisiblePoint>& points) co
       const double lobes = (1.0 + level.lobes) / (1.0 + fine.lobes);
       const double texels = static_cast<double>(seen.of(place, 1, probes, level.width, level.height).size());
       sum.probes += probes.count() * lobes;
-      sum.texels += std::ceil(texels / kTexelsAtOnce) * lobes;
+      sum.texels += std::max(texels / kTexelsOfPlace, 1.0) * lobes;
     }
   }
   return count > 0 ? FilterCost{sum.probes / count, sum.texels / count} : FilterCost{};
@@ -281,7 +287,7 @@ double add_seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at
   const auto wide = static_cast<std::size_t>(texture.width);
   double covered = 0;
   SeenTexels seen;
-  for (const SeenTexels::Seen& one : seen.of(at, 1, all, texture.width, texture.height)) {
+  for (const TexelShare& one : seen.of(at, 1, all, texture.width, texture.height)) {
     const auto column = static_cast<int>(one.texel % wide), row = static_cast<int>(one.texel / wide);
     for (brdf::SbrdfTexel& texel : brdf::sbrdf_texels(texture, column, row)) {
       std::vector<brdf::LafortuneLobe>& of = texel.surface.lobes;
@@ -379,109 +385,105 @@ void SurfaceLayer::add(const std::vector<VisiblePoint>& points, const Effects& e
   }
 }
 
-// The textured points of one row of a picture, gathered until the kernel has enough of one texture.
-class SurfaceLayer::Row {
- public:
-  Row(const SbrdfShader& shader, const SbrdfLight& light, float weight, image::Image& rgba)
-      : shader_(shader), light_(light), weight_(weight), rgba_(rgba) {}
-
-  // A sample covers `scale` times the footprints along each side.
-  void put(const Stack& stack, double scale, int x, int y, const float* normal, const Vec3& to_viewer,
-           const std::array<float, 3>& position) {
-    const float toward[3] = {static_cast<float>(to_viewer.x), static_cast<float>(to_viewer.y),
-                             static_cast<float>(to_viewer.z)};
-    float* pixel = rgba_.pixel(x, y);
-    for (std::size_t level = 0; level < stack.count; ++level) {
-      const Shown& shown = stack.shown[level];
+void SurfaceLayer::see(const Gbuffer& gbuffer, int first_row, int end_row, const std::vector<TexturePlace>& places,
+                       const Effects& effects, double scale, SeenBand& band) const {
+  const std::size_t pixels = static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height);
+  band.clear();
+  Stack stacked;
+  SeenTexels texels;
+  for (std::size_t i = gbuffer.index(0, first_row); i < gbuffer.index(0, end_row); ++i) {
+    const int part = static_cast<int>(std::abs(gbuffer.data[4 * i + 3])) - 1;
+    const bool worn = part >= 0 && surfaces_[static_cast<std::size_t>(part)].texture != nullptr;
+    if (worn) stack(part, &places[i], pixels, effects, scale, stacked);
+    if (dims_) band.bare.push_back(worn ? static_cast<float>(stacked.bare) : 1.0F);
+    for (std::size_t level = 0; worn && level < stacked.count; ++level) {
+      const Shown& shown = stacked.shown[level];
       if (!(shown.share > 0)) continue;
-      const FilterProbes& probes = shown.probes;
-      const auto weight = static_cast<float>(weight_ * shown.share);
-      if (probes.level == 0 && probes.count() == 1) {
-        prepare(shown.number, 0);
-        next(pixel, weight).put(normal, toward, position, *shown.place, shown.repeat);
-        continue;
-      }
-      prepare(shown.number, probes.level);
-      std::span<const SeenTexels::Seen> left =
-          texels_.of(shown.repeated, scale, probes, batch_->width(), batch_->height());
-      while (!left.empty()) {
-        const std::size_t at_once = std::min(left.size(), kTexelsAtOnce);
-        next(pixel, weight).put(normal, toward, position, shown.repeated.tangent, left.first(at_once));
-        left = left.subspan(at_once);
-      }
+      const PackedTexture& packed = shader_->packed(shown.number, shown.probes.level, effects.texture_lobes);
+      const std::span<TexelShare> seen = texels.of(shown.repeated, scale, shown.probes, packed.width, packed.height);
+      sort_by_shape(packed, seen);
+      SeenBand::Bin& bin = band.bin(shown.number, shown.probes.level);
+      for (TexelShare& one : seen) one.share *= static_cast<float>(shown.share);
+      bin.texels.insert(bin.texels.end(), seen.begin(), seen.end());
+      bin.points.push_back(
+          {static_cast<std::uint32_t>(&places[i] - places.data() + static_cast<std::ptrdiff_t>(level * pixels)),
+           static_cast<std::uint32_t>(bin.texels.size())});
     }
   }
-  void flush() {
-    if (!batch_) return;
-    const int count = batch_->count();
-    if (count == 0) return;
-    const float* shown = batch_->shade();
+}
+
+// What a band shows of one texture or level.
+void SurfaceLayer::shade(const Gbuffer& gbuffer, const SeenBand::Bin& bin, const std::vector<TexturePlace>& places,
+                         const SbrdfLight& light, bool placed, float weight, image::Image& rgba) const {
+  SbrdfShader::Batch batch(*shader_, bin.texture, light, bin.level);
+  float* pixel[kPointsAtOnce];
+  const auto flush = [&] {
+    const int count = batch.count();
+    const float* shown = batch.shade();
     for (int i = 0; i < count; ++i)
-      for (int c = 0; c < 3; ++c) pixels_[i][c] += weights_[i] * shown[4 * i + c];
+      for (int c = 0; c < 3; ++c) pixel[i][c] += weight * shown[4 * i + c];
+  };
+  const auto wide = static_cast<std::uint32_t>(gbuffer.width),
+             pixels = wide * static_cast<std::uint32_t>(gbuffer.height);
+  std::uint32_t first = 0, row = 0;
+  for (const SeenBand::Point& point : bin.points) {
+    const std::uint32_t at = point.place < pixels ? point.place : point.place % pixels;
+    if (at - row * wide >= wide) row = at / wide;
+    const auto x = static_cast<int>(at - row * wide), y = static_cast<int>(row);
+    const Vec3 back = gbuffer.to_viewer(x, y);
+    const float toward[3] = {static_cast<float>(back.x), static_cast<float>(back.y), static_cast<float>(back.z)};
+    const auto position = from_origin(placed ? mesh_point(*scene_.mesh, gbuffer, x, y).position : Vec3{}, light.origin);
+    each_shape(batch.texture(), std::span(bin.texels).subspan(first, point.end - first),
+               [&](std::span<const TexelShare> lobed, std::span<const TexelShare> diffuse) {
+                 pixel[batch.count()] = rgba.pixel(x, y);
+                 batch.put(gbuffer.at(x, y), toward, position, places[point.place].tangent, lobed, diffuse);
+                 if (batch.full()) flush();
+               });
+    first = point.end;
   }
-
- private:
-  // Makes the batch one of this texture and level.
-  void prepare(std::size_t texture, int level) {
-    if (batch_ && texture == texture_ && level == level_) return;
-    flush();
-    batch_.emplace(shader_, texture, light_, level), texture_ = texture, level_ = level;
-  }
-  // The batch, which has room for one point more: a part of that pixel.
-  SbrdfShader::Batch& next(float* pixel, float weight) {
-    if (batch_->full()) flush();
-    pixels_[batch_->count()] = pixel, weights_[batch_->count()] = weight;
-    return *batch_;
-  }
-
-  const SbrdfShader& shader_;
-  const SbrdfLight& light_;
-  float weight_;
-  image::Image& rgba_;
-  std::size_t texture_ = 0;
-  int level_ = 0;
-  std::optional<SbrdfShader::Batch> batch_;
-  SeenTexels texels_;
-  float* pixels_[kPointsAtOnce] = {};
-  float weights_[kPointsAtOnce] = {};
-};
+  if (batch.count() > 0) flush();
+}
 
 void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects,
-                       float weight, image::Image& rgba, bool with_textures) const {
+                       float weight, image::Image& rgba, bool with_textures, SeenPixels* kept) const {
   with_textures = with_textures && textured_;
   if (!with_textures && !dims_ && !(mapped_ && effects.maps)) return;
   // A sample stands for its share of the area of the pixel.
   const double scale = std::sqrt(weight);
-  const std::size_t pixels = static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height);
   const SbrdfLight light = light_of(scene_, effects);
-  parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
-    std::optional<Row> textured;
-    Stack seen;
-    if (with_textures) textured.emplace(*shader_, light, weight, rgba);
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      const Rays& rays = gbuffer.rays;
-      const Vec3 first = rays.corner + (y + 0.5) * rays.down;
-      for (int x = 0; x < gbuffer.width; ++x) {
-        const int part = gbuffer.part(x, y);
-        if (part < 0) continue;
-        const PartSurface& surface = surfaces_[static_cast<std::size_t>(part)];
-        const Vec3 position = effects.placed ? mesh_point(*scene_.mesh, gbuffer, x, y).position : Vec3{};
-        if (effects.maps && surface.color_map != nullptr && !surface.hides_paint()) {
-          const color::Rgb color =
-              mapped_difference(part, gbuffer.normal(x, y), gbuffer.to_viewer(x, y), effects.coat, position);
-          for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] += weight * static_cast<float>(color[c]);
-        }
-        if (surface.texture == nullptr || !(with_textures || dims_)) continue;
-        stack(part, &places[gbuffer.index(x, y)], pixels, effects, scale, seen);
-        if (dims_)
-          for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] *= static_cast<float>(seen.bare);
-        if (with_textures)
-          textured->put(seen, scale, x, y, gbuffer.at(x, y), -(first + (x + 0.5) * rays.right),
-                        from_origin(position, light.origin));
-      }
+  const auto rows = static_cast<std::size_t>(gbuffer.height);
+  SeenPixels passing;
+  if (kept == nullptr) kept = &passing;
+  kept->begin(id_, effects, scale, (rows + kRowsOfBand - 1) / kRowsOfBand);
+  parallel_for(rows, kRowsOfBand, [&](std::size_t begin, std::size_t end) {
+    const auto first = static_cast<int>(begin), last = static_cast<int>(end);
+    if (mapped_ && effects.maps) add_mapped(gbuffer, first, last, effects, weight, rgba);
+    if (!(with_textures || dims_)) return;
+    const SeenBand& band = kept->band(
+        begin / kRowsOfBand, [&](SeenBand& unknown) { see(gbuffer, first, last, places, effects, scale, unknown); });
+    float* pixel = rgba.pixel(0, first);
+    for (const float bare : band.bare) {
+      for (int c = 0; c < 3; ++c) pixel[c] *= bare;
+      pixel += rgba.channels;
     }
-    if (textured) textured->flush();
+    for (const SeenBand::Bin& bin : band.bins)
+      if (with_textures && !bin.points.empty()) shade(gbuffer, bin, places, light, effects.placed, weight, rgba);
+    kept->done(begin / kRowsOfBand);
   });
+}
+
+void SurfaceLayer::add_mapped(const Gbuffer& gbuffer, int first_row, int end_row, const Effects& effects, float weight,
+                              image::Image& rgba) const {
+  for (int y = first_row; y < end_row; ++y) {
+    for (int x = 0; x < gbuffer.width; ++x) {
+      const int part = gbuffer.part(x, y);
+      if (part < 0 || surface(part).color_map == nullptr || surface(part).hides_paint()) continue;
+      const Vec3 position = effects.placed ? mesh_point(*scene_.mesh, gbuffer, x, y).position : Vec3{};
+      const color::Rgb color =
+          mapped_difference(part, gbuffer.normal(x, y), gbuffer.to_viewer(x, y), effects.coat, position);
+      for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] += weight * static_cast<float>(color[c]);
+    }
+  }
 }
 
 }  // namespace goniochrome::render

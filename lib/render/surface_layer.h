@@ -15,6 +15,7 @@
 #include "render/gbuffer.h"
 #include "render/scene.h"
 #include "render/textures/sbrdf.h"
+#include "render/textures/seen_pixels.h"
 #include "render/textures/texture_places.h"
 
 namespace goniochrome::render {
@@ -117,9 +118,10 @@ class SurfaceLayer {
   // the lobe model shows of the same light, gloss apart. What is in the picture is dimmed where textures cover it.
   // Where an engine drew the textures, `with_textures` is false.
   // With the effect texture_filter, the weight is also the part of its pixel that a sample stands for.
-  // Bit-identical for any number of threads.
+  // What the pixels show of textures is taken from `kept` as far as it is there, and left there, if it is not null; the
+  // caller lets it forget what belongs to another G-buffer. Bit-identical for any number of threads.
   void add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects, float weight,
-           image::Image& rgba, bool with_textures = true) const;
+           image::Image& rgba, bool with_textures = true, SeenPixels* kept = nullptr) const;
 
   // The color map's part at one point: radiance under the scene's lights less that of the paint's flake lobes, drawn
   // with the effect `coat` or without it.
@@ -151,7 +153,13 @@ class SurfaceLayer {
   Place place(int part, const MeshPoint& point) const;
 
  private:
-  class Row;
+  static constexpr std::size_t kRowsOfBand = 8;
+  void see(const Gbuffer& gbuffer, int first_row, int end_row, const std::vector<TexturePlace>& places,
+           const Effects& effects, double scale, SeenBand& band) const;
+  void shade(const Gbuffer& gbuffer, const SeenBand::Bin& bin, const std::vector<TexturePlace>& places,
+             const SbrdfLight& light, bool placed, float weight, image::Image& rgba) const;
+  void add_mapped(const Gbuffer& gbuffer, int first_row, int end_row, const Effects& effects, float weight,
+                  image::Image& rgba) const;
   struct Laid {
     std::size_t texture = 0;
     double repeat = 1;

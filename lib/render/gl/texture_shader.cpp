@@ -62,21 +62,20 @@ void put_layers(const PackedTexture& texture, int row, TextureLayers& result) {
   const std::size_t texels = static_cast<std::size_t>(result.width) * static_cast<std::size_t>(result.height),
                     wide = static_cast<std::size_t>(texture.width);
   for (std::size_t i = 0; i < wide * static_cast<std::size_t>(texture.height); ++i) {
-    const float* from = &texture.texels[i * texture.stride()];
+    const float *color = texture.colors_of(i), *shape = texture.shape_of(i);
     float* to = &result.rgba[4 * ((static_cast<std::size_t>(row) + i / wide) * static_cast<std::size_t>(result.width) +
                                   i % wide)];
-    std::copy_n(from, 3, to);
-    from += kTexelFloats;
-    for (int lobe = 0; lobe < texture.lobes; ++lobe, from += kTexelLobeFloats) {
+    std::copy_n(color, 3, to);
+    for (int lobe = 0; lobe < texture.lobes; ++lobe, shape += kShapeFloats) {
       to += 4 * texels;
-      std::copy_n(from, 3, to);
-      to[3] = from[kLobeAlbedo];
+      std::copy_n(color += 4, 3, to);
+      to[3] = shape[kLobeAlbedo];
       to += 4 * texels;
-      std::copy_n(from + kLobeAxes, 4, to);
+      std::copy_n(shape + kLobeAxes, 4, to);
       to += 4 * texels;
-      to[0] = from[kLobeMap] + from[kLobeMap + 1];
-      to[1] = from[kLobeHorizon] + from[kLobeHorizon + 1];
-      to[2] = std::atan2(from[kLobeTurn + 1], from[kLobeTurn]);
+      to[0] = shape[kLobeMap] + shape[kLobeMap + 1];
+      to[1] = shape[kLobeHorizon] + shape[kLobeHorizon + 1];
+      to[2] = std::atan2(shape[kLobeTurn + 1], shape[kLobeTurn]);
     }
   }
 }

@@ -24,7 +24,7 @@ class Samples {
   void add_layer(int sample, image::Image& picture) {
     if (scene_.layer != nullptr && !engine_.shades_layer())
       scene_.layer->add(*sight_.gbuffer(sample), sight_.places(sample), effects_, gain_, picture,
-                        !engine_.shades_textures());
+                        !engine_.shades_textures(), sight_.seen_pixels(sample));
   }
 
  private:

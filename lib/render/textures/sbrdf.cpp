@@ -161,15 +161,16 @@ void SbrdfShader::make_horizon(double low, double high) {
   }
 }
 
-void SbrdfShader::pack_lobe(const brdf::LafortuneLobe& lobe, double largest, float* to) const {
+void SbrdfShader::pack_lobe(const brdf::LafortuneLobe& lobe, double largest, const brdf::SbrdfAxis& axis,
+                            float* to) const {
   to[kLobeEnergy] = to[kLobeAlbedo] = kNoLobe;
   if (largest > 0) {
-    for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(lobe.albedo[c] / largest);
     to[kLobeAlbedo] = static_cast<float>(std::log(largest));
     to[kLobeEnergy] = static_cast<float>(std::log(2 * kPi / (lobe.exponent + 1) * largest));
   }
   for (int k = 0; k < 3; ++k) to[kLobeAxes + static_cast<std::size_t>(k)] = static_cast<float>(lobe.axes[k]);
   to[kLobeExponent] = static_cast<float>(lobe.exponent);
+  to[kLobeTurn] = static_cast<float>(axis.tangent), to[kLobeTurn + 1] = static_cast<float>(axis.bitangent);
   if (exponents_.empty()) return;
   const brdf::ExponentBlend map = brdf::exponent_blend(lobe.exponent, exponents_);
   const brdf::ExponentBlend horizon = brdf::exponent_blend(lobe.exponent, horizon_exponents_);
@@ -184,12 +185,16 @@ double largest_channel(const brdf::LafortuneLobe& lobe) {
   return std::max({lobe.albedo.x, lobe.albedo.y, lobe.albedo.z});
 }
 
+void put_color(const color::Rgb& color, double relative_to, float* to) {
+  for (int c = 0; c < 3; ++c) to[c] = relative_to > 0 ? static_cast<float>(color[c] / relative_to) : 0.0F;
+}
+
 // The texels of a texture by the shape of their lobes: frames, axes and exponents.
 class Shapes {
  public:
   explicit Shapes(const brdf::SbrdfTexture& texture) : lobes_(static_cast<std::size_t>(texture.lobes)) {
     const auto stride = static_cast<std::size_t>(texture.stride());
-    std::unordered_map<std::string, int> known;
+    std::unordered_map<std::string, std::uint32_t> known;
     std::string bytes, before;
     for (std::size_t i = 0; i < texture.values.size(); i += stride) {
       const float* at = &texture.values[i];
@@ -197,91 +202,98 @@ class Shapes {
       for (std::size_t lobe = 0; lobe < lobes_; ++lobe)
         bytes.append(reinterpret_cast<const char*>(at + 5 + 7 * lobe + 3), 4 * sizeof(float));
       if (!texture.turns.empty())
-        bytes.append(reinterpret_cast<const char*>(&texture.turns[2 * lobes_ * of_.size()]),
-                     2 * lobes_ * sizeof(float));
-      if (bytes != before || of_.empty()) {
+        bytes.append(reinterpret_cast<const char*>(&texture.turns[2 * lobes_ * of.size()]), 2 * lobes_ * sizeof(float));
+      if (bytes != before || of.empty()) {
         before = bytes;
+        const auto number = static_cast<std::uint32_t>(first.size());
         const auto found = known.find(bytes);
-        number_ = found != known.end() ? found->second : 0;
-        if (found == known.end() && known.size() < kMost) {
-          number_ = known[bytes] = static_cast<int>(known.size()) + 1;
-          largest_.resize(known.size() * lobes_, 0.0F);
+        of.push_back(found != known.end() ? found->second : number);
+        if (found == known.end()) {
+          if (known.size() < kMost) known[bytes] = number;
+          first.push_back(of.size() - 1), largest.resize(largest.size() + lobes_);
         }
+      } else {
+        of.push_back(of.back());
       }
-      of_.push_back(number_);
-      for (std::size_t lobe = 0; number_ > 0 && lobe < lobes_; ++lobe) {
-        float& most = largest_[(static_cast<std::size_t>(number_) - 1) * lobes_ + lobe];
+      for (std::size_t lobe = 0; lobe < lobes_; ++lobe) {
+        float& most = largest[of.back() * lobes_ + lobe];
         most = std::max(most, *std::max_element(at + 5 + 7 * lobe, at + 8 + 7 * lobe));
       }
     }
   }
 
-  int of(std::size_t texel) const { return of_[texel]; }
-  // The largest albedo of this lobe in texels of a shape.
-  double largest(int shape, std::size_t lobe) const {
-    return largest_[(static_cast<std::size_t>(shape) - 1) * lobes_ + lobe];
-  }
+  std::vector<std::uint32_t> of;   // each texel
+  std::vector<std::size_t> first;  // texel of each
+  std::vector<float> largest;      // albedo of each lobe in texels of each shape
 
  private:
-  // A texture of more has texels that are measured one by one, of which no two are alike.
+  // A texture of more has texels that are measured one by one, of which no two are alike: those that are not known are
+  // each of a shape of its own.
   static constexpr std::size_t kMost = 4096;
   std::size_t lobes_;
-  int number_ = 0;
-  std::vector<int> of_;  // 0: kOwnShape
-  std::vector<float> largest_;
 };
 
 }  // namespace
 
 PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
-  PackedTexture result{texture.width, texture.height, texture.lobes, {}, texture.alpha.empty()};
-  const Shapes shapes(texture);
-  const std::size_t size = result.stride();
-  const auto texels = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
-  result.texels.assign(size * texels, 0.0F);
+  Shapes shapes(texture);
+  PackedTexture result{texture.width, texture.height, texture.lobes, {}, {}, {}, texture.alpha.empty()};
+  const auto lobes = static_cast<std::size_t>(texture.lobes), texels = shapes.of.size();
+  const auto at = [&](std::size_t texel) {
+    const auto wide = static_cast<std::size_t>(texture.width);
+    return std::pair(static_cast<int>(texel % wide), static_cast<int>(texel / wide));
+  };
+  result.shapes.assign(result.shape_floats() * shapes.first.size(), 0.0F);
+  for (std::size_t number = 0; number < shapes.first.size(); ++number) {
+    const auto [column, row] = at(shapes.first[number]);
+    const brdf::SbrdfTexel texel = brdf::sbrdf_texel(texture, column, row);
+    for (std::size_t k = 0; k < lobes; ++k)
+      pack_lobe(texel.surface.lobes[k], shapes.largest[number * lobes + k],
+                brdf::sbrdf_axis(texture.frame(column, row, static_cast<int>(k))),
+                &result.shapes[(number * lobes + k) * kShapeFloats]);
+  }
+  result.colors.assign(result.color_floats() * texels, 0.0F);
   parallel_for(texels, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto wide = static_cast<std::size_t>(texture.width);
-      const auto column = static_cast<int>(i % wide), row = static_cast<int>(i / wide);
+      const auto [column, row] = at(i);
       const brdf::SbrdfTexel texel = brdf::sbrdf_texel(texture, column, row);
-      float* to = &result.texels[size * i];
-      for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(texel.surface.diffuse[c]);
+      float* to = &result.colors[result.color_floats() * i];
+      put_color(texel.surface.diffuse, 1, to);
       to[kTexelAlpha] = result.covers ? 1 : texture.alpha[i];
-      to[4] = static_cast<float>(texel.x_tangent), to[5] = static_cast<float>(texel.x_bitangent);
-      const int shape = shapes.of(i);
-      to[kTexelShape] = shape > 0 ? static_cast<float>(shape) : kOwnShape;
-      to += kTexelFloats;
-      for (std::size_t k = 0; k < texel.surface.lobes.size(); ++k) {
-        const brdf::LafortuneLobe& lobe = texel.surface.lobes[k];
-        pack_lobe(lobe, shape > 0 ? shapes.largest(shape, k) : largest_channel(lobe), to);
-        const brdf::SbrdfAxis axis = brdf::sbrdf_axis(texture.frame(column, row, static_cast<int>(k)));
-        to[kLobeTurn] = static_cast<float>(axis.tangent), to[kLobeTurn + 1] = static_cast<float>(axis.bitangent);
-        to += kTexelLobeFloats;
-      }
+      for (std::size_t k = 0; k < lobes; ++k)
+        put_color(texel.surface.lobes[k].albedo, shapes.largest[shapes.of[i] * lobes + k], to += 4);
     }
   });
+  result.shape = std::move(shapes.of);
   return result;
 }
 
+// No two texels of a level have one shape.
 PackedTexture SbrdfShader::pack(const TextureLevel& level) const {
-  PackedTexture result{level.width, level.height, 0, {}, level.alpha.empty()};
+  PackedTexture result{level.width, level.height, 0, {}, {}, {}, level.alpha.empty()};
   for (const brdf::LobeSurface& texel : level.texels)
     result.lobes = std::max(result.lobes, static_cast<int>(texel.lobes.size()));
-  result.texels.assign(result.stride() * level.texels.size(), 0.0F);
+  result.colors.assign(result.color_floats() * level.texels.size(), 0.0F);
+  result.shapes.assign(result.shape_floats() * level.texels.size(), 0.0F);
   for (std::size_t i = 0; i < level.texels.size(); ++i) {
-    float* to = &result.texels[result.stride() * i];
-    for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(level.texels[i].diffuse[c]);
+    float *to = &result.colors[result.color_floats() * i], *shape = &result.shapes[result.shape_floats() * i];
+    put_color(level.texels[i].diffuse, 1, to);
     to[kTexelAlpha] = result.covers ? 1 : level.alpha[i];
-    to[4] = 1, to += kTexelFloats;
-    for (std::size_t lobe = 0; lobe < static_cast<std::size_t>(result.lobes); ++lobe, to += kTexelLobeFloats) {
+    for (std::size_t lobe = 0; lobe < static_cast<std::size_t>(result.lobes); ++lobe, shape += kShapeFloats) {
       const bool there = lobe < level.texels[i].lobes.size();
       const brdf::TurnedLobe turned = there ? level.texels[i].lobes[lobe] : brdf::TurnedLobe{};
-      pack_lobe(turned.lobe, largest_channel(turned.lobe), to);
-      to[kLobeTurn] = static_cast<float>(std::cos(turned.turn_rad));
-      to[kLobeTurn + 1] = static_cast<float>(std::sin(turned.turn_rad));
+      const double largest = largest_channel(turned.lobe);
+      put_color(turned.lobe.albedo, largest, to += 4);
+      pack_lobe(turned.lobe, largest, {std::cos(turned.turn_rad), std::sin(turned.turn_rad)}, shape);
     }
+    result.shape.push_back(static_cast<std::uint32_t>(i));
   }
   return result;
+}
+
+void sort_by_shape(const PackedTexture& texture, std::span<TexelShare> texels) {
+  const auto key = [&](const TexelShare& one) { return std::pair(texture.shape[one.texel], one.texel); };
+  std::ranges::sort(texels, {}, key);
 }
 
 const PackedTexture& SbrdfShader::packed(std::size_t texture, int level, std::uint32_t lobes) const {
@@ -297,12 +309,21 @@ const PackedTexture& SbrdfShader::packed(std::size_t texture, int level, std::ui
   return made[static_cast<std::size_t>(level) - 1];
 }
 
+namespace {
+
+std::size_t texel_number(const PackedTexture& texture, const brdf::TextureTap& tap) {
+  return static_cast<std::size_t>(tap.row) * static_cast<std::size_t>(texture.width) +
+         static_cast<std::size_t>(tap.column);
+}
+
+}  // namespace
+
 double SbrdfShader::coverage(std::size_t texture, const TexturePlace& place, int level, std::uint32_t lobes) const {
   const PackedTexture& of = packed(texture, level, lobes);
   if (of.covers) return 1;
   double sum = 0;
   for (const brdf::TextureTap& tap : brdf::texture_taps(of.width, of.height, place.u, place.v))
-    sum += tap.weight * of.at(tap.column, tap.row)[kTexelAlpha];
+    sum += tap.weight * of.colors_of(texel_number(of, tap))[kTexelAlpha];
   return sum;
 }
 
@@ -317,7 +338,7 @@ int SbrdfShader::levels(std::size_t texture) const {
 
 SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const SbrdfLight& light, int level)
     : packed_(shader.packed(texture, level, light.lobes)) {
-  shading_.lobes = packed_.lobes;
+  shading_.colors = packed_.colors.data(), shading_.lobes = packed_.lobes;
   shading_.lobes_on = level == 0 ? light.lobes : ~0U;
   if (light.environment) {
     shading_.diffuse = shader.diffuse_;
@@ -341,102 +362,57 @@ SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const 
         for (const double k : row) reflection_.push_back(static_cast<float>(k));
     shading_.reflection = reflection_.data();
   }
-  points_.taps = packed_.width * packed_.height > 1 ? 4 : 1;
   constexpr float kUp[3] = {0, 0, 1};
-  for (int i = 0; i < kPointsAtOnce; ++i) put(kUp, kUp, {}, {}, 1);
-  count_ = 0, points_.groups = 0;
+  while (!full()) put(kUp, kUp, {}, kUp, {}, {});
+  count_ = 0;
 }
 
-void SbrdfShader::Batch::put_frame(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
-                                   const float* tangent) {
+void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
+                             const float* tangent, std::span<const TexelShare> lobed,
+                             std::span<const TexelShare> diffuse) {
   SbrdfPoints& p = points_;
   p.nx[count_] = normal[0], p.ny[count_] = normal[1], p.nz[count_] = normal[2];
   p.vx[count_] = to_viewer[0], p.vy[count_] = to_viewer[1], p.vz[count_] = to_viewer[2];
   p.tx[count_] = tangent[0], p.ty[count_] = tangent[1], p.tz[count_] = tangent[2];
   p.px[count_] = position[0], p.py[count_] = position[1], p.pz[count_] = position[2];
-}
-
-// The kernel adds as many texels of every point; those that a point lacks are in no group and have no share.
-void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
-                             const float* tangent, std::span<const SeenTexels::Seen> texels) {
-  put_frame(normal, to_viewer, position, tangent);
-  SbrdfPoints& p = points_;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(p.taps); ++k) {
-    const bool there = k < texels.size();
-    p.texel[k][count_] = &packed_.texels[there ? texels[k].texel * packed_.stride() : 0];
-    p.share[k][count_] = there ? texels[k].share : 0.0F;
-  }
-  group_texels(std::min(static_cast<int>(texels.size()), p.taps));
-}
-
-void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
-                             const TexturePlace& place, double repeat) {
-  put_frame(normal, to_viewer, position, place.tangent);
-  SbrdfPoints& p = points_;
-  if (p.taps == 1) {
-    p.texel[0][count_] = packed_.texels.data();
-    p.share[0][count_] = 1;
-    group_texels(1);
-    return;
-  }
-  const auto taps = brdf::texture_taps(packed_.width, packed_.height, repeat * place.u, repeat * place.v);
-  for (std::size_t k = 0; k < taps.size(); ++k) {
-    p.texel[k][count_] = packed_.at(taps[k].column, taps[k].row);
-    p.share[k][count_] = static_cast<float>(taps[k].weight);
-  }
-  group_texels(p.taps);
-}
-
-// Of the first so many texels of the point that was put last: each group begins with the first that is in none yet.
-void SbrdfShader::Batch::group_texels(int count) {
-  SbrdfPoints& p = points_;
-  const auto all = (1U << static_cast<unsigned>(count)) - 1;
-  float shapes[kTexelsAtOnce] = {};
-  bool same = true;
-  for (int k = 0; k < count; ++k) {
-    shapes[k] = p.texel[k][count_][kTexelShape];
-    same = same && shapes[k] == shapes[0];
-  }
-  int groups = 0;
-  for (unsigned left = all; left != 0; ++groups) {
-    const int first = std::countr_zero(left);
-    unsigned members = 1U << first;
-    if (same && shapes[0] != kOwnShape) {
-      members = all;
-    } else if (shapes[first] != kOwnShape) {
-      for (int k = first + 1; k < count; ++k)
-        if (shapes[k] == shapes[first]) members |= 1U << k;
-    }
-    p.group[groups][count_] = static_cast<std::uint8_t>(members);
-    left &= ~members;
-  }
-  p.groups = std::max(p.groups, groups);
-  for (; groups < static_cast<int>(kTexelsAtOnce); ++groups) p.group[groups][count_] = 0;
+  p.shape[count_] = packed_.shape_of(lobed.empty() ? 0 : lobed.front().texel);
+  p.lobed[count_] = lobed, p.diffuse[count_] = diffuse;
   ++count_;
 }
 
 const float* SbrdfShader::Batch::shade() {
   shade_texels(shading_, points_, count_, rgba_);
-  count_ = 0, points_.groups = 0;
+  count_ = 0;
   return rgba_;
 }
 
 std::vector<color::Rgb> SbrdfShader::shade(std::size_t texture, const SbrdfLight& light,
                                            const std::vector<VisiblePoint>& points, int level) const {
-  std::vector<color::Rgb> colors;
+  std::vector<color::Rgb> colors(points.size());
   Batch batch(*this, texture, light, level);
+  std::size_t number[kPointsAtOnce];
   const auto flush = [&] {
     const int count = batch.count();
     const float* rgba = batch.shade();
-    for (int i = 0; i < count; ++i) colors.push_back({rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]});
+    for (int i = 0; i < count; ++i) colors[number[i]] += color::Rgb{rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]};
   };
-  for (const VisiblePoint& point : points) {
+  std::vector<std::array<TexelShare, 4>> texels(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const VisiblePoint& point = points[i];
+    const auto taps = brdf::texture_taps(batch.texture().width, batch.texture().height, point.place.u, point.place.v);
+    std::ranges::transform(taps, texels[i].begin(), [&](const brdf::TextureTap& tap) {
+      return TexelShare{static_cast<std::uint32_t>(texel_number(batch.texture(), tap)), static_cast<float>(tap.weight)};
+    });
+    sort_by_shape(batch.texture(), texels[i]);
     float normal[3], to_viewer[3];
     for (int c = 0; c < 3; ++c) {
       normal[c] = static_cast<float>(point.normal[c]), to_viewer[c] = static_cast<float>(point.to_viewer[c]);
     }
-    batch.put(normal, to_viewer, from_origin(point.position, light.origin), point.place, 1);
-    if (batch.full()) flush();
+    each_shape(batch.texture(), texels[i], [&](std::span<const TexelShare> lobed, std::span<const TexelShare> diffuse) {
+      number[batch.count()] = i;
+      batch.put(normal, to_viewer, from_origin(point.position, light.origin), point.place.tangent, lobed, diffuse);
+      if (batch.full()) flush();
+    });
   }
   if (batch.count() > 0) flush();
   return colors;

@@ -43,19 +43,32 @@ struct SbrdfLight {
 // Segments of a row of the horizon table.
 constexpr int kTextureHorizonSegments = 64;
 
-// A texture packed for the kernel.
+// A texture packed for the kernel: see kShapeFloats.
 struct PackedTexture {
   int width = 0, height = 0, lobes = 0;
-  std::vector<float> texels;
+  std::vector<float> colors;
+  std::vector<std::uint32_t> shape;  // the number of each texel's
+  std::vector<float> shapes;
   bool covers = true;  // whether alpha is 1 everywhere
 
-  std::size_t stride() const { return kTexelFloats + kTexelLobeFloats * static_cast<std::size_t>(lobes); }
-  const float* at(int column, int row) const {
-    return &texels[(static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-                    static_cast<std::size_t>(column)) *
-                   stride()];
-  }
+  std::size_t color_floats() const { return 4 * (1 + static_cast<std::size_t>(lobes)); }
+  std::size_t shape_floats() const { return kShapeFloats * static_cast<std::size_t>(lobes); }
+  const float* colors_of(std::size_t texel) const { return colors.data() + texel * color_floats(); }
+  const float* shape_of(std::size_t texel) const { return shapes.data() + shape[texel] * shape_floats(); }
 };
+
+// Puts texels of one shape side by side.
+void sort_by_shape(const PackedTexture& texture, std::span<TexelShare> texels);
+
+// Calls put(lobed, diffuse) for each shape of texels that are sorted by shape: those of the shape, and with the first
+// of them all texels, whose diffuse parts are shaded together.
+template <class Put>
+void each_shape(const PackedTexture& texture, std::span<const TexelShare> texels, const Put& put) {
+  for (std::size_t first = 0, end = 0; first < texels.size(); first = end) {
+    while (end < texels.size() && texture.shape[texels[end].texel] == texture.shape[texels[first].texel]) ++end;
+    put(texels.subspan(first, end - first), first == 0 ? texels : std::span<const TexelShare>());
+  }
+}
 
 // Textures packed for the kernel, and the maps that their lobes need.
 class SbrdfShader {
@@ -99,25 +112,18 @@ class SbrdfShader {
     Batch(const SbrdfShader& shader, std::size_t texture, const SbrdfLight& light, int level = 0);
     Batch(const Batch&) = delete;  // the kernel's tables point into it
     Batch& operator=(const Batch&) = delete;
-    // `normal` and `to_viewer` on the same side, the first unit; the position from SbrdfLight::origin.
-    void put(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
-             const TexturePlace& place, double repeat);
-    // The same of up to kTexelsAtOnce texels and their shares, with the tangent of a place.
+    // `normal` and `to_viewer` on the same side, the first unit; the position from SbrdfLight::origin. The point shows
+    // the lobes of some texels of one shape, and the diffuse parts of others or the same. They must be there until the
+    // batch is shaded.
     void put(const float* normal, const float* to_viewer, const std::array<float, 3>& position, const float* tangent,
-             std::span<const SeenTexels::Seen> texels);
+             std::span<const TexelShare> lobed, std::span<const TexelShare> diffuse);
     int count() const { return count_; }
     bool full() const { return count_ == kPointsAtOnce; }
     // The colors of all, 4 floats each; the batch is empty again.
     const float* shade();
-
-    int width() const { return packed_.width; }  // of the texture, or its level
-    int height() const { return packed_.height; }
+    const PackedTexture& texture() const { return packed_; }  // or its level
 
    private:
-    void put_frame(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
-                   const float* tangent);
-    void group_texels(int count);
-
     const PackedTexture& packed_;
     SbrdfShading shading_;
     std::vector<float> lights_, reflection_;
@@ -132,8 +138,8 @@ class SbrdfShader {
   void make_horizon(double low, double high);
   PackedTexture pack(const brdf::SbrdfTexture& texture) const;
   PackedTexture pack(const TextureLevel& level) const;
-  // Its color relative to an albedo.
-  void pack_lobe(const brdf::LafortuneLobe& lobe, double largest, float* to) const;
+  // One lobe of a shape, of this largest albedo and this direction of the x axis.
+  void pack_lobe(const brdf::LafortuneLobe& lobe, double largest, const brdf::SbrdfAxis& axis, float* to) const;
 
   struct Levels {
     std::mutex mutex;

@@ -1,7 +1,6 @@
 #include "render/textures/sbrdf_kernel.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -97,34 +96,36 @@ HWY_INLINE void find_lamp(const SbrdfShading& s, int number, const SbrdfPoints& 
   }
 }
 
-// One lobe of one texel for each point, its values side by side.
+// One lobe of each point, its values side by side.
 struct LobeValues {
   HWY_ALIGN float cos_x[kPointsAtOnce], sin_x[kPointsAtOnce];  // of the lobe's frame
   HWY_ALIGN float ax[kPointsAtOnce], ay[kPointsAtOnce], az[kPointsAtOnce], exponent[kPointsAtOnce];
   HWY_ALIGN float energy[kPointsAtOnce], albedo[kPointsAtOnce];  // logarithms
-  HWY_ALIGN float color[4 * kPointsAtOnce];                      // of all texels of the group, times their shares
+  HWY_ALIGN float color[4 * kPointsAtOnce];                      // of all texels, times their shares
   const float* lobe[kPointsAtOnce];
 };
 
-// That of the group of this number; none where a point has fewer.
-HWY_INLINE void gather_lobe(const SbrdfPoints& p, int group, int lobe, LobeValues& values) {
-  const std::size_t at = kTexelFloats + kTexelLobeFloats * static_cast<std::size_t>(lobe);
+// The sum of one color of these texels, times their shares: number 0 is the diffuse part, then come the lobes.
+HWY_INLINE Quad color_of(const SbrdfShading& s, std::span<const TexelShare> texels, int number) {
+  const float* from = s.colors + 4 * static_cast<std::size_t>(number);
+  const std::size_t stride = 4 * (1 + static_cast<std::size_t>(s.lobes));
+  Quad sum = Quad::filled(0);
+  for (const TexelShare& one : texels)
+    sum = mul_add(Quad::filled(one.share), Quad::load(from + stride * one.texel), sum);
+  return sum;
+}
+
+HWY_INLINE void gather_lobe(const SbrdfShading& s, const SbrdfPoints& p, int lobe, int count, LobeValues& values) {
+  const std::size_t at = kShapeFloats * static_cast<std::size_t>(lobe);
   for (int i = 0; i < kPointsAtOnce; ++i) {
-    const unsigned members = p.group[group][i];
-    const float* l = p.texel[members != 0 ? std::countr_zero(members) : 0][i] + at;
-    Quad color = Quad::filled(0);
-    for (unsigned left = members; left != 0; left &= left - 1) {
-      const int tap = std::countr_zero(left);
-      color = mul_add(Quad::filled(p.share[tap][i]), Quad::load(p.texel[tap][i] + at), color);
-    }
-    color.store(values.color + 4 * i);
+    const float* l = p.shape[i] + at;
     values.cos_x[i] = l[kLobeTurn], values.sin_x[i] = l[kLobeTurn + 1];
     values.ax[i] = l[kLobeAxes], values.ay[i] = l[kLobeAxes + 1], values.az[i] = l[kLobeAxes + 2];
     values.exponent[i] = l[kLobeExponent];
-    values.energy[i] = members != 0 ? l[kLobeEnergy] : kNoLobe;
-    values.albedo[i] = members != 0 ? l[kLobeAlbedo] : kNoLobe;
+    values.energy[i] = l[kLobeEnergy], values.albedo[i] = l[kLobeAlbedo];
     values.lobe[i] = l;
   }
+  for (int i = 0; i < count; ++i) color_of(s, p.lobed[i], 1 + lobe).store(values.color + 4 * i);
 }
 
 // The middle of each lobe, p/|p| of p = C wo, in the texel's frame, and log |p|^n.
@@ -219,7 +220,7 @@ HWY_INLINE Seen seen_of(const SbrdfShading& s, const float* lobe, float cosine) 
   return {between(0), between(1)};
 }
 
-// Adds what one lobe of one texel shows of the environment.
+// Adds what one lobe shows of the environment.
 template <bool reflection>
 HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const SurfaceFrames& frames,
                              const LobeValues& l, const LobeMiddles& middles, int count, float* sums) {
@@ -275,7 +276,7 @@ HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const 
   }
 }
 
-// Adds what one lobe of one texel sends of a light to the viewer: the exact BRDF. With m the middle of the lobe,
+// Adds what one lobe sends of a light to the viewer: the exact BRDF. With m the middle of the lobe,
 // (p.wi)^n = |p|^n (m.wi)^n, the second from 1 - m.wi = |m - wi|^2/2. The disc of a lamp is taken as a Gaussian of the
 // same variance, which makes the lobe wider and lower by one factor.
 template <bool reflection>
@@ -328,10 +329,8 @@ HWY_INLINE void add_diffuse(const SbrdfShading& s, const SbrdfPoints& p, const S
       address(loaded(p.nx, p.ny, p.nz, i), s.diffuse.size, i, taps);
   }
   for (int i = 0; i < count; ++i) {
-    if (!(frames.vn[i] > 0)) continue;
-    Quad color = Quad::filled(0);
-    for (int tap = 0; tap < p.taps; ++tap)
-      color = mul_add(Quad::filled(p.share[tap][i]), Quad::load(p.texel[tap][i]), color);
+    if (p.diffuse[i].empty() || !(frames.vn[i] > 0)) continue;
+    const Quad color = color_of(s, p.diffuse[i], 0);
     Quad light = Quad::filled(0);
     if (with_environment) light = mul_add(Quad::filled(std::numbers::pi_v<float>), fetched(s.diffuse, taps, i), light);
     for (int k = 0; k < lamps.count; ++k) {
@@ -352,7 +351,7 @@ HWY_INLINE void find_lit(const SurfaceFrames& frames, bool with_environment, con
   }
 }
 
-// The diffuse part, and then each lobe of each group of texels under the environment and under the lights.
+// The diffuse part, and then each lobe under the environment and under the lights.
 template <bool reflection>
 HWY_INLINE void add_all(const SbrdfShading& s, const SbrdfPoints& p, int count, float* sums) {
   SurfaceFrames frames;
@@ -367,15 +366,13 @@ HWY_INLINE void add_all(const SbrdfShading& s, const SbrdfPoints& p, int count, 
     for (int k = 0; k < lamps.count; ++k) find_lamp(s, lamps.first + k, p, frames, lamps.seen[k]);
     add_diffuse<reflection>(s, p, frames, with_environment, lamps, count, sums);
     find_lit(frames, with_environment, lamps, lit);
-    for (int group = 0; group < p.groups; ++group) {
-      for (int lobe = 0; lobe < s.lobes; ++lobe) {
-        if ((s.lobes_on >> lobe & 1U) == 0) continue;
-        gather_lobe(p, group, lobe, values);
-        find_middles(frames, lit, values, middles);
-        if (with_environment) add_filtered<reflection>(s, p, frames, values, middles, count, sums);
-        for (int k = 0; k < lamps.count; ++k)
-          add_lit<reflection>(s.light + 8 * (lamps.first + k), lamps.seen[k], frames, values, middles, count, sums);
-      }
+    for (int lobe = 0; lobe < s.lobes; ++lobe) {
+      if ((s.lobes_on >> lobe & 1U) == 0) continue;
+      gather_lobe(s, p, lobe, count, values);
+      find_middles(frames, lit, values, middles);
+      if (with_environment) add_filtered<reflection>(s, p, frames, values, middles, count, sums);
+      for (int k = 0; k < lamps.count; ++k)
+        add_lit<reflection>(s.light + 8 * (lamps.first + k), lamps.seen[k], frames, values, middles, count, sums);
     }
   }
 }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <utility>
 
 #include "base/parallel.h"
 #include "brdf/lobe_merge.h"
@@ -90,12 +92,23 @@ int fine_probes(double texels, int more) {
 
 }  // namespace
 
+namespace {
+
+// std::floor() without a call of the library, which most processors that this is built for would need.
+double floor_of(double x) {
+  if (!(std::abs(x) < 1e9)) return std::floor(x);
+  const auto whole = static_cast<double>(static_cast<std::int64_t>(x));
+  return x < whole ? whole - 1 : whole;
+}
+
+}  // namespace
+
 bool is_between_texels(const TexturePlace& place, double scale, int width, int height) {
   const auto has_no_middle = [&](float at, float across, float down, int count) {
     const double middle = static_cast<double>(at) * count - 0.5;
     const double reach =
         0.5 * scale * (std::abs(static_cast<double>(across)) + std::abs(static_cast<double>(down))) * count;
-    return count == 1 || std::floor(middle - reach) == std::floor(middle + reach);
+    return count == 1 || floor_of(middle - reach) == floor_of(middle + reach);
   };
   return has_no_middle(place.u, place.across[0], place.down[0], width) &&
          has_no_middle(place.v, place.across[1], place.down[1], height);
@@ -137,30 +150,98 @@ TexturePlace probe_place(const TexturePlace& place, double scale, const FilterPr
   return result;
 }
 
-const std::vector<SeenTexels::Seen>& SeenTexels::of(const TexturePlace& place, double scale, const FilterProbes& probes,
-                                                    int width, int height) {
-  seen_.clear();
-  slots_.assign(std::bit_ceil(8 * static_cast<std::size_t>(probes.count())), 0);  // twice as many as could be needed
-  for (int i = 0; i < probes.count(); ++i) {
-    const TexturePlace probe = probe_place(place, scale, probes, i);
-    for (const brdf::TextureTap& tap : brdf::texture_taps(width, height, probe.u, probe.v)) {
-      if (tap.weight == 0) continue;
-      add(static_cast<std::size_t>(tap.row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(tap.column),
-          tap.weight / probes.count());
+namespace {
+
+// A place along one side of a texture that repeats, the middles of texels at whole numbers, and the probes' steps.
+class Side {
+ public:
+  // A place that is too far away for a number is taken for the corner, as texture_taps() does.
+  Side(double at, double step_across, double step_down, const FilterProbes& probes, int texels)
+      : texels_(texels), across_(step_across), down_(step_down) {
+    const double place = (std::isfinite(at) ? at - texels * floor_of(at / texels) : 0) - 0.5;
+    const double wide = 0.5 * (probes.across - 1) * across_, high = 0.5 * (probes.down - 1) * down_;
+    const double reach = std::abs(wide) + std::abs(high);
+    first_ = static_cast<int>(floor_of(place - reach));
+    from_ = place - wide - high - first_;
+    window_ = std::min(static_cast<int>(floor_of(place + reach)) + 2 - first_, texels);
+    first_ = ((first_ % texels) + texels) % texels;
+  }
+  int window() const { return window_; }
+  // The texel before a probe, from the first one on, and the share of the next.
+  std::pair<int, float> before(int across, int down) const {
+    const double at = from_ + across * across_ + down * down_;
+    const int low = std::max(static_cast<int>(at), 0);
+    return {low, static_cast<float>(at - low)};
+  }
+  int in_window(int at) const { return at < window_ ? at : at % window_; }
+  std::uint32_t texel(int at) const { return static_cast<std::uint32_t>((first_ + at) % texels_); }
+
+ private:
+  int texels_, first_ = 0, window_ = 1;
+  double across_, down_, from_ = 0;
+};
+
+}  // namespace
+
+namespace {
+
+void merge_same(std::vector<TexelShare>& texels) {
+  std::ranges::sort(texels, {}, &TexelShare::texel);
+  std::size_t last = 0;
+  for (std::size_t i = 1; i < texels.size(); ++i) {
+    if (texels[i].texel == texels[last].texel) {
+      texels[last].share += texels[i].share;
+    } else {
+      texels[++last] = texels[i];
     }
   }
-  return seen_;
+  texels.resize(std::min(last + 1, texels.size()));
 }
 
-void SeenTexels::add(std::size_t texel, double share) {
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = (texel * 0x9E3779B97F4A7C15U >> 40) & mask;
-  while (slots_[slot] != 0 && seen_[slots_[slot] - 1].texel != texel) slot = (slot + 1) & mask;
-  if (slots_[slot] == 0) {
-    seen_.push_back({texel, 0});
-    slots_[slot] = static_cast<std::uint32_t>(seen_.size());
+}  // namespace
+
+// A window that is as wide as the texture holds each texel once, as a narrower one does. Where it is too large to be
+// emptied for each footprint, texels that are met again are found by sorting.
+std::span<TexelShare> SeenTexels::of(const TexturePlace& place, double scale, const FilterProbes& probes, int width,
+                                     int height) {
+  const auto step = [&](double stretched, float along, int count, int texels) {
+    return count > 1 ? scale * stretched * along / count * texels : 0.0;
+  };
+  const Side x(static_cast<double>(place.u) * width, step(probes.wide, place.across[0], probes.across, width),
+               step(probes.high, place.down[0], probes.down, width), probes, width);
+  const Side y((1 - static_cast<double>(place.v)) * height, -step(probes.wide, place.across[1], probes.across, height),
+               -step(probes.high, place.down[1], probes.down, height), probes, height);
+  constexpr std::size_t kMostSlots = 1 << 16;
+  const std::size_t window = static_cast<std::size_t>(x.window()) * static_cast<std::size_t>(y.window());
+  const bool sorts = window > kMostSlots;
+  seen_.clear();
+  slots_.assign(sorts ? 0 : window, 0);
+  const auto add = [&](int column, int row, float share) {
+    if (share == 0) return;
+    const std::uint32_t texel = y.texel(row) * static_cast<std::uint32_t>(width) + x.texel(column);
+    if (sorts) {
+      seen_.push_back({texel, share});
+      return;
+    }
+    std::uint16_t& slot = slots_[static_cast<std::size_t>(y.in_window(row) * x.window() + x.in_window(column))];
+    if (slot == 0) {
+      seen_.push_back({texel, 0});
+      slot = static_cast<std::uint16_t>(seen_.size());
+    }
+    seen_[slot - 1U].share += share;
+  };
+  const float each = 1.0F / static_cast<float>(probes.count());
+  for (int j = 0; j < probes.down; ++j) {
+    for (int i = 0; i < probes.across; ++i) {
+      const auto [column, s] = x.before(i, j);
+      const auto [row, t] = y.before(i, j);
+      const float lower = each * t, upper = each - lower;
+      add(column, row, (1 - s) * upper), add(column + 1, row, s * upper);
+      add(column, row + 1, (1 - s) * lower), add(column + 1, row + 1, s * lower);
+    }
   }
-  seen_[slots_[slot] - 1].share += static_cast<float>(share);
+  if (sorts) merge_same(seen_);
+  return seen_;
 }
 
 }  // namespace goniochrome::render

@@ -4,11 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "brdf/lobe_surface.h"
 #include "brdf/sbrdf.h"
 #include "render/gbuffer.h"
+#include "render/textures/sbrdf_kernel.h"
 
 namespace goniochrome::render {
 
@@ -56,19 +58,12 @@ bool is_between_texels(const TexturePlace& place, double scale, int width, int h
 // pixel have one normal and one viewer, so that each texel is shaded once, however many probes show it.
 class SeenTexels {
  public:
-  struct Seen {
-    std::size_t texel = 0;  // row by row
-    float share = 0;
-  };
   // The texture or its level has so many texels. The result is valid until the next call.
-  const std::vector<Seen>& of(const TexturePlace& place, double scale, const FilterProbes& probes, int width,
-                              int height);
+  std::span<TexelShare> of(const TexturePlace& place, double scale, const FilterProbes& probes, int width, int height);
 
  private:
-  void add(std::size_t texel, double share);
-
-  std::vector<Seen> seen_;            // in the order in which the probes meet them
-  std::vector<std::uint32_t> slots_;  // number in seen_ + 1, by a hash of the texel; 0 where there is none
+  std::vector<TexelShare> seen_;      // in the order in which the probes meet them
+  std::vector<std::uint16_t> slots_;  // number in seen_ + 1, by the place in a window around the footprint; 0: none
 };
 
 }  // namespace goniochrome::render

@@ -56,7 +56,7 @@ TEST(TextureFilter, SharesOfTexelsAreThoseOfTheMean) {
       SeenTexels& by = grid == &probes ? seen : of_coarse;
       std::set<std::size_t> met;
       double whole = 0;
-      for (const SeenTexels::Seen& one : by.of(place, 1, *grid, kWidth, kHeight)) {
+      for (const TexelShare& one : by.of(place, 1, *grid, kWidth, kHeight)) {
         EXPECT_TRUE(met.insert(one.texel).second);
         whole += one.share;
         *error = std::max(*error, std::abs(one.share - true_share(place, one.texel)));

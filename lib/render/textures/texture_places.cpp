@@ -10,12 +10,48 @@
 
 namespace goniochrome::render {
 
+// The plane of a triangle as it is seen from one eye: plane_hit() with the products that all rays share.
+class SeenPlane {
+ public:
+  bool is_of(std::uint32_t triangle) const { return triangle_ == triangle; }
+  void look_at(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& eye) {
+    triangle_ = triangle;
+    const auto& corners = mesh.triangles[triangle];
+    const Vec3& p = mesh.positions[corners[0]];
+    const Vec3 a = mesh.positions[corners[1]] - p, b = mesh.positions[corners[2]] - p, from = eye - p;
+    normal_ = cross(b, a), second_ = cross(b, from), third_ = cross(from, a);
+    height_ = dot(b, third_);
+  }
+  PlaneHit hit(const Vec3& direction) const {
+    const double determinant = dot(direction, normal_);
+    PlaneHit hit;
+    if (determinant == 0) return hit;
+    const double scale = 1 / determinant, v = scale * dot(direction, second_), w = scale * dot(direction, third_);
+    hit.shares = {1 - v - w, v, w};
+    hit.ahead = height_ * scale > 0;
+    return hit;
+  }
+
+ private:
+  std::uint32_t triangle_ = kNoTriangle;
+  Vec3 normal_, second_, third_;
+  double height_ = 0;
+};
+
 namespace {
 
 using Uv = std::array<double, 2>;
 
 // So many rows are done at a time.
 constexpr std::size_t kRowsAtOnce = 16;
+
+// The nearest shares within the triangle, as mesh_point() has them.
+std::array<double, 3> within(std::array<double, 3> shares) {
+  double sum = 0;
+  for (double& share : shares) share = std::max(0.0, share), sum += share;
+  for (double& share : shares) share /= sum;
+  return shares;
+}
 
 // The texture coordinates of a triangle's corners.
 class Unwrapped {
@@ -113,7 +149,7 @@ TexturePlace TextureLayout::place(int part, const MeshPoint& point) const {
 
 // The differences of u and v across a pixel, from the rays through the middles of its sides, which meet the plane of
 // the triangle. Beyond the horizon of that plane the footprint has no end.
-void TextureLayout::add_footprint(const Gbuffer& gbuffer, int x, int y, const MeshPoint& point,
+void TextureLayout::add_footprint(const Gbuffer& gbuffer, int x, int y, const MeshPoint& point, const SeenPlane& plane,
                                   TexturePlace& place) const {
   constexpr float kEndless = 1e3F;
   const auto part = static_cast<std::size_t>(gbuffer.part(x, y));
@@ -122,29 +158,26 @@ void TextureLayout::add_footprint(const Gbuffer& gbuffer, int x, int y, const Me
   Vec3 normal;
   for (std::size_t k = 0; k < 3; ++k) normal += point.shares[k] * mesh_.normals[corners[k]];
   // The place toward (x, y), or nothing.
-  const auto met = [&](double at_x, double at_y, float* uv) {
-    const PlaneHit hit = plane_hit(mesh_, point.triangle, gbuffer.rays.eye, gbuffer.rays.direction(at_x, at_y));
+  const auto met = [&](double at_x, double at_y, Uv& uv) {
+    const PlaneHit hit = plane.hit(gbuffer.rays.direction(at_x, at_y));
     if (!hit.ahead) return false;
-    Vec3 position;
-    uv[0] = uv[1] = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (own) {
-        const auto& corner = faces_[part][point.triangle - mesh_.parts[part].first][k];
-        for (std::size_t c = 0; c < 2; ++c) uv[c] += static_cast<float>(hit.shares[k] * corner[c]);
-      } else {
-        position += hit.shares[k] * mesh_.positions[corners[k]];
-      }
+    if (own) {
+      const Corners& corner = faces_[part][point.triangle - mesh_.parts[part].first];
+      for (std::size_t c = 0; c < 2; ++c)
+        uv[c] = hit.shares[0] * corner[0][c] + hit.shares[1] * corner[1][c] + hit.shares[2] * corner[2][c];
+      return true;
     }
-    if (own) return true;
+    Vec3 position;
+    for (std::size_t k = 0; k < 3; ++k) position += hit.shares[k] * mesh_.positions[corners[k]];
     const TexturePlace there = projected(layings_[part], position, normal);
-    uv[0] = there.u, uv[1] = there.v;
+    uv = {there.u, there.v};
     return true;
   };
   const auto step = [&](double dx, double dy, float* to) {
-    float low[2], high[2];
+    Uv low{}, high{};
     const bool whole = met(x + 0.5 - dx, y + 0.5 - dy, low) && met(x + 0.5 + dx, y + 0.5 + dy, high);
-    for (int c = 0; c < 2; ++c) {
-      const float wide = whole ? high[c] - low[c] : kEndless;
+    for (std::size_t c = 0; c < 2; ++c) {
+      const auto wide = whole ? static_cast<float>(high[c] - low[c]) : kEndless;
       to[c] = std::isfinite(wide) ? std::clamp(wide, -kEndless, kEndless) : kEndless;
     }
     // Around an axis, u may go on at the other edge.
@@ -155,22 +188,31 @@ void TextureLayout::add_footprint(const Gbuffer& gbuffer, int x, int y, const Me
   step(0.5, 0, place.across), step(0, 0.5, place.down);
 }
 
-TexturePlace TextureLayout::place(const Gbuffer& gbuffer, int x, int y) const {
-  const MeshPoint point = mesh_point(mesh_, gbuffer, x, y);
+TexturePlace TextureLayout::place(const Gbuffer& gbuffer, int x, int y, bool footprint, SeenPlane& plane) const {
+  MeshPoint point;
+  point.triangle = gbuffer.triangles[gbuffer.index(x, y)];
+  if (!plane.is_of(point.triangle)) plane.look_at(mesh_, point.triangle, gbuffer.rays.eye);
+  point.shares = within(plane.hit(gbuffer.rays.direction(x + 0.5, y + 0.5)).shares);
   TexturePlace result = place(gbuffer.part(x, y), point);
-  add_footprint(gbuffer, x, y, point, result);
+  if (footprint) add_footprint(gbuffer, x, y, point, plane, result);
   return result;
+}
+
+TexturePlace TextureLayout::place(const Gbuffer& gbuffer, int x, int y) const {
+  SeenPlane plane;
+  return place(gbuffer, x, y, true, plane);
 }
 
 template <class PlaceAt>
 std::vector<TexturePlace> TextureLayout::each_pixel(const Gbuffer& gbuffer, const PlaceAt& place_at) const {
   std::vector<TexturePlace> places(gbuffer.triangles.size());
   parallel_for(static_cast<std::size_t>(gbuffer.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    SeenPlane plane;
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < gbuffer.width; ++x) {
         const int part = gbuffer.part(x, y);
         if (part < 0 || faces_[static_cast<std::size_t>(part)].empty()) continue;
-        places[gbuffer.index(x, y)] = place_at(x, y);
+        places[gbuffer.index(x, y)] = place_at(x, y, plane);
       }
     }
   });
@@ -178,13 +220,13 @@ std::vector<TexturePlace> TextureLayout::each_pixel(const Gbuffer& gbuffer, cons
 }
 
 std::vector<TexturePlace> TextureLayout::places(const Gbuffer& gbuffer) const {
-  return each_pixel(gbuffer, [&](int x, int y) { return place(gbuffer.part(x, y), mesh_point(mesh_, gbuffer, x, y)); });
+  return each_pixel(gbuffer, [&](int x, int y, SeenPlane& plane) { return place(gbuffer, x, y, false, plane); });
 }
 
 std::vector<TexturePlace> TextureLayout::filtered_places(const Gbuffer& gbuffer,
                                                          const std::array<double, 2>& middle) const {
-  return each_pixel(gbuffer, [&](int x, int y) {
-    TexturePlace result = place(gbuffer, x, y);
+  return each_pixel(gbuffer, [&](int x, int y, SeenPlane& plane) {
+    TexturePlace result = place(gbuffer, x, y, true, plane);
     result.u += static_cast<float>(middle[0] * result.across[0] + middle[1] * result.down[0]);
     result.v += static_cast<float>(middle[0] * result.across[1] + middle[1] * result.down[1]);
     return result;

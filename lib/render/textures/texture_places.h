@@ -11,6 +11,8 @@
 
 namespace goniochrome::render {
 
+class SeenPlane;
+
 // A mesh laid out for textures. Unless a part is projected, texture coordinates are the mesh's own; where it has none,
 // u runs once around the vertical axis through the middle of the bounding box and v upward in the same measure.
 // Tangents run along u and are the means over the triangles at a vertex, by area, so that a smooth surface has smooth
@@ -24,7 +26,7 @@ class TextureLayout {
   // The places of what a G-buffer of the mesh shows, pixel by pixel; those of other parts, and of nothing, are left at
   // 0, and so are footprints. The G-buffer must have triangles. Bit-identical for any number of threads.
   std::vector<TexturePlace> places(const Gbuffer& gbuffer) const;
-  // The same with footprints, which takes four times as long. Their middles, which become the places, lie so far from
+  // The same with footprints, which takes longer. Their middles, which become the places, lie so far from
   // the points, in pixels to the right and downward.
   std::vector<TexturePlace> filtered_places(const Gbuffer& gbuffer, const std::array<double, 2>& middle = {}) const;
   // That of one pixel, which shows one of the parts, with its footprint.
@@ -39,7 +41,9 @@ class TextureLayout {
   TexturePlace place(const MeshPoint& point, const Corners& corners) const;
   template <class PlaceAt>
   std::vector<TexturePlace> each_pixel(const Gbuffer& gbuffer, const PlaceAt& place_at) const;
-  void add_footprint(const Gbuffer& gbuffer, int x, int y, const MeshPoint& point, TexturePlace& place) const;
+  TexturePlace place(const Gbuffer& gbuffer, int x, int y, bool footprint, SeenPlane& plane) const;
+  void add_footprint(const Gbuffer& gbuffer, int x, int y, const MeshPoint& point, const SeenPlane& plane,
+                     TexturePlace& place) const;
 
   const mesh::Mesh& mesh_;
   std::vector<TextureLaying> layings_;       // of each part
