@@ -147,10 +147,6 @@ const TexturePlace& place_on(const VisiblePoint& point, std::size_t level) {
   return level == 0 || level > point.over.size() ? point.place : point.over[level - 1];
 }
 
-}  // namespace
-
-namespace {
-
 constexpr double kTexelsOfPlace = 4;  // between which a place lies
 
 }  // namespace
