@@ -222,6 +222,16 @@ std::array<Float3, 3> RayScene::corners(std::uint32_t triangle) const {
   const auto& [a, b, c] = state_->triangles[triangle];
   return {state_->positions[a], state_->positions[b], state_->positions[c]};
 }
+// In doubles: the cross product of a sliver's edges has few digits in floats.
+Vec3 RayScene::doubled_area(std::uint32_t triangle) const {
+  const std::array<Float3, 3> corner = corners(triangle);
+  return goniochrome::cross(vec3(corner[1] - corner[0]), vec3(corner[2] - corner[0]));
+}
+double RayScene::by_solid_angle(std::uint32_t triangle, const Float3& direction, float distance) const {
+  const Vec3 area = doubled_area(triangle);
+  const double size = goniochrome::length(area), cosine = std::abs(goniochrome::dot(area, vec3(direction))) / size;
+  return cosine > 0 ? static_cast<double>(distance) * distance / cosine : 0;
+}
 
 Hit RayScene::closest(const Float3& origin, const Float3& direction) const {
   RTCIntersectContext context = incoherent();
@@ -308,8 +318,7 @@ Spot RayScene::spot(const Hit& hit, const Float3& origin, const Float3& directio
   const Float3 e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
   const std::array<float, 3> share = {1 - hit.u - hit.v, hit.u, hit.v};
   spot.position = corner[0] + hit.u * e1 + hit.v * e2;
-  // In doubles: the cross product of a sliver's edges has few digits in floats.
-  const Vec3 area = goniochrome::cross(vec3(e1), vec3(e2));
+  const Vec3 area = doubled_area(hit.triangle);
   const double size = goniochrome::length(area);
   Float3 geometric = size > 0 ? float3((1 / size) * area) : -direction;
   spot.inside = dot(geometric, direction) > 0;

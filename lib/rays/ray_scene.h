@@ -118,6 +118,11 @@ class RayScene {
   Spot spot(const Hit& hit, const Float3& origin, const Float3& direction) const;
   // The corners of a triangle, local.
   std::array<Float3, 3> corners(std::uint32_t triangle) const;
+  // Twice the area of a triangle times its normal, local.
+  Vec3 doubled_area(std::uint32_t triangle) const;
+  // What a density of 1 by area is by solid angle where a ray of this direction meets a triangle at this distance,
+  // local: distance^2/cos; 0 along the triangle.
+  double by_solid_angle(std::uint32_t triangle, const Float3& direction, float distance) const;
   int part(std::uint32_t triangle) const;
   // Of a point of a triangle, unit, or 0: see SurfacePoint.
   Vec3 tangent(const Hit& hit) const;

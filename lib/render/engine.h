@@ -43,6 +43,7 @@ struct Noise {
   double samples_mean = 0;             // of a visible pixel
   double time_s = 0;
   bool reached = false;        // whether de00_p95 is within the tolerance
+  double places_gain = 1;      // BrightPlaces::gain(); 1 where directions are drawn by lobes alone
   double white_luminance = 0;  // that the noise is judged by
   image::Image de00;           // of each pixel, one standard deviation; one channel
 };

@@ -13,11 +13,6 @@ double mean_of(const color::Rgb& c) {
   return (c.x + c.y + c.z) / 3;
 }
 
-// Twice the area times the normal, in doubles.
-Vec3 doubled_area(const std::array<Float3, 3>& corner) {
-  return cross(rays::vec3(corner[1] - corner[0]), rays::vec3(corner[2] - corner[0]));
-}
-
 }  // namespace
 
 Result<Emitters> Emitters::create(const rays::RayScene& scene, std::vector<color::Rgb> radiance) {
@@ -34,7 +29,7 @@ Result<Emitters> Emitters::create(const rays::RayScene& scene, std::vector<color
   emitters.radiance_ = std::move(radiance);
   for (std::uint32_t triangle = 0; triangle < scene.triangles(); ++triangle) {
     const int part = scene.part(triangle);
-    const double power = mean_of(emitters.radiance(part)), area = 0.5 * length(doubled_area(scene.corners(triangle)));
+    const double power = mean_of(emitters.radiance(part)), area = 0.5 * length(scene.doubled_area(triangle));
     if (!(power > 0)) continue;
     part_area[static_cast<std::size_t>(part)] += area;
     if (!(area > 0)) continue;
@@ -72,11 +67,8 @@ EmitterSample Emitters::drawn(const Float3& from, double choice, double u, doubl
 
 float Emitters::pdf(std::uint32_t triangle, const Float3& direction, float distance) const {
   if (triangle >= rays::kFloor || empty()) return 0;
-  const int part = scene_->part(triangle);
-  const Vec3 area = doubled_area(scene_->corners(triangle));
-  const double size = length(area), cosine = std::abs(dot(area, rays::vec3(direction))) / size;
-  if (!(cosine > 0)) return 0;
-  return static_cast<float>(part_density(part) * distance * distance / cosine);
+  return static_cast<float>(part_density(scene_->part(triangle)) *
+                            scene_->by_solid_angle(triangle, direction, distance));
 }
 
 }  // namespace goniochrome::render

@@ -6,12 +6,20 @@
 #include <cmath>
 #include <utility>
 
+#include "base/clock.h"
 #include "base/parallel.h"
 #include "render/panes.h"
 #include "render/path/path_tracer.h"
 #include "render/path/visible_white.h"
 
 namespace goniochrome::render {
+
+namespace {
+
+// What is left of a time limit at least when the search for bright places is done.
+constexpr double kLeastTime_s = 1e-3;
+
+}  // namespace
 
 const EngineInfo PathEngine::kInfo = {
     .name = "path",
@@ -136,10 +144,13 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   const Gbuffer& g = surface.gbuffer;
   if (samples == 1) surface = visible_surface(transport_->eye(), Rays(g.rays), g.width, g.height);
   const Effort effort = sight.effort();
+  const Stopwatch clock;
+  transport_->draw_toward(transport_->find_bright_places(effort.bounces, effort.seed));
+  const double search_s = clock.elapsed_s();
   PathRequest request;
   request.options.bounces = effort.bounces;
   request.tolerance_de00 = effects_.tolerance_de00, request.most_in_all = effects_.most_samples_in_all;
-  request.time_limit_s = effort.time_limit_s;
+  if (effort.time_limit_s > 0) request.time_limit_s = std::max(effort.time_limit_s - search_s, kLeastTime_s);
   request.seed = effort.seed;
   request.progress = effort.progress;
   request.white_luminance = white_luminance_;
@@ -159,13 +170,10 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   rgba.data.assign(static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height) * 4, 0.0F);
   const bool with_panes = has_panes(scene_);
   if (effects_.background != Background::kNone || with_panes) draw_background(g.rays, samples, rgba);
-  Noise noise{picture.noise_p95_de00,
-              picture.noise_mean_de00,
-              picture.samples_mean,
-              picture.time_s,
-              picture.reached,
-              request.white_luminance,
-              {}};
+  Noise noise{picture.noise_p95_de00,  picture.noise_mean_de00,
+              picture.samples_mean,    picture.time_s,
+              picture.reached,         transport_->bright_places() != nullptr ? transport_->bright_places()->gain() : 1,
+              request.white_luminance, {}};
   noise.de00 = {g.width, g.height, 1, std::vector<float>(rgba.data.size() / 4, 0.0F), {"error"}};
   for (const PathPoint& point : picture.points) {
     float* pixel = rgba.pixel(point.x, point.y);

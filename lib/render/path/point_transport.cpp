@@ -29,6 +29,7 @@ struct PointTransport::Ray {
   bool above = false;
   std::optional<EnvironmentTable::Place> place;  // where the direction was drawn from the environment
   LaidGround::BrightSample bright;               // with a density above 0 where it was drawn from the brightest texels
+  std::optional<std::uint32_t> place_triangle;   // where it was drawn toward a bright place of the surface
   bool to_ground = false;                        // whether it goes to where the floor shows that place
   double weight = 1;                             // of the sample in the mean
 };
@@ -66,6 +67,7 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
       horizon_ = transport.environment_->with_below(
           std::min(kMostBelowChance, kUprightBelowChance * (1.0 - static_cast<double>(spot.shading.y))));
   }
+  if (options.bounces > 0 && !correction_ && !over_ground_) receiver_ = transport.receiver(spot, painted_);
   open_ = !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0);
   const bool free = open_ && options.correction;
   if (!free) {
@@ -209,9 +211,10 @@ void PointTransport::add_mirror() {
   mirror_samples_ = static_cast<std::uint32_t>(std::clamp(static_cast<int>(std::lround(kBatch * share)), 1, kBatch));
 }
 
-// Of a direction that is not drawn from the environment.
+// Of a direction that is not drawn from the environment, by what finds lights.
 double PointTransport::drawn_pdf(const Float3& direction, const Reflection& reflection) const {
-  return window_ ? transport_.ground_->density(*window_, rays::vec3(direction)) : reflection.pdf;
+  return window_ ? transport_.ground_->density(*window_, rays::vec3(direction))
+                 : (1 - receiver_.chance()) * reflection.pdf;
 }
 
 PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan,
@@ -238,8 +241,15 @@ PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbe
     }
   } else {
     const double choice = (numbers[0] - light_chance_) / (1 - light_chance_);
-    ray.direction = window_ ? rays::float3(transport_.ground_->drawn(*window_, choice, numbers[1], numbers[2]))
-                            : painted_.direction(choice, numbers[1], numbers[2]);
+    const double places = receiver_.chance();
+    if (choice < places) {
+      const BrightPlaces::Draw place =
+          transport_.places_->drawn(receiver_, spot_.start, choice / places, numbers[1], numbers[2]);
+      ray.place_triangle = place.triangle, ray.direction = place.direction;
+    } else {
+      ray.direction = window_ ? rays::float3(transport_.ground_->drawn(*window_, choice, numbers[1], numbers[2]))
+                              : painted_.direction((choice - places) / (1 - places), numbers[1], numbers[2]);
+    }
   }
   ray.above = rays::dot(ray.direction, spot_.shading) > 0;
   return ray;
@@ -256,7 +266,12 @@ LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& 
   } else if (transport_.environment_) {
     light = transport_.environment_->at(ray.direction);
   }
+  const bool passes_on = options_.bounces > 0 || !transport_.emitters_.empty() || transport_.ground_;
+  const Hit hit = blocked && passes_on ? transport_.rays_->closest(spot_.start, ray.direction) : Hit();
+  if (ray.place_triangle && hit.triangle != *ray.place_triangle) return {};
   double pdf = light_chance_ * light.pdf + (1 - light_chance_) * drawn_pdf(ray.direction, reflection);
+  if (receiver_.chance() > 0)
+    pdf += (1 - light_chance_) * receiver_.chance() * transport_.places_->pdf(receiver_, hit, ray.direction);
   if (ray.bright.pdf > 0) {
     pdf = ray.bright.pdf, light.radiance = ray.bright.radiance;
   } else if (window_ && transport_.ground_->is_bright(rays::vec3(ray.direction))) {
@@ -268,8 +283,7 @@ LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& 
 
   color::Rgb arriving = correction_ ? -1.0 * light.radiance : color::Rgb{}, sent;
   LightShares shares;
-  if (options_.bounces > 0 || !transport_.emitters_.empty() || transport_.ground_) {
-    const Hit hit = transport_.rays_->closest(spot_.start, ray.direction);
+  if (passes_on) {
     if (transport_.is_laid(hit)) {
       const Transport::FloorLight floor =
           transport_.off_floor(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);

@@ -149,10 +149,12 @@ class SpectralPaths::Vertex {
   Vertex(const Transport& transport, const std::vector<Paint>& paints, const Spot& at, const Float3& to_viewer)
       : spot(at),
         painted(transport.painted(at, to_viewer)),
+        receiver(transport.receiver(at, painted)),
         paint_(&paints[static_cast<std::size_t>(at.part)]),
         between_(painted.between()) {
     const double mirror = painted.mirror_weight(), lobes = painted.lobes_weight();
     mirror_chance = mirror > 0 ? mirror / (mirror + lobes) : 0;
+    lobes_chance = (1 - mirror_chance) * (1 - receiver.chance());
   }
   // Matt white.
   Vertex(const Spot& at, const Float3& to_viewer)
@@ -186,6 +188,8 @@ class SpectralPaths::Vertex {
   Spot spot;
   PaintedPoint painted;
   double mirror_chance = 0;  // that the path goes on along the mirror direction
+  BrightPlaces::Receiver receiver;
+  double lobes_chance = 1;  // that it goes on by the lobes
 
  private:
   template <class Visit>
@@ -200,7 +204,9 @@ class SpectralPaths::Vertex {
 // Where a path goes on.
 struct SpectralPaths::Next {
   Float3 start, direction;
-  double pdf = 0;  // 0: nowhere; infinite along the mirror direction
+  // By the lobes, which are what finds light that was drawn for itself as well. 0: nowhere; infinite along the mirror
+  // direction.
+  double pdf = 0;
   Hit hit;
 };
 
@@ -218,14 +224,13 @@ void SpectralPaths::add_direct(const Transport& transport, const Vertex& vertex,
                                Carrier& sum) const {
   const rays::RayScene& rays = transport.rays();
   const Float3& start = vertex.spot.start;
-  const double others = 1 - vertex.mirror_chance;
   if (!transport.emitters_.empty()) {
     const EmitterSample light = transport.emitters_.drawn(start, emitter[0], emitter[1], emitter[2]);
     if (light.pdf > 0) {
       const PaintedPoint::Shares shares = vertex.painted.shares(light.direction);
       if (shares.pdf > 0 && !rays.blocked(start, light.direction, Transport::kShort * light.distance))
-        add_product(sum, static_cast<float>(1 / (light.pdf + others * shares.pdf)), path, vertex.reflected(shares),
-                    emission(light.part));
+        add_product(sum, static_cast<float>(1 / (light.pdf + vertex.lobes_chance * shares.pdf)), path,
+                    vertex.reflected(shares), emission(light.part));
     }
   }
   if (transport.lights_.empty()) return;
@@ -237,7 +242,7 @@ void SpectralPaths::add_direct(const Transport& transport, const Vertex& vertex,
   const PaintedPoint::Shares shares = vertex.painted.shares(sample.direction);
   if (!(shares.pdf > 0) || rays.blocked(start, sample.direction, sample.reach)) return;
   const double half_sine = std::sin(0.5 * seen.light.radius_rad), extent_sr = 4 * kPi * half_sine * half_sine;
-  const double share = 1 / (1 + extent_sr * count * others * shares.pdf);
+  const double share = 1 / (1 + extent_sr * count * vertex.lobes_chance * shares.pdf);
   add_product(sum, static_cast<float>(share * count * sample.light.y), path, vertex.reflected(shares), lights_[number]);
 }
 
@@ -250,15 +255,19 @@ SpectralPaths::Next SpectralPaths::next_ray(const Transport& transport, const Ve
     multiply(path, static_cast<float>(1 / vertex.mirror_chance), vertex.mirrored());
     next.direction = vertex.painted.mirrored();
     next.pdf = std::numeric_limits<double>::infinity();
-  } else {
-    if (!(vertex.painted.lobes_weight() > 0)) return next;
-    next.direction = vertex.painted.direction((numbers[0] - vertex.mirror_chance) / others, numbers[1], numbers[2]);
-    const PaintedPoint::Shares shares = vertex.painted.shares(next.direction);
-    if (!(shares.pdf > 0)) return next;
-    next.pdf = others * shares.pdf;
-    multiply(path, static_cast<float>(1 / next.pdf), vertex.reflected(shares));
+    next.hit = transport.rays().closest(next.start, next.direction);
+    return next;
   }
-  next.hit = transport.rays().closest(next.start, next.direction);
+  if (!(vertex.painted.lobes_weight() > 0)) return next;
+  const Transport::Onward onward =
+      transport.onward(vertex.spot, vertex.receiver, vertex.painted, (numbers[0] - vertex.mirror_chance) / others,
+                       numbers[1], numbers[2]);
+  if (!(onward.lobes_chance > 0)) return next;
+  const PaintedPoint::Shares shares = vertex.painted.shares(onward.direction);
+  if (!(shares.pdf > 0)) return next;
+  next.direction = onward.direction, next.hit = onward.hit;
+  next.pdf = vertex.lobes_chance * shares.pdf;
+  multiply(path, static_cast<float>(1 / (next.pdf + others * onward.places_pdf)), vertex.reflected(shares));
   return next;
 }
 
@@ -308,8 +317,8 @@ void SpectralPaths::add_path(const Transport& transport, const PathOptions& opti
     add_found(transport, next, path, sum);
     if (!next.hit.any() || surfaces == most) return;
     if (surfaces >= kRouletteFrom) {
-      const float chance =
-          std::clamp(std::ranges::max(path), kLeastChance, surfaces >= kEndlessFrom ? kEndlessChance : 1.0F);
+      const float worth = std::ranges::max(path) * static_cast<float>(transport.brightness(next.hit)),
+                  chance = std::clamp(worth, kLeastChance, surfaces >= kEndlessFrom ? kEndlessChance : 1.0F);
       if (onward[3] >= chance) return;
       for (float& band : path) band /= chance;
     }

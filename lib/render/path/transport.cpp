@@ -112,6 +112,19 @@ double Transport::clear_share(const Float3& from, const Float3& direction) const
   return hit.any() ? 0 : share;
 }
 
+std::shared_ptr<const BrightPlaces> Transport::find_bright_places(int bounces, std::uint64_t seed) const {
+  if (emitters_.empty() || bounces == 0) return nullptr;
+  Transport by_lobes = *this;
+  by_lobes.draw_toward(nullptr);
+  PathOptions options;
+  options.bounces = bounces;
+  const auto sent = [&](const Hit& hit, const Float3& direction, const Sequence& sequence, std::uint32_t index) {
+    const color::Rgb light = by_lobes.bounced(hit, {}, direction, options, sequence, index, 2);
+    return (light.x + light.y + light.z) / 3;
+  };
+  return BrightPlaces::find(*rays_, emitters_, sent, seed);
+}
+
 void Transport::shade_ground(GroundRequest request, int bounces) {
   if (!ground_) return;
   PathOptions options;
@@ -199,6 +212,8 @@ struct Transport::Vertex {
   Spot spot;
   PaintedPoint painted;
   double mirror_chance;  // that the path goes on along the mirror direction
+  BrightPlaces::Receiver receiver;
+  double lobes_chance;  // that it goes on by the lobes
   // Whether it is a floor that shows the environment. What that shows in the open is known, and paths add what the mesh
   // changes: along rays that nothing blocks there is nothing to add.
   bool is_laid = false;
@@ -207,10 +222,12 @@ struct Transport::Vertex {
   Vertex(const Transport& transport, const Spot& at, const Float3& to_viewer)
       : spot(at),
         painted(transport.painted(at, to_viewer)),
+        receiver(transport.receiver(at, painted)),
         is_laid(transport.is_laid(at)),
         open(is_laid ? transport.open_ground(at) : color::Rgb{}) {
     const double mirror = painted.mirror_weight(), lobes = painted.lobes_weight();
     mirror_chance = mirror > 0 ? mirror / (mirror + lobes) : 0;
+    lobes_chance = (1 - mirror_chance) * (1 - receiver.chance());
   }
 };
 
@@ -231,7 +248,9 @@ PaintedPoint Transport::painted(const Spot& spot, const Float3& to_viewer) const
 // Where a path goes on.
 struct Transport::Next {
   Float3 start, direction;
-  double pdf = 0;  // 0: nowhere; infinite along the mirror direction
+  // By the lobes, which are what finds light that was drawn for itself as well. 0: nowhere; infinite along the mirror
+  // direction.
+  double pdf = 0;
   Hit hit;
 };
 
@@ -318,7 +337,7 @@ color::Rgb Transport::direct_light(const Vertex& vertex, const PathProduct& path
     if (light.pdf > 0) {
       const Reflection reflection = vertex.painted.at(light.direction);
       if (reflection.pdf > 0 && rays_->blocked(start, light.direction) == laid)
-        add(reflection.f_cos, sign / (light.pdf + (1 - vertex.mirror_chance) * reflection.pdf), light.radiance);
+        add(reflection.f_cos, sign / (light.pdf + vertex.lobes_chance * reflection.pdf), light.radiance);
     }
   }
   if (!emitters_.empty()) {
@@ -326,10 +345,32 @@ color::Rgb Transport::direct_light(const Vertex& vertex, const PathProduct& path
     if (light.pdf > 0) {
       const Reflection reflection = vertex.painted.at(light.direction);
       if (reflection.pdf > 0 && !rays_->blocked(start, light.direction, kShort * light.distance))
-        add(reflection.f_cos, 1 / (light.pdf + (1 - vertex.mirror_chance) * reflection.pdf), light.radiance);
+        add(reflection.f_cos, 1 / (light.pdf + vertex.lobes_chance * reflection.pdf), light.radiance);
     }
   }
   return sum;
+}
+
+// A direction that was drawn toward a place counts only where the ray meets that place first, so that its density is
+// that of what rays meet. Directions to the sky and to emitters have none but that of the lobes.
+Transport::Onward Transport::onward(const Spot& spot, const BrightPlaces::Receiver& receiver,
+                                    const PaintedPoint& painted, double choice, double u, double v) const {
+  const double chance = receiver.chance();
+  Onward onward;
+  BrightPlaces::Draw place;
+  if (choice < chance) {
+    place = places_->drawn(receiver, spot.start, choice / chance, u, v);
+    if (place.triangle == rays::kNothing) return onward;
+    onward.direction = place.direction;
+  } else {
+    onward.direction = painted.direction((choice - chance) / (1 - chance), u, v);
+  }
+  if (!(rays::dot(onward.direction, painted.normal()) > 0)) return onward;
+  onward.hit = rays_->closest(spot.start, onward.direction);
+  if (choice < chance && onward.hit.triangle != place.triangle) return onward;
+  onward.lobes_chance = 1 - chance;
+  if (chance > 0) onward.places_pdf = chance * places_->pdf(receiver, onward.hit, onward.direction);
+  return onward;
 }
 
 Transport::Next Transport::next_ray(const Vertex& vertex, PathProduct& path,
@@ -340,19 +381,24 @@ Transport::Next Transport::next_ray(const Vertex& vertex, PathProduct& path,
     path.reflect((1 / vertex.mirror_chance) * rgb(vertex.painted.mirror()));
     next.direction = vertex.painted.mirrored();
     next.pdf = std::numeric_limits<double>::infinity();
-  } else {
-    const double others = 1 - vertex.mirror_chance;
-    const Reflection drawn = vertex.painted.drawn((numbers[0] - vertex.mirror_chance) / others, numbers[1], numbers[2]);
-    if (!(drawn.pdf > 0)) return next;
-    next.direction = drawn.direction;
-    next.pdf = others * drawn.pdf;
-    if (vertex.is_laid) {
-      path.reflect_plain((1 / next.pdf) * rgb(drawn.f_cos));
-    } else {
-      path.reflect((1 / next.pdf) * rgb(drawn.f_cos));
-    }
+    next.hit = rays_->closest(vertex.spot.start, next.direction);
+    return next;
   }
-  next.hit = rays_->closest(vertex.spot.start, next.direction);
+  if (!(vertex.painted.lobes_weight() > 0)) return next;
+  const double others = 1 - vertex.mirror_chance;
+  const Onward onward = this->onward(vertex.spot, vertex.receiver, vertex.painted,
+                                     (numbers[0] - vertex.mirror_chance) / others, numbers[1], numbers[2]);
+  if (!(onward.lobes_chance > 0)) return next;
+  const Reflection drawn = vertex.painted.at(onward.direction);
+  if (!(drawn.pdf > 0)) return next;
+  next.direction = onward.direction, next.hit = onward.hit;
+  next.pdf = vertex.lobes_chance * drawn.pdf;
+  const double pdf = next.pdf + others * onward.places_pdf;
+  if (vertex.is_laid) {
+    path.reflect_plain((1 / pdf) * rgb(drawn.f_cos));
+  } else {
+    path.reflect((1 / pdf) * rgb(drawn.f_cos));
+  }
   return next;
 }
 
@@ -398,7 +444,7 @@ color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const Pa
     if (!next.hit.any() || (surfaces == most && !is_laid(next.hit))) break;
     if (bounce >= kRouletteFrom) {
       const double most_chance = bounce >= kEndlessFrom ? kEndlessChance : 1;
-      const double chance = std::clamp(path.size(), kLeastChance, most_chance);
+      const double chance = std::clamp(path.size() * brightness(next.hit), kLeastChance, most_chance);
       if (sequence.point(index, set++)[0] >= chance) break;
       path.scale(1 / chance);
     }

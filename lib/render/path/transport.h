@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "render/effects.h"
+#include "render/path/bright_places.h"
 #include "render/path/emitters.h"
 #include "render/path/environment_table.h"
 #include "render/path/laid_ground.h"
@@ -113,6 +114,14 @@ class Transport {
   void shade_ground(GroundRequest request, int bounces);
   // What the floor shows then.
   LightShares shaded_ground(const rays::Spot& spot) const;
+  // The places that surfaces get most of the light from that they pass on, each of which so many bounces may light;
+  // null where directions toward them are not worth while, as in all scenes without emitters. Bit-identical for any
+  // number of threads.
+  std::shared_ptr<const BrightPlaces> find_bright_places(int bounces, std::uint64_t seed) const;
+  // From here on paths go on toward these places as well as by the lobes of paints, with the same expectation. They are
+  // those of a transport whose mesh and emitting parts are the same, and which outlives this one; null: by lobes alone.
+  void draw_toward(std::shared_ptr<const BrightPlaces> places) { places_ = std::move(places); }
+  const BrightPlaces* bright_places() const { return places_.get(); }
   // About what part of even light a point gets past the mesh.
   double open_share(const rays::Spot& spot) const;
   // The parts whose paint sends back more light than it gets, by number: paths between such walls gain light for ever
@@ -145,6 +154,22 @@ class Transport {
   static constexpr float kShort = 1 - 1e-4F;
   struct Vertex;
   struct Next;
+  // Narrow lobes find what they show better than places do.
+  BrightPlaces::Receiver receiver(const rays::Spot& spot, const PaintedPoint& painted) const {
+    if (places_ == nullptr || is_laid(spot)) return {};
+    return places_->receiver(spot.triangle, spot.u, spot.v, 1 - painted.narrow_share(BrightPlaces::kNarrow_sr));
+  }
+  // What the chance of a path to go on from there is multiplied by.
+  double brightness(const rays::Hit& hit) const { return places_ != nullptr ? places_->brightness(hit) : 1; }
+  // A direction in which a path goes on from a surface by its lobes or toward a bright place, and what is met there.
+  struct Onward {
+    rays::Float3 direction;
+    rays::Hit hit;
+    double lobes_chance = 0;  // 0: the direction comes to nothing
+    double places_pdf = 0;    // 1/sr; to be added to the lobes' density times their chance
+  };
+  Onward onward(const rays::Spot& spot, const BrightPlaces::Receiver& receiver, const PaintedPoint& painted,
+                double choice, double u, double v) const;
   color::Rgb direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,
                           double choice) const;
   Next next_ray(const Vertex& vertex, PathProduct& path, const std::array<double, 4>& numbers) const;
@@ -192,6 +217,7 @@ class Transport {
   std::shared_ptr<const EnvironmentTable> environment_;
   const envmap::Environment* mirrored_ = nullptr;  // in its place in mirrors
   Emitters emitters_;
+  std::shared_ptr<const BrightPlaces> places_;  // see draw_toward()
   std::vector<Light> lights_;
   std::vector<SeenLamp> seen_;  // those that have no place, as every point sees them; of the others only the number
   const color::ReflectionOperator* reflection_ = nullptr;  // null: channel by channel
@@ -262,7 +288,8 @@ class PointTransport {
   rays::Float3 mesh_axis_;
   float mesh_cosine_ = -2;
   float light_chance_ = 0;  // of a direction that is drawn from the environment
-  HorizonShares horizon_;   // of such directions
+  BrightPlaces::Receiver receiver_;
+  HorizonShares horizon_;  // of such directions
   rays::Hit mirror_hit_;
   std::uint32_t mirror_samples_ = 0;  // in a batch
   // Lamps that are discs, parts of which the mesh may hide: samples tell what is hidden, or what is free where that is
