@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "base/angles.h"
 #include "brdf/coat_facets.h"
 #include "brdf/lobe_model.h"
 #include "brdf/tilted_lobes.h"
 #include "math/elementary.h"
+#include "render/internal/horizon_mix.h"
 #include "render/internal/lobe_curves.h"
 #include "render/internal/tilt_table.h"
 #include "render/internal/worn_lobes.h"
@@ -40,6 +42,13 @@ class SlotValues {
         values_(static_cast<std::size_t>(table.slots)) {
     if (effects.fresnel)
       fresnel_scale_ = 1 / brdf::fresnel_dielectric(math::cos(gloss_deg * kDegree), brdf::kCoatIndex);
+    std::vector<double> wide;
+    for (const Effects::LobeUse& use : effects.lobes)
+      if (is_shifted(effects, use.exponent)) wide.push_back(use.exponent);
+    const auto diffuse = !effects.diffuse ? HorizonMix::Diffuse::kNone
+                         : is_bare()      ? HorizonMix::Diffuse::kBare
+                                          : HorizonMix::Diffuse::kCoated;
+    if (!wide.empty()) mix_.emplace(wide, table.segments, coat_index, diffuse, effects.fresnel);
   }
 
   // `lit` is what lights meet. `node` counts the ends of the segments; a table of one segment has the view cos_o = 0 at
@@ -48,16 +57,15 @@ class SlotValues {
     std::fill(values_.begin(), values_.end(), Texel{});
     const double let_out = brdf::coat_transmission(cos_o, coat_index_);
     if (effects_.diffuse) {
-      if (mapped_ || coat_index_ == paint::kNoCoat) {
-        set(WeightTable::diffuse_slot(), kPi * paint.diffuse);
-      } else {
-        set(table_.coat_diffuse_slot(), let_out * even_ * kPi * paint.diffuse);
-      }
+      set(diffuse_slot(), (is_bare() ? kPi : let_out * even_ * kPi) * paint.diffuse);
       set(table_.light_slot(), let_out * lit.diffuse);
     }
     values_[static_cast<std::size_t>(table_.light_slot())][3] = coat_index_ * coat_index_;
+    std::vector<HorizonMix::Sent> wide;
     for (std::size_t j = 0; j < effects_.lobes.size(); ++j) {
       const Effects::LobeUse& use = effects_.lobes[j];
+      const bool is_wide = is_shifted(effects_, use.exponent);
+      if (is_wide) wide.emplace_back();
       const paint::Lobe* lobe = find_lobe(paint, use.exponent);
       if (lobe == nullptr) continue;
       const color::Rgb flake = use.directional_diffuse ? let_out * lobe->directional_diffuse : color::Rgb{};
@@ -67,18 +75,17 @@ class SlotValues {
                                      : lobe_integrals(use.exponent, cos_o, false);
       const color::Rgb by_flake = seen.cosine * flake,
                        by_gloss = (effects_.fresnel ? seen.fresnel : seen.plain) * gloss;
-      set(WeightTable::lobe_slot(j), by_flake + by_gloss);
-      if (is_shifted(effects_, use.exponent)) {
-        const double f = sum(by_flake), g = sum(by_gloss);
-        const double share = f + g > 0 ? g / (f + g) : 0;
-        const double shift = seen.cosine_shift + share * (seen.plain_shift - seen.cosine_shift);
-        values_[static_cast<std::size_t>(table_.shift_slot(j))][j % 4] = shift;
+      if (is_wide) {
+        wide.back() = {by_flake, by_gloss};
+      } else {
+        set(WeightTable::lobe_slot(j), by_flake + by_gloss);
       }
       const paint::Lobe* met = find_lobe(lit, use.exponent);
       if (met == nullptr) continue;
       if (use.directional_diffuse) set(table_.directional_diffuse_slot(j), let_out * met->directional_diffuse);
       if (use.gloss) set(table_.gloss_slot(j), fresnel_scale_ * met->gloss);
     }
+    if (mix_) set_mixed(mix_->at(wide, node));
     const paint::Lobe* mirror = effects_.mirror ? find_lobe(paint, paint::kMirrorExponent) : nullptr;
     const double seen_cos = effects_.fresnel ? cos_o : std::numbers::sqrt2 / 2;
     if (mirror != nullptr) {
@@ -93,7 +100,18 @@ class SlotValues {
   void set(int slot, const color::Rgb& value) {
     for (std::size_t c = 0; c < 3; ++c) values_[static_cast<std::size_t>(slot)][c] = value[static_cast<int>(c)];
   }
-  static double sum(const color::Rgb& c) { return std::abs(c.x) + std::abs(c.y) + std::abs(c.z); }
+  // Wide lobes come first.
+  void set_mixed(const HorizonMix::Weights& mixed) {
+    for (std::size_t j = 0; j < mixed.lobes.size(); ++j) {
+      set(WeightTable::lobe_slot(j), mixed.lobes[j]);
+      values_[static_cast<std::size_t>(table_.shift_slot(j))][j % 4] = mixed.shifts[j];
+    }
+    Texel& diffuse = values_[static_cast<std::size_t>(diffuse_slot())];
+    for (std::size_t c = 0; c < 3; ++c) diffuse[c] += mixed.diffuse[static_cast<int>(c)];
+  }
+  // Whether the diffuse part is that of the bare map.
+  bool is_bare() const { return mapped_ || coat_index_ == paint::kNoCoat; }
+  int diffuse_slot() const { return is_bare() ? WeightTable::diffuse_slot() : table_.coat_diffuse_slot(); }
 
   const WeightTable& table_;
   const Effects& effects_;
@@ -101,6 +119,7 @@ class SlotValues {
   bool mapped_;
   double even_;  // what is left of even light on its way in
   double fresnel_scale_ = 1;
+  std::optional<HorizonMix> mix_;  // of wide lobes, with the effect horizon
   std::vector<Texel> values_;
 };
 

@@ -12,7 +12,10 @@ UnitWeights::UnitWeights(const Scene& scene, const Effects& effects, std::vector
     : table_(weight_table(scene, effects)),
       exponents_(std::move(exponents)),
       coat_index_(coat_index),
-      fresnel_(effects.fresnel) {}
+      fresnel_(effects.fresnel) {
+  wide_ = static_cast<std::size_t>(
+      std::ranges::count_if(exponents_, [&](double exponent) { return is_shifted(effects, exponent); }));
+}
 
 double UnitWeights::at(std::size_t column, int slot, double cos_o, int channel) const {
   const double x = table_.segments > 1 ? std::sqrt(cos_o) * table_.segments : cos_o;
@@ -23,6 +26,31 @@ double UnitWeights::at(std::size_t column, int slot, double cos_o, int channel) 
 
 int UnitWeights::diffuse_slot() const {
   return coat_index_ == paint::kNoCoat ? WeightTable::diffuse_slot() : table_.coat_diffuse_slot();
+}
+
+void UnitWeights::add_diffuse(const color::Rgb& at_normal, double cos_o, double scale, color::Rgb* columns) const {
+  columns[0] += scale * at(0, diffuse_slot(), cos_o) * at_normal;
+}
+
+// A wide lobe is looked up in two directions: that of gloss for its own column, and that of flakes for all others.
+void UnitWeights::add_lobes(const std::vector<const envmap::CubeMap*>& maps, const color::Rgb& at_normal,
+                            const Vec3& normal, const Vec3& mirrored, double cos_o, double scale,
+                            color::Rgb* columns) const {
+  const std::size_t of_wide = 1 + 2 * wide_;
+  for (std::size_t k = 1; k < of_wide; ++k) columns[k] += scale * at(k, diffuse_slot(), cos_o) * at_normal;
+  for (std::size_t j = 0; j < exponents_.size(); ++j) {
+    const int slot = WeightTable::lobe_slot(j);
+    const std::size_t flake = 1 + 2 * j, gloss = flake + 1;
+    const auto toward = [&](std::size_t column) {
+      const double shift = at(column, table_.shift_slot(j), cos_o, static_cast<int>(j % 4));
+      return scale * envmap::bilinear(*maps[j], mirrored + shift * normal);
+    };
+    const color::Rgb by_flake = toward(flake), by_gloss = j < wide_ ? toward(gloss) : by_flake;
+    columns[gloss] += at(gloss, slot, cos_o) * by_gloss;
+    if (j >= wide_) columns[flake] += at(flake, slot, cos_o) * by_flake;
+    for (std::size_t k = 1; j < wide_ && k < of_wide; ++k)
+      if (k != gloss) columns[k] += at(k, slot, cos_o) * by_flake;
+  }
 }
 
 UnitWeights::Disc UnitWeights::disc(const Light& light) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "brdf/disc_light.h"
+#include "envmap/cube_map.h"
 #include "render/effects.h"
 
 namespace goniochrome::render {
@@ -22,6 +23,12 @@ class UnitWeights {
   // The slot that the diffuse map or, under a coat, the coat's diffuse map is read by.
   int diffuse_slot() const;
   const WeightTable& table() const { return table_; }
+
+  // Adds what the maps of an environment have: that of diffuse_slot(), and those of the exponents. Lobes are about a
+  // mirror direction, and what the diffuse map knows of them is weighed with them.
+  void add_diffuse(const color::Rgb& at_normal, double cos_o, double scale, color::Rgb* columns) const;
+  void add_lobes(const std::vector<const envmap::CubeMap*>& maps, const color::Rgb& at_normal, const Vec3& normal,
+                 const Vec3& mirrored, double cos_o, double scale, color::Rgb* columns) const;
 
   // A lamp that is a disc of some radius, with the tables of its lobes.
   struct Disc {
@@ -40,6 +47,7 @@ class UnitWeights {
 
   WeightTable table_;
   std::vector<double> exponents_;
+  std::size_t wide_ = 0;  // of them, the lobes that look by themselves
   double coat_index_ = 1;
   bool fresnel_ = false;
 };

@@ -77,6 +77,8 @@ class Shading {
     weights_ = render::UnitWeights(scene, effects, basis_.exponents, coat_index_);
     std::vector<render::Light> lights = scene.lights;
     if (env != nullptr && drawn(buffers, "spots")) take_out_spots(*env, lights);
+    if (env_ != nullptr)
+      for (const envmap::PrefilteredLobe& lobe : env_->lobes) maps_.push_back(&lobe.map);
     for (const render::Light& light : lights) {
       if (light.radius_rad > 0) {
         discs_.push_back(weights_.disc(light));
@@ -143,20 +145,14 @@ class Shading {
 
   void add_environment(const envmap::PrefilteredEnvironment& env, const View& view, double scale, Vec3* column) const {
     const std::size_t last = search_columns(basis_) - 1;
-    const render::WeightTable& table = weights_.table();
     const bool bare = coat_index_ == paint::kNoCoat;
     const double c = view.cos_o;
-    column[0] += scale * weights_.at(0, weights_.diffuse_slot(), c) *
-                 envmap::bilinear(bare ? env.diffuse.map : *coat_diffuse_, view.normal);
-    for (std::size_t k = 1; k < last; ++k) {
-      const std::size_t lobe = (k - 1) / 2;
-      const double shift = weights_.at(k, table.shift_slot(lobe), c, static_cast<int>(lobe % 4));
-      column[k] += scale * weights_.at(k, render::WeightTable::lobe_slot(lobe), c) *
-                   envmap::bilinear(env.lobes[lobe].map, view.mirrored + shift * view.normal);
-    }
+    const color::Rgb at_normal = envmap::bilinear(bare ? env.diffuse.map : *coat_diffuse_, view.normal);
+    weights_.add_diffuse(at_normal, c, scale, column);
+    weights_.add_lobes(maps_, at_normal, view.normal, view.mirrored, c, scale, column);
     if (basis_.mirror)
-      column[last] +=
-          scale * weights_.at(last, table.mirror_slot(), c) * envmap::bilinear(env.mirror.map, view.mirrored);
+      column[last] += scale * weights_.at(last, weights_.table().mirror_slot(), c) *
+                      envmap::bilinear(env.mirror.map, view.mirrored);
   }
 
   // As the engines have them: lamps take the place of what the maps have of the spots.
@@ -202,7 +198,8 @@ class Shading {
 
   const image::AovFile& buffers_;
   const envmap::PrefilteredEnvironment* env_;
-  envmap::PrefilteredEnvironment rest_;  // without bright spots
+  envmap::PrefilteredEnvironment rest_;       // without bright spots
+  std::vector<const envmap::CubeMap*> maps_;  // of the lobes of the basis
   formats::Basis basis_;
   int normal_, part_;                                     // channels
   std::vector<std::array<double, 2>> shifts_ = {{0, 0}};  // of the samples of a pixel from its center

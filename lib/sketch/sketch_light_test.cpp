@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/angles.h"
+#include "envmap/open_maps.h"
 #include "render/aov.h"
 #include "render/effects.h"
 #include "render/renderer.h"
@@ -20,9 +21,14 @@ const std::vector<double> kExponents = {2, 20, 300};
 
 envmap::PrefilteredEnvironment uneven_env() {
   envmap::PrefilteredEnvironment env = render::constant_env({1, 1, 1}, kExponents);
-  const auto smooth = [](const Vec3& d) { return Vec3{1 + 0.4 * d.y, 0.8 + 0.2 * d.x, 0.7 + 0.3 * d.z}; };
-  env.diffuse.map = env.mirror.map = render::cube_of(16, smooth);
-  for (envmap::PrefilteredLobe& lobe : env.lobes) lobe.map = render::cube_of(16, smooth);
+  // A lobe of exponent E keeps (E+1)/(E+2) of what changes with the direction to first order.
+  const auto filtered = [](double kept) {
+    return render::cube_of(16, [kept](const Vec3& d) {
+      return Vec3{1 + 0.4 * kept * d.y, 0.8 + 0.2 * kept * d.x, 0.7 + 0.3 * kept * d.z};
+    });
+  };
+  env.mirror.map = filtered(1), env.diffuse.map = filtered(2.0 / 3);
+  for (envmap::PrefilteredLobe& lobe : env.lobes) lobe.map = filtered((lobe.exponent + 1) / (lobe.exponent + 2));
   return env;
 }
 
@@ -97,12 +103,24 @@ double difference(const Drawing& drawing, const SketchLight& light, double steep
   return apart / brightest;
 }
 
+// Adds to the maps what these spots give to them.
+void light_up(envmap::PrefilteredEnvironment& env, const std::vector<envmap::Spot>& spots) {
+  std::vector<envmap::Spot> dark = spots;
+  for (envmap::Spot& spot : dark) spot.white = -1.0 * spot.white;
+  env.coat_diffuse = std::make_shared<const envmap::CubeMap>(
+      envmap::diffuse_without_spots(*envmap::coat_diffuse_map(env), true, dark));
+  env.diffuse.map = envmap::diffuse_without_spots(env.diffuse.map, false, dark);
+  for (envmap::PrefilteredLobe& lobe : env.lobes) lobe.map = envmap::without_spots(lobe.map, lobe.exponent, dark);
+  env.spots = spots;
+}
+
 // The engine's arithmetic is single precision, its cosine powers good to 1e-3 of a lobe's peak. The control: light that
 // does not know what was drawn.
 TEST(SketchLight, IsWhatTheRendererDrawsWithTheSameEffects) {
-  envmap::PrefilteredEnvironment env = uneven_env();
-  env.spots = {{normalized(Vec3{1, 0.2, 0.1}), {0.3, 0.2, 0.2}, 0.05},
-               {normalized(Vec3{-1, 1, 1}), {0.1, 0.1, 0.2}, 0.3}};
+  const envmap::PrefilteredEnvironment smooth = uneven_env();
+  envmap::PrefilteredEnvironment spotted = smooth;
+  light_up(spotted, {{normalized(Vec3{1, 0.2, 0.1}), {0.3, 0.2, 0.2}, 0.05},
+                     {normalized(Vec3{-1, 1, 1}), {0.1, 0.1, 0.2}, 0.3}});
   const std::vector<std::vector<std::string>> all = {{},
                                                      {"fresnel"},
                                                      {"horizon"},
@@ -111,6 +129,7 @@ TEST(SketchLight, IsWhatTheRendererDrawsWithTheSameEffects) {
                                                      {"horizon", "spots"},
                                                      {"fresnel", "coat", "horizon", "spots", "operator"}};
   for (const auto& drawn : all) {
+    const envmap::PrefilteredEnvironment& env = std::ranges::count(drawn, "spots") > 0 ? spotted : smooth;
     Drawing drawing = draw(env, drawn);
     const auto light = sketch_light(drawing.buffers, env);
     ASSERT_TRUE(light.ok());

@@ -17,7 +17,41 @@ namespace goniochrome::tool {
 
 namespace {
 
-void report_traced(const render::TracedLobes& traced, const render::TransportParts& file, cli::Session& session) {
+// How the open light of a transport was told.
+struct OpenBySums {
+  double maps_miss_de00 = 0;
+  bool summed = false;
+};
+
+// Points of the mesh that are evenly spread over what is seen.
+std::vector<render::VisiblePoint> seen_points(const render::Gbuffer& seen, const render::WornPaints& worn) {
+  constexpr std::size_t kMost = 256;
+  std::vector<render::VisiblePoint> all, few;
+  for (int y = 0; y < seen.height; ++y)
+    for (int x = 0; x < seen.width; ++x)
+      if (seen.part(x, y) >= 0 && !worn.is_laid(seen.part(x, y))) all.push_back(seen.point(x, y));
+  const std::size_t count = std::min(all.size(), kMost);
+  for (std::size_t i = 0; i < count; ++i) few.push_back(all[(2 * i + 1) * all.size() / (2 * count)]);
+  return few;
+}
+
+// Noise has the tolerance for itself: half of it passes for what the maps err by, else the wide lobes are summed,
+// within kFine however large the tolerance is, since coarser sums take hardly less time and tell nothing of the maps.
+OpenBySums sum_where_maps_miss(const envmap::BlockTree& tree, const render::LobeColumns& columns,
+                               const std::vector<render::VisiblePoint>& points, double white_luminance,
+                               double tolerance_de00, render::OpenLight& open) {
+  constexpr double kFine = 0.25;
+  const double most = 0.5 * tolerance_de00;
+  render::OpenLight summed = open;
+  summed.sum(tree, std::min(most, kFine));
+  OpenBySums result{render::open_difference_de00(open, summed, columns, points, white_luminance)};
+  result.summed = result.maps_miss_de00 > most;
+  if (result.summed) open = std::move(summed);
+  return result;
+}
+
+void report_traced(const render::TracedLobes& traced, const render::TransportParts& file,
+                   const std::optional<OpenBySums>& open, cli::Session& session) {
   const double per_point = file.bytes_per_point;
   session.results()["transport"] = {{"points", traced.transport.places.size()},
                                     {"columns", traced.transport.columns.count()},
@@ -30,6 +64,15 @@ void report_traced(const render::TracedLobes& traced, const render::TransportPar
                                     {"float_parts", file.float_parts},
                                     {"half_error_de00", json_number(file.half_error_de00)},
                                     {"reached", traced.reached}};
+  if (open) {
+    session.results()["transport"]["maps_miss_de00"] = json_number(open->maps_miss_de00);
+    session.results()["transport"]["summed"] = open->summed;
+    if (open->summed)
+      session.say(fmt::format(
+          "transport: maps miss {:.2f} dE00 of the open light (p95 of the gray paint of each lobe), so that wide lobes "
+          "are summed",
+          open->maps_miss_de00));
+  }
   session.say(fmt::format(
       "transport: {} points by {} columns, noise {:.2f} dE00 (p95 of the gray paint of each lobe) after {:.0f} "
       "directions a point and {:.1f} s; {:.0f} bytes a point, {} parts as floats",
@@ -103,6 +146,13 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
                                                  worn.coats));
   }
   const render::VisibleSurface surface = render::visible_surface(transport.rays(), seen.rays, seen.width, seen.height);
+  std::optional<envmap::BlockTree> tree;
+  std::optional<OpenBySums> sums;
+  if (open && environment != nullptr) {
+    tree.emplace(*environment);
+    sums = sum_where_maps_miss(*tree, columns, seen_points(surface.gbuffer, worn), white_luminance,
+                               session.common().tolerance, *open);
+  }
   render::LobeTransportRequest request;
   request.tolerance_de00 = session.common().tolerance;
   request.white_luminance = white_luminance > 0 ? white_luminance : 1;
@@ -116,7 +166,7 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
       render::traced_lobes(transport, surface, columns, worn, open ? &*open : nullptr, request);
   TracedView view{std::make_shared<const render::Gbuffer>(surface.gbuffer), render::transport_parts(traced.transport),
                   traced.reached};
-  report_traced(traced, view.file, session);
+  report_traced(traced, view.file, sums, session);
   return view;
 }
 

@@ -17,13 +17,6 @@ namespace {
 
 constexpr int kPolar = 24, kAround = 8, kAroundCoat = 16;
 
-// The part of the ring at angle t from the mirror direction that is above the horizon, as half its azimuth: n.w =
-// a + b cos p with a = cos t cos_o, b = sin t sin_o.
-double half_arc(double a, double b) {
-  if (a >= b) return kPi;
-  return a <= -b ? 0 : math::acos(-a / b);
-}
-
 // The first moment of what is gathered: along r, and along e, the direction across r toward the normal.
 struct Moment {
   double along = 0, across = 0;
@@ -36,6 +29,11 @@ struct Moment {
 };
 
 }  // namespace
+
+double half_arc(double a, double b) {
+  if (a >= b) return kPi;
+  return a <= -b ? 0 : math::acos(-a / b);
+}
 
 // The lobe's own measure is made even by u = cos^(E+1) t, du = -(E+1) cos^E t sin t dt:
 //

@@ -8,6 +8,10 @@
 
 namespace goniochrome::render {
 
+// The part of the ring at angle t from the mirror direction that is above the horizon, as half its azimuth: n.w = a + b
+// cos p with a = cos t cos_o, b = sin t sin_o.
+double half_arc(double a, double b);
+
 // Integrals over the directions w of a lobe cos^E of the angle to the mirror direction of the view, for the viewer at
 // cos_o = n.wo. `cosine` is under a coat of that index: each direction counts with what the coat lets in from there;
 // what it lets out to the viewer is not counted. With `horizon`, over the hemisphere above the surface, each direction

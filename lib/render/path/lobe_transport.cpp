@@ -46,6 +46,7 @@ class Tracing {
     t.direct.assign(points * t.floats(), 0), t.bounced.assign(points * t.floats(), 0);
     t.classes.assign(points * worn.groups.classes() * 3, 0);
     t.noise_de00.assign(points, 0);
+    if (open != nullptr) open_light_.assign(points * t.floats(), 0);
     variance_.assign(points * columns.count(), 0);
     batches_.assign(points, 0), sequences_.assign(points, 0), needed_.assign(points, 0);
     for (std::size_t k = 0; k < columns.count(); ++k) nominal_.push_back(nominal_weight(columns, k));
@@ -134,9 +135,19 @@ class Tracing {
     const Gbuffer& g = surface_.gbuffer;
     const rays::Spot spot = spot_at(transport_.rays(), surface_, x, y);
     const LobePoint point = point_at(i);
+    // Looked up or summed in the first round, and kept for the others.
     std::vector<color::Rgb> open(t.columns.count());
-    if (open_ != nullptr && !t.worn.is_laid(spot.part))
-      open_->at(rays::vec3(spot.shading), g.to_viewer(x, y), spot.part, open.data());
+    if (open_ != nullptr && !t.worn.is_laid(spot.part)) {
+      float* kept = &open_light_[i * t.floats()];
+      if (round_ == 0) {
+        open_->at(rays::vec3(spot.shading), g.to_viewer(x, y), spot.part, open.data());
+        for (const color::Rgb& light : open)
+          for (int c = 0; c < 3; ++c) *kept++ = static_cast<float>(light[c]);
+      } else {
+        for (color::Rgb& light : open)
+          for (int c = 0; c < 3; ++c) light[c] = *kept++;
+      }
+    }
     const int sequences = std::min(batches, kSequences);
     int of_each = 1;  // batches
     while (of_each * sequences < batches) of_each *= 2;
@@ -248,6 +259,7 @@ class Tracing {
   Stopwatch clock_;
   TracedLobes result_;
   std::vector<std::int32_t> number_;  // of the point of each pixel, or -1
+  std::vector<float> open_light_;     // point, column, channel
   std::vector<float> variance_;       // of one batch: point, column; dE00^2
   std::vector<int> batches_, sequences_;
   std::vector<double> needed_, nominal_;

@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "brdf/lobe_model.h"
+#include "render/internal/seen.h"
 #include "render/spots.h"
 
 namespace goniochrome::render {
@@ -42,6 +44,7 @@ Result<OpenLight> OpenLight::create(const envmap::PrefilteredEnvironment& env, c
       return input_error("the environment has no lobe of exponent {}, which a transport of this basis needs",
                          shortest(exponent));
     open.lobes_.push_back(envmap::open_map(env, *lobe, env.spots.size()));
+    open.maps_.push_back(open.lobes_.back().get());
   }
   if (env.diffuse.map.size == 0 || env.mirror.map.size == 0)
     return input_error(
@@ -66,39 +69,63 @@ Result<OpenLight> OpenLight::create(const envmap::PrefilteredEnvironment& env, c
   return open;
 }
 
+void OpenLight::sum(const envmap::BlockTree& tree, double tolerance_de00) {
+  summed_.emplace(tree, tolerance_de00, columns_);
+}
+
 // A brushed surface gathers the mean over its tilted normals, as the engines have it.
+std::vector<LobeAxis> OpenLight::axes(const Vec3& n, const Vec3& to_viewer, std::size_t part) const {
+  if (part >= tilts_.size() || tilts_[part].size() <= 1) return {{2 * dot(n, to_viewer) * n - to_viewer, 1}};
+  const double level2 = n.x * n.x + n.z * n.z;
+  const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
+  std::vector<LobeAxis> axes;
+  for (const brdf::Tilt& tilt : tilts_[part]) {
+    const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
+    const Vec3 r = 2 * dot(m, to_viewer) * m - to_viewer;
+    if (dot(m, to_viewer) > 0 && dot(r, n) > 0) axes.push_back({r, tilt.weight});
+  }
+  return axes;
+}
+
 void OpenLight::at(const Vec3& n, const Vec3& to_viewer, int part, color::Rgb* light) const {
   const double cos_o = std::clamp(dot(n, to_viewer), 0.0, 1.0);
   const auto p = static_cast<std::size_t>(part);
-  const UnitWeights& weights = weights_.at(p < coats_.size() ? coats_[p] : paint::kNoCoat);
-  const WeightTable& table = weights.table();
+  const double coat_index = p < coats_.size() ? coats_[p] : paint::kNoCoat;
+  const UnitWeights& weights = weights_.at(coat_index);
   std::fill_n(light, columns_.count(), color::Rgb{});
-  const bool bare = &weights == &weights_.at(paint::kNoCoat);
-  light[0] = weights.at(0, weights.diffuse_slot(), cos_o) * envmap::bilinear(bare ? *diffuse_ : *coat_diffuse_, n);
+  const color::Rgb at_normal = envmap::bilinear(coat_index == paint::kNoCoat ? *diffuse_ : *coat_diffuse_, n);
+  weights.add_diffuse(at_normal, cos_o, 1, light);
   for (const UnitWeights::Disc& spot : spots_) weights.add_diffuse(spot, n, cos_o, 1, light);
-  const auto add_lobes = [&](const Vec3& mirrored, double share) {
-    for (std::size_t k = 1; k < columns_.mirror(); ++k) {
-      const std::size_t lobe = (k - 1) / 2;
-      const double shift = weights.at(k, table.shift_slot(lobe), cos_o, static_cast<int>(lobe % 4));
-      light[k] += share * weights.at(k, WeightTable::lobe_slot(lobe), cos_o) *
-                  envmap::bilinear(*lobes_[lobe], mirrored + shift * n);
-    }
-    for (const UnitWeights::Disc& spot : spots_) weights.add_lobes(spot, n, to_viewer, mirrored, share, light);
-  };
-  const Vec3 mirrored = 2 * dot(n, to_viewer) * n - to_viewer;
-  if (p >= tilts_.size() || tilts_[p].size() <= 1) {
-    add_lobes(mirrored, 1);
-  } else {
-    const double level2 = n.x * n.x + n.z * n.z;
-    const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
-    for (const brdf::Tilt& tilt : tilts_[p]) {
-      const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
-      const Vec3 r = 2 * dot(m, to_viewer) * m - to_viewer;
-      if (dot(m, to_viewer) > 0 && dot(r, n) > 0) add_lobes(r, tilt.weight);
-    }
+  const std::vector<LobeAxis> about = axes(n, to_viewer, p);
+  for (const LobeAxis& axis : about) {
+    weights.add_lobes(maps_, at_normal, n, axis.direction, cos_o, axis.share, light);
+    for (const UnitWeights::Disc& spot : spots_)
+      weights.add_lobes(spot, n, to_viewer, axis.direction, axis.share, light);
   }
+  if (summed_) summed_->at(n, to_viewer, about, coat_index, light);
   const std::size_t last = columns_.mirror();
-  light[last] = weights.at(last, table.mirror_slot(), cos_o) * envmap::bilinear(env_->mirror.map, mirrored);
+  light[last] = weights.at(last, weights.table().mirror_slot(), cos_o) *
+                envmap::bilinear(env_->mirror.map, 2 * dot(n, to_viewer) * n - to_viewer);
+}
+
+// Each column in the gray paint that its noise is judged by.
+double open_difference_de00(const OpenLight& a, const OpenLight& b, const LobeColumns& columns,
+                            const std::vector<VisiblePoint>& points, double white_luminance) {
+  std::vector<double> worst(points.size());
+  parallel_for(points.size(), 4, [&](std::size_t begin, std::size_t end) {
+    std::vector<color::Rgb> of_a(columns.count()), of_b(columns.count());
+    for (std::size_t i = begin; i < end; ++i) {
+      const VisiblePoint& point = points[i];
+      a.at(point.normal, point.to_viewer, point.part, of_a.data());
+      b.at(point.normal, point.to_viewer, point.part, of_b.data());
+      for (std::size_t k = 0; k < columns.count(); ++k) {
+        const double weight = nominal_weight(columns, k), gray = columns.is_gloss(k) ? kNominalGray / kPi : 0;
+        worst[i] = std::max(worst[i], seen_difference(weight * of_a[k] + gray * of_a[0],
+                                                      weight * of_b[k] + gray * of_b[0], white_luminance));
+      }
+    }
+  });
+  return percentile_95(std::move(worst));
 }
 
 }  // namespace goniochrome::render

@@ -1,14 +1,18 @@
 // What each lobe of a basis gathers of an environment where no surface is in the way, by the environment's prefiltered
-// maps and its bright spots. goniochrome-theory(7), RENDERING and TRANSPORT.
+// maps and its bright spots or, where these err by too much, by sums over the environment. goniochrome-theory(7),
+// RENDERING and TRANSPORT.
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "base/result.h"
 #include "envmap/open_maps.h"
 #include "render/effects.h"
+#include "render/gbuffer.h"
 #include "render/path/lobe_columns.h"
+#include "render/path/summed_light.h"
 #include "render/unit_weights.h"
 
 namespace goniochrome::render {
@@ -21,20 +25,32 @@ class OpenLight {
   static Result<OpenLight> create(const envmap::PrefilteredEnvironment& env, const LobeColumns& columns,
                                   std::vector<std::vector<brdf::Tilt>> tilts, std::vector<double> coats = {});
 
+  // From now on the diffuse part and the wide lobes are summed over the environment itself, within a color difference
+  // at 95 of 100 points. The tree must outlive it.
+  void sum(const envmap::BlockTree& tree, double tolerance_de00);
+
   // Writes the light of each column with weight 1 at a point seen from there; both vectors unit, on one side.
   void at(const Vec3& normal, const Vec3& to_viewer, int part, color::Rgb* light) const;
 
  private:
   OpenLight() = default;
+  std::vector<LobeAxis> axes(const Vec3& normal, const Vec3& to_viewer, std::size_t part) const;
 
   const envmap::PrefilteredEnvironment* env_ = nullptr;
   LobeColumns columns_;
-  std::vector<envmap::MapPointer> lobes_;  // of the columns' exponents; these and the next two without bright spots
+  std::vector<envmap::MapPointer> lobes_;     // of the columns' exponents; these and the next two without bright spots
+  std::vector<const envmap::CubeMap*> maps_;  // the same
   std::vector<std::vector<brdf::Tilt>> tilts_;
   std::vector<double> coats_;
   envmap::MapPointer diffuse_, coat_diffuse_;  // the second where any part has a coat
   std::map<double, UnitWeights> weights_;      // by coat
   std::vector<UnitWeights::Disc> spots_;
+  std::optional<SummedLight> summed_;
 };
+
+// How far both are apart at these points: the 95th percentile of the largest color difference over the columns, in the
+// gray paint of nominal_weight().
+double open_difference_de00(const OpenLight& a, const OpenLight& b, const LobeColumns& columns,
+                            const std::vector<VisiblePoint>& points, double white_luminance);
 
 }  // namespace goniochrome::render
