@@ -84,6 +84,37 @@ TEST(ShadedGround, ShowsWhatPathsShow) {
   EXPECT_GT(percentile_95(control), 10) << "the control: the floor in the open";
 }
 
+// Light that the mesh sends is compared with that of 8192 directions at the same nodes: it errs by less than the
+// tolerance. What is left is the error of independent directions, of which 16 times as many have a quarter; a third is
+// allowed for the error of the 8192. Control: the 256 directions of the default tolerance, at a quarter of it.
+TEST(ShadedGround, LightThatTheMeshSendsErrsLessTheMoreDirectionsItHas) {
+  const Stage stage;
+  const auto shaded_by = [&](int directions) {
+    Transport shaded = *stage.transport;
+    shaded.shade_ground({.cell = 1.0 / 40, .bounced_directions = directions}, 2);
+    return shaded;
+  };
+  const Transport truth = shaded_by(1 << 13);
+  const auto error_with = [&](int directions) {
+    const Transport shaded = shaded_by(directions);
+    std::vector<double> errors;
+    for (int i = 0; i < 400; ++i) {
+      const double turn = 2.399963 * i, radius = 1.2 + 0.01 * i;
+      const Vec3 at{radius * std::sin(turn), 0, 1.6 * radius * std::cos(turn)};
+      const rays::Float3 from = truth.rays().local(at + Vec3{0, 0.05, 0}), down{0, -1, 0};
+      const rays::Spot spot = truth.rays().spot(truth.rays().closest(from, down), from, down);
+      errors.push_back(seen_difference(shaded.shaded_ground(spot).sum(), truth.shaded_ground(spot).sum(), 1));
+    }
+    return percentile_95(errors);
+  };
+  constexpr double kCoarse = 2, kFine = 0.125;
+  const double coarse = error_with(ground_directions(kCoarse)), fine = error_with(ground_directions(kFine));
+  EXPECT_LT(coarse, kCoarse);
+  EXPECT_LT(fine, kFine);
+  EXPECT_LT(fine, coarse / 3);
+  EXPECT_GT(error_with(256), kFine) << "the control must fail";
+}
+
 // More directions cost more time and err less. What is left is compared with a sum over 16384 directions.
 TEST(ShadedGround, ErrsLessTheMoreDirectionsItHas) {
   const Stage stage;
