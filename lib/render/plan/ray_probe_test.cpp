@@ -14,6 +14,7 @@
 #include "render/exact.h"
 #include "render/internal/seen.h"
 #include "render/path/scenes_for_paths_for_test.h"
+#include "render/plan/spread_pixels.h"
 
 namespace goniochrome::render {
 namespace {
@@ -102,18 +103,15 @@ struct Seen {
 Seen seen_of(const PathStage& stage, const Camera& camera, int width, int height) {
   Seen seen;
   const VisibleSurface surface = visible_surface(stage.transport->rays(), *rays(camera, width, height), width, height);
+  const auto gbuffer = std::make_shared<const Gbuffer>(surface.gbuffer);
   std::vector<SurfacePoint> exact;
   ExactModel model;
   model.fresnel = true;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const Gbuffer& g = surface.gbuffer;
-      if (g.part(x, y) < 0) continue;
-      seen.points.push_back({spot_at(stage.transport->rays(), surface, x, y), rays::float3(g.to_viewer(x, y))});
-      seen.to_viewer.push_back(g.to_viewer(x, y));
-      exact.push_back(
-          {g.normal(x, y), g.to_viewer(x, y), &stage.scene.paints[static_cast<std::size_t>(g.part(x, y))], &model});
-    }
+  for (const auto& [g, x, y] : spread_pixels({gbuffer}, gbuffer->data.size())) {
+    seen.points.push_back({spot_at(stage.transport->rays(), surface, x, y), rays::float3(g->to_viewer(x, y))});
+    seen.to_viewer.push_back(g->to_viewer(x, y));
+    exact.push_back(
+        {g->normal(x, y), g->to_viewer(x, y), &stage.scene.paints[static_cast<std::size_t>(g->part(x, y))], &model});
   }
   seen.base = reference_radiance(exact, stage.environment ? &*stage.environment : nullptr, stage.scene.lights);
   return seen;
@@ -172,7 +170,7 @@ ProbeSetting setting_of(const PathStage& stage, const Seen& seen) {
 
 // Points that are spread over the picture tell what holds for all of it: within a factor of 1.3, or 0.1 dE00. The truth
 // takes 4,096 samples at every point: with a quarter of them its own noise moves a percentile by 0.05.
-void expect_predicted(const Shape& shape) {
+void expect_predicted(const Shape& shape, int batches = 256) {
   const int width = 80, height = 60;
   for (const NamedLight& light : five_lights()) {
     PathStage stage(shape.mesh, {silver()});
@@ -184,7 +182,7 @@ void expect_predicted(const Shape& shape) {
     const Stopwatch clock;
     const RayProbe probe = RayProbe::traced(setting_of(stage, all), all.points, all.base);
     const double ms = 1000 * clock.elapsed_s();
-    const std::array<double, 3> truth = true_worth(stage, all, 1, 256);
+    const std::array<double, 3> truth = true_worth(stage, all, 1, batches);
     const RayEffects without[] = {{}, kNoSelf, kNoBounce};
     const char* names[] = {"shadow", "self", "bounce"};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -200,8 +198,10 @@ void expect_predicted(const Shape& shape) {
   }
 }
 
+// In the dent few paths meet the lamps of a studio: the worth of its shadow is 0.41 by 4,096 samples at every point and
+// 0.43 by 16,384.
 TEST(RayProbe, PredictsTheWorthOfADent) {
-  expect_predicted({"dented ball", dented_mesh()});
+  expect_predicted({"dented ball", dented_mesh()}, 1024);
 }
 
 TEST(RayProbe, PredictsTheWorthOfABoxOnAPlate) {
