@@ -222,8 +222,11 @@ Result<Mesh> mesh_from_polygons(Polygons polygons, const std::string& path) {
   std::vector<std::size_t> count_of(polygons.parts.size());
   const std::vector<std::uint32_t> order = ordered_by_part(triangles, count_of);
   for (std::size_t part = 0, first = 0; part < count_of.size(); first += count_of[part++]) {
-    if (count_of[part] > 0)
+    if (count_of[part] > 0) {
       mesh.parts.push_back({polygons.parts[part].name, polygons.parts[part].material, first, count_of[part]});
+    } else {
+      mesh.repairs.parts_dropped.push_back(polygons.parts[part].name);
+    }
   }
   const std::size_t guess = polygons.positions.size();
   mesh.positions.reserve(guess), mesh.normals.reserve(guess), mesh.triangles.reserve(triangles.size());

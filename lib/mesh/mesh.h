@@ -30,6 +30,7 @@ struct Mesh {
     int degenerate_dropped = 0;  // triangles without area
     int polygons_split = 0;      // faces of more than three corners
     int triangles_turned = 0;    // wound against the file's own normals
+    std::vector<std::string> parts_dropped = {};  // names of parts none of whose faces has an area
   } repairs;
 
   std::vector<std::array<float, 2>> texture = {};  // u v of each vertex, v up; empty where the file has none

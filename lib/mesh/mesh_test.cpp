@@ -148,6 +148,15 @@ TEST_F(MeshFiles, DegenerateTrianglesAreDroppedAndCounted) {
   EXPECT_EQ(mesh->repairs.degenerate_dropped, 2);
   EXPECT_EQ(mesh->triangles.size(), 2u);
   EXPECT_NEAR(area(*mesh), 1, 1e-15);
+  EXPECT_TRUE(mesh->repairs.parts_dropped.empty());
+}
+
+TEST_F(MeshFiles, PartsWithoutAnAreaAreNamed) {
+  const auto mesh = obj(kSquare + "o flat\nf 1 1 2\no body\nf 1 2 3\nf 1 3 3\n");
+  ASSERT_TRUE(mesh.ok());
+  ASSERT_EQ(mesh->parts.size(), 1u);
+  EXPECT_EQ(mesh->parts[0].name, "body");
+  EXPECT_EQ(mesh->repairs.parts_dropped, std::vector<std::string>{"flat"});
 }
 
 TEST_F(MeshFiles, TrianglesAreTurnedToTheirNormals) {

@@ -160,6 +160,8 @@ Result<std::vector<std::size_t>> parts_of(const mesh::Mesh& mesh, const std::str
     const bool is_new = std::find(materials.begin(), materials.end(), part.material) == materials.end();
     if (is_new && !part.material.empty()) materials.push_back(part.material);
   }
+  if (std::ranges::find(mesh.repairs.parts_dropped, word) != mesh.repairs.parts_dropped.end())
+    return input_error("the part \"{}\" has no area: each of its faces is a line or a point, and none is drawn", word);
   std::vector<std::string> both = parts;
   both.insert(both.end(), materials.begin(), materials.end());
   return usage_error("the mesh has no part or material \"{}\": {}its parts are {}{}", word, nearest_of(word, both),
