@@ -26,10 +26,10 @@ struct Mesh {
   std::vector<MeshPart> parts;
 
   struct Repairs {
-    int normals_made = 0;        // vertices without a normal, which got one
-    int degenerate_dropped = 0;  // triangles without area
-    int polygons_split = 0;      // faces of more than three corners
-    int triangles_turned = 0;    // wound against the file's own normals
+    int normals_made = 0;                         // vertices without a normal, which got one
+    int degenerate_dropped = 0;                   // triangles without area
+    int polygons_split = 0;                       // faces of more than three corners
+    int triangles_turned = 0;                     // wound against the file's own normals
     std::vector<std::string> parts_dropped = {};  // names of parts none of whose faces has an area
   } repairs;
 

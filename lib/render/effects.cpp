@@ -70,9 +70,9 @@ class SlotValues {
       if (lobe == nullptr) continue;
       const color::Rgb flake = use.directional_diffuse ? let_out * lobe->directional_diffuse : color::Rgb{};
       const color::Rgb gloss = use.gloss ? fresnel_scale_ * lobe->gloss : color::Rgb{};
-      const LobeIntegrals seen = table_.segments > 1
-                                     ? lobe_curve(use.exponent, table_.segments, effects_.horizon, coat_index_)[node]
-                                     : lobe_integrals(use.exponent, cos_o, false);
+      const LobeIntegrals seen =
+          table_.segments > 1 ? lobe_curve(use.exponent, table_.segments, effects_.horizon, coat_index_)->at(node)
+                              : lobe_integrals(use.exponent, cos_o, false);
       const color::Rgb by_flake = seen.cosine * flake,
                        by_gloss = (effects_.fresnel ? seen.fresnel : seen.plain) * gloss;
       if (is_wide) {

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <mutex>
 #include <tuple>
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "math/elementary.h"
 #include "math/quadrature.h"
-#include "render/internal/lobe_curves.h"
+#include "render/internal/kept_values.h"
 
 namespace goniochrome::render {
 
@@ -131,22 +129,6 @@ void solve(std::vector<double>& m, std::size_t n, std::vector<color::Rgb>& b) {
   }
 }
 
-template <class Key, class Value>
-class Kept {
- public:
-  template <class Make>
-  std::shared_ptr<const Value> get(const Key& key, const Make& make) {
-    const std::scoped_lock lock(mutex_);
-    std::shared_ptr<const Value>& value = values_[key];
-    if (value == nullptr) value = std::make_shared<const Value>(make());
-    return value;
-  }
-
- private:
-  std::mutex mutex_;
-  std::map<Key, std::shared_ptr<const Value>> values_;
-};
-
 }  // namespace
 
 // A function of the angle alone, by its cosine.
@@ -182,7 +164,7 @@ struct HorizonMix::Curve {
 
 // Of what two maps hold, by the angle between the directions in which they are looked up.
 std::shared_ptr<const HorizonMix::Zonal> HorizonMix::covariance(const Kernel& a, const Kernel& b) {
-  static Kept<std::pair<Kernel, Kernel>, Zonal> kept;
+  static KeptValues<std::pair<Kernel, Kernel>, Zonal> kept;
   return kept.get({a, b}, [&] {
     const Spectrum of_a = spectrum_of(a.exponent, a.coat_index), of_b = spectrum_of(b.exponent, b.coat_index);
     Spectrum both;
@@ -192,7 +174,7 @@ std::shared_ptr<const HorizonMix::Zonal> HorizonMix::covariance(const Kernel& a,
 }
 
 std::shared_ptr<const HorizonMix::Curve> HorizonMix::curve(double exponent, std::size_t map) const {
-  static Kept<std::tuple<double, double, int, bool, Kernel>, Curve> kept;
+  static KeptValues<std::tuple<double, double, int, bool, Kernel>, Curve> kept;
   const bool is_lobe = map < exponents_.size();
   const Kernel& kernel = maps_[map];
   return kept.get({exponent, coat_index_, segments_, is_lobe, kernel}, [&] {
@@ -204,7 +186,7 @@ std::shared_ptr<const HorizonMix::Curve> HorizonMix::curve(double exponent, std:
       const double x = static_cast<double>(node) / segments_, cos_o = x * x;
       std::array toward{normal(cos_o), normal(cos_o)};
       if (is_lobe) {
-        const LobeIntegrals& looks = lobe_curve(kernel.exponent, segments_, true, coat_index_)[node];
+        const LobeIntegrals& looks = (*looks_[map])[static_cast<std::size_t>(node)];
         toward = {shifted(cos_o, looks.cosine_shift), shifted(cos_o, looks.plain_shift)};
       }
       Curve::Node& sums = result.nodes.emplace_back();
@@ -229,7 +211,10 @@ std::shared_ptr<const HorizonMix::Curve> HorizonMix::curve(double exponent, std:
 HorizonMix::HorizonMix(const std::vector<double>& exponents, int segments, double coat_index, Diffuse diffuse,
                        bool fresnel)
     : exponents_(exponents), segments_(segments), coat_index_(coat_index), fresnel_(fresnel) {
-  for (const double exponent : exponents) maps_.push_back({exponent, paint::kNoCoat});
+  for (const double exponent : exponents) {
+    maps_.push_back({exponent, paint::kNoCoat});
+    looks_.push_back(lobe_curve(exponent, segments, true, coat_index));
+  }
   if (diffuse != Diffuse::kNone) maps_.push_back({1, diffuse == Diffuse::kCoated ? brdf::kCoatIndex : paint::kNoCoat});
   for (std::size_t j = 0; j < maps_.size(); ++j)
     for (std::size_t k = 0; k <= j; ++k) covariances_.push_back(covariance(maps_[j], maps_[k]));
@@ -250,7 +235,7 @@ HorizonMix::Weights HorizonMix::at(const std::vector<Sent>& sent, int node) cons
   for (std::size_t j = 0; j < lobes; ++j) {
     const double flake = sum(sent[j].flake), gloss = sum(sent[j].gloss);
     if (flake + gloss > 0) shares[j] = gloss / (flake + gloss);
-    const LobeIntegrals& looks = lobe_curve(exponents_[j], segments_, true, coat_index_)[node];
+    const LobeIntegrals& looks = (*looks_[j])[static_cast<std::size_t>(node)];
     weights.shifts.push_back(looks.cosine_shift + shares[j] * (looks.plain_shift - looks.cosine_shift));
     toward[j] = shifted(cos_o, weights.shifts.back());
     all += sent[j].flake + sent[j].gloss;

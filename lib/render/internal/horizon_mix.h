@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "color/color.h"
+#include "render/internal/lobe_curves.h"
 
 namespace goniochrome::render {
 
@@ -49,6 +50,7 @@ class HorizonMix {
   int segments_;
   double coat_index_;
   bool fresnel_;
+  std::vector<std::shared_ptr<const LobeCurve>> looks_;    // of the lobes
   std::vector<Kernel> maps_;                               // those of the lobes, then the diffuse one
   std::vector<std::shared_ptr<const Zonal>> covariances_;  // of two maps
   std::vector<std::shared_ptr<const Curve>> curves_;       // of a lobe and a map

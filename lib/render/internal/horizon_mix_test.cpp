@@ -83,7 +83,7 @@ Errors errors(const Light& light, std::size_t lobe, bool gloss, HorizonMix::Diff
     const double cos_o = std::pow(static_cast<double>(node) / kSegments, 2);
     const Vec3 r = cos_o * n + std::sqrt(1 - cos_o * cos_o) * across;
     const LobeIntegrals whole =
-        lobe_curve(kExponents[lobe], kSegments, true, coat_index)[static_cast<std::size_t>(node)];
+        lobe_curve(kExponents[lobe], kSegments, true, coat_index)->at(static_cast<std::size_t>(node));
     const double truth = light.mean([&](const Vec3& w) {
       const double c = dot(n, w);
       if (c <= 0) return 0.0;
@@ -145,7 +145,7 @@ TEST(HorizonMix, ALoneLobeIsItsOwnMap) {
   const HorizonMix mix({6}, kSegments, paint::kNoCoat, HorizonMix::Diffuse::kNone, false);
   const HorizonMix::Weights weights = mix.at({{{0.5, 0.2, 0.1}, {}}}, 20);
   EXPECT_EQ(weights.lobes[0], (color::Rgb{0.5, 0.2, 0.1}));
-  EXPECT_EQ(weights.shifts[0], lobe_curve(6, kSegments, true, paint::kNoCoat)[20].cosine_shift);
+  EXPECT_EQ(weights.shifts[0], lobe_curve(6, kSegments, true, paint::kNoCoat)->at(20).cosine_shift);
 }
 
 }  // namespace

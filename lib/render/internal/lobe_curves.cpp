@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <mutex>
 #include <tuple>
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "math/elementary.h"
 #include "math/quadrature.h"
+#include "render/internal/kept_values.h"
 
 namespace goniochrome::render {
 
@@ -84,16 +83,16 @@ LobeIntegrals lobe_integrals(double exponent, double cos_o, bool horizon, double
           plain.shift(cos_o, sin_o)};
 }
 
-const std::vector<LobeIntegrals>& lobe_curve(double exponent, int segments, bool horizon, double coat_index) {
-  static std::map<std::tuple<double, int, bool, double>, std::vector<LobeIntegrals>> curves;
-  static std::mutex mutex;
-  const std::scoped_lock lock(mutex);
-  std::vector<LobeIntegrals>& curve = curves[{exponent, segments, horizon, coat_index}];
-  for (int i = static_cast<int>(curve.size()); i <= segments; ++i) {
-    const double x = static_cast<double>(i) / segments;
-    curve.push_back(lobe_integrals(exponent, x * x, horizon, coat_index));
-  }
-  return curve;
+std::shared_ptr<const LobeCurve> lobe_curve(double exponent, int segments, bool horizon, double coat_index) {
+  static KeptValues<std::tuple<double, int, bool, double>, LobeCurve> kept;
+  return kept.get({exponent, segments, horizon, coat_index}, [&] {
+    LobeCurve curve;
+    for (int i = 0; i <= segments; ++i) {
+      const double x = static_cast<double>(i) / segments;
+      curve.push_back(lobe_integrals(exponent, x * x, horizon, coat_index));
+    }
+    return curve;
+  });
 }
 
 }  // namespace goniochrome::render

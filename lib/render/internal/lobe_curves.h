@@ -2,6 +2,7 @@
 // the view alone. These are its integrals. goniochrome-theory(7), RENDERING, Horizon.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "paint/paint.h"
@@ -26,8 +27,9 @@ struct LobeIntegrals {
 };
 LobeIntegrals lobe_integrals(double exponent, double cos_o, bool horizon, double coat_index = paint::kNoCoat);
 
-// The same at cos_o = (i/segments)^2, i = 0..segments. Computed once in a process.
-const std::vector<LobeIntegrals>& lobe_curve(double exponent, int segments, bool horizon,
-                                             double coat_index = paint::kNoCoat);
+// The same at cos_o = (i/segments)^2, i = 0..segments. Kept for the next time.
+using LobeCurve = std::vector<LobeIntegrals>;
+std::shared_ptr<const LobeCurve> lobe_curve(double exponent, int segments, bool horizon,
+                                            double coat_index = paint::kNoCoat);
 
 }  // namespace goniochrome::render

@@ -24,9 +24,8 @@ std::shared_ptr<const Gbuffer> picture(int width, int height, const std::functio
 TEST(SpreadPixels, ShowTheMeshAndAreDifferent) {
   const auto disc = picture(200, 90, [](int x, int y) { return std::hypot(x - 100, y - 45) < 40; });
   const auto part = picture(33, 17, [](int x, int) { return x > 20; });
-  const auto visible = static_cast<std::size_t>(std::ranges::count_if(std::views::iota(0, 200 * 90), [&](int i) {
-    return disc->data[4 * static_cast<std::size_t>(i) + 3] != 0;
-  }));
+  const auto visible = static_cast<std::size_t>(std::ranges::count_if(
+      std::views::iota(0, 200 * 90), [&](int i) { return disc->data[4 * static_cast<std::size_t>(i) + 3] != 0; }));
   const std::size_t all = visible + 12 * 17;
   for (const std::size_t count : {std::size_t{1}, std::size_t{500}, all, all + 1000}) {
     const std::vector<ProbePixel> pixels = spread_pixels({disc, part}, count);

@@ -153,7 +153,8 @@ void SbrdfShader::make_maps(const envmap::PrefilteredEnvironment& env, const Mip
 void SbrdfShader::make_horizon(double low, double high) {
   for (double exponent = std::max(low, 0.1);; exponent *= kHorizonStep) {
     horizon_exponents_.push_back(exponent);
-    for (const LobeIntegrals& lobe : lobe_curve(exponent, kTextureHorizonSegments, true)) {
+    const auto curve = lobe_curve(exponent, kTextureHorizonSegments, true);
+    for (const LobeIntegrals& lobe : *curve) {
       horizon_.push_back(static_cast<float>(lobe.cosine * (exponent + 1) / (2 * kPi)));
       horizon_.push_back(static_cast<float>(lobe.cosine_shift));
     }

@@ -1,0 +1,33 @@
+// Values that take long to compute, kept for the next time that they are asked for.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+
+namespace goniochrome::render {
+
+// Keeps at most kMost values and then begins anew, so that a stream of paints with ever other coats needs constant
+// memory. Values that are in use stay valid. For any number of threads.
+template <class Key, class Value>
+class KeptValues {
+ public:
+  static constexpr std::size_t kMost = 1024;
+
+  // The value of this key, which `make()` returns if it is not known. `make` must not ask the same keeper.
+  template <class Make>
+  std::shared_ptr<const Value> get(const Key& key, const Make& make) {
+    const std::scoped_lock lock(mutex_);
+    const auto found = values_.find(key);
+    if (found != values_.end()) return found->second;
+    if (values_.size() == kMost) values_.clear();
+    return values_[key] = std::make_shared<const Value>(make());
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<Key, std::shared_ptr<const Value>> values_;
+};
+
+}  // namespace goniochrome::render
