@@ -179,9 +179,7 @@ Result<std::vector<TexelSamples>> Job::probes() const {
   return probes;
 }
 
-// A photograph whose values are everywhere the same multiple of what the others predict has the wrong exposure. A
-// highlight that the lobes do not reach is a multiple too, but one that differs from texel to texel by more than
-// photographs do otherwise.
+// A photograph whose values are everywhere the same multiple of what the others predict has the wrong exposure.
 void Job::find_exposures(const std::vector<TexelSamples>& probes, MapFit& out) {
   std::vector<std::vector<std::vector<double>>> logs(probes.size());
   std::vector<double> spreads(probes.size());
@@ -201,7 +199,6 @@ void Job::find_exposures(const std::vector<TexelSamples>& probes, MapFit& out) {
     }
   });
   constexpr double kWrong = 0.17, kEnough = 8;  // a quarter of a stop; texels that see the photograph
-  std::vector<double> unevenness(table_.photos.size(), -1.0), known;
   for (std::size_t k = 0; k < table_.photos.size(); ++k) {
     std::vector<double> all;
     for (const auto& probe : logs)
@@ -210,12 +207,7 @@ void Job::find_exposures(const std::vector<TexelSamples>& probes, MapFit& out) {
     const double middle = math::median(all);
     for (double& value : all) value = std::abs(value - middle);
     out.photos[k].exposure_factor = std::exp(middle);
-    known.push_back(unevenness[k] = math::median(all));
-  }
-  const double even = known.empty() ? 0 : std::max(0.03, 2 * math::median(known));
-  for (std::size_t k = 0; k < table_.photos.size(); ++k) {
-    const double off = std::abs(std::log(out.photos[k].exposure_factor));
-    out.photos[k].wrong_exposure = unevenness[k] >= 0 && off > kWrong && unevenness[k] < std::min(0.5 * off, even);
+    out.photos[k].wrong_exposure = std::abs(middle) > kWrong && math::median(all) < 0.5 * std::abs(middle);
   }
   if (!spreads.empty()) chosen_.good_spread = 1.25 * math::median(spreads);
 }
