@@ -117,8 +117,9 @@ void warn(const capture::PhotoTable& table, const capture::MapFit& fit, const Op
     const std::string right = shortest(std::round(1e4 * table.photos[k].exposure * photo.exposure_factor) / 1e4);
     session.warn(
         fmt::format("{}:{}: {} is {:.2f} times as bright as the other photographs predict: its exposure should "
-                    "be {}; {}",
+                    "be {}{}; {}",
                     table.path, table.photos[k].line, table.photos[k].image, photo.exposure_factor, right,
+                    photo.exposure_factor > 1 ? ", unless it shows a highlight that these lobes do not reach" : "",
                     options.mend_exposures ? "it was corrected" : "it was left out"));
   }
   if (fit.uncertain > 0)
