@@ -23,7 +23,9 @@ std::size_t SeenBand::bytes() const {
 
 void SeenPixels::begin(std::uint64_t layer, const Effects& effects, double scale, std::size_t count) {
   const Key key = {layer, effects.texture, effects.texture_filter, effects.texture_lobes, scale};
-  if (key == key_ && bands_.size() == count) return;
+  again_ = key == key_ && bands_.size() == count && !forgotten_;
+  forgotten_ = false;
+  if (again_) return;
   key_ = key;
   bands_.resize(count), known_.assign(count, 0);
 }

@@ -31,8 +31,9 @@ struct SeenBand {
   std::size_t bytes() const;
 };
 
-// What the pixels of a view show of textures. It is kept as long as the view stands still, as far as there is room:
-// then a picture in other light takes no more than the shading of the texels.
+// What the pixels of a view show of textures. From the second picture of a view on it is kept, as far as there is room,
+// so that a picture in other light takes no more than the shading of the texels. Most views are drawn once, and keeping
+// what they show would take time and memory for nothing.
 class SeenPixels {
  public:
   // To be asked for bands of a view, of which there are so many; forgets them if they were made for anything else.
@@ -43,13 +44,14 @@ class SeenPixels {
     if (known_[number] == 0) see(bands_[number]), known_[number] = 1;
     return bands_[number];
   }
-  // A band was shaded. It is kept if all would fit in the bytes that there are for them if they were as large.
+  // A band was shaded. Of a view that is seen again it is kept if all would fit in the bytes that there are for them if
+  // they were as large.
   void done(std::size_t number) {
-    if (bands_[number].bytes() * bands_.size() > most_bytes_) bands_[number] = {}, known_[number] = 0;
+    if (!again_ || bands_[number].bytes() * bands_.size() > most_bytes_) bands_[number] = {}, known_[number] = 0;
   }
   void set_most_bytes(std::size_t most) { most_bytes_ = most; }
   // The view is another one.
-  void forget() { known_.assign(known_.size(), 0); }
+  void forget() { forgotten_ = true; }
 
  private:
   struct Key {
@@ -63,6 +65,7 @@ class SeenPixels {
   std::vector<SeenBand> bands_;
   std::vector<char> known_;
   std::size_t most_bytes_ = 0;
+  bool again_ = false, forgotten_ = false;
 };
 
 }  // namespace goniochrome::render

@@ -211,10 +211,21 @@ std::span<TexelShare> SeenTexels::of(const TexturePlace& place, double scale, co
                step(probes.high, place.down[0], probes.down, width), probes, width);
   const Side y((1 - static_cast<double>(place.v)) * height, -step(probes.wide, place.across[1], probes.across, height),
                -step(probes.high, place.down[1], probes.down, height), probes, height);
+  seen_.clear();
+  // A single probe meets each of the texels around it once.
+  if (probes.count() == 1 && width > 1 && height > 1) {
+    const auto [column, s] = x.before(0, 0);
+    const auto [row, t] = y.before(0, 0);
+    const std::uint32_t upper = y.texel(row) * static_cast<std::uint32_t>(width),
+                        lower = y.texel(row + 1) * static_cast<std::uint32_t>(width), left = x.texel(column),
+                        right = x.texel(column + 1);
+    seen_.push_back({upper + left, (1 - s) * (1 - t)}), seen_.push_back({upper + right, s * (1 - t)});
+    seen_.push_back({lower + left, (1 - s) * t}), seen_.push_back({lower + right, s * t});
+    return seen_;
+  }
   constexpr std::size_t kMostSlots = 1 << 16;
   const std::size_t window = static_cast<std::size_t>(x.window()) * static_cast<std::size_t>(y.window());
   const bool sorts = window > kMostSlots;
-  seen_.clear();
   slots_.assign(sorts ? 0 : window, 0);
   const auto add = [&](int column, int row, float share) {
     if (share == 0) return;
