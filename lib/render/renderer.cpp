@@ -53,21 +53,6 @@ void trace_gbuffer(const rays::RayScene& scene, const Rays& rays, int width, int
   }
 }
 
-// 0 is the center of the pixel; then come the samples.
-std::array<double, 2> shift_of(int sample, int samples) {
-  if (sample == 0) return {0, 0};
-  return sample_shifts(samples)[static_cast<std::size_t>(sample - 1)];
-}
-
-// From a sample to the middle of the part of its pixel that it stands for, one of as many squares as there are samples.
-std::array<double, 2> to_middle_of_part(int sample, int samples) {
-  std::array<double, 2> result = shift_of(sample, samples);
-  const double squares = std::round(std::sqrt(samples));
-  for (double& shift : result)
-    shift = sample == 0 ? 0 : (std::floor((shift + 0.5) * squares) + 0.5) / squares - 0.5 - shift;
-  return result;
-}
-
 }  // namespace
 
 struct OpenGl {

@@ -387,8 +387,7 @@ void add_report(cli::ToolSpec& spec) {
        "pixels above which nothing rises, the time, and whether the noise is within the tolerance"},
       {"transport: maps_miss_de00, summed",
        "with --aov transport: how far the open light of the maps is off (p95 of the gray paint of each lobe), and "
-       "whether "
-       "wide lobes were therefore summed"},
+       "whether wide lobes were therefore summed"},
       {"transport: float_parts, half_error_de00", "parts written as floats, and the error of those in halves"},
       {"transport: load_ms, scale_ms, bounced_de00_p95, trace_again",
        "with --gbuffer: time to lay out the light and to scale what bounced, the error of that, and whether it is "

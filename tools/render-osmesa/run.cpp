@@ -313,11 +313,10 @@ void Shooting::tell_noise() {
   results["path_s"] = noise.time_s;
   results["bounces"] = options_.bounces;
   if (noise.places_gain > 1)
-    session_.explain(
-        fmt::format("paths go on toward bright places of the surface as well as by the lobes of paints: what a "
-                    "direction brings to a "
-                    "matt surface then has a second moment that is predicted to be {:.1f} times smaller\n",
-                    noise.places_gain));
+    session_.explain(fmt::format(
+        "paths are also aimed at bright places of the surface, such as a wall beside a lamp: the mean square "
+        "of what a direction brings to a matt surface is predicted to be {:.1f} times smaller\n",
+        noise.places_gain));
   session_.say(fmt::format(
       "noise: dE00 p95 {:.2f}, mean {:.2f} after {:.0f} samples a pixel in {:.1f} s{}", noise.de00_p95, noise.de00_mean,
       noise.samples_mean, noise.time_s,

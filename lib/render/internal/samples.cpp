@@ -1,5 +1,7 @@
 #include "render/internal/samples.h"
 
+#include <cmath>
+
 #include "render/glints.h"
 #include "render/surface_layer.h"
 
@@ -66,6 +68,19 @@ Result<void> take_samples(Sight& sight, Engine& engine, const Scene& scene, cons
   }
   picture.channel_names = {"R", "G", "B", "A"};
   return {};
+}
+
+std::array<double, 2> shift_of(int sample, int samples) {
+  if (sample == 0) return {0, 0};
+  return sample_shifts(samples)[static_cast<std::size_t>(sample - 1)];
+}
+
+std::array<double, 2> to_middle_of_part(int sample, int samples) {
+  std::array<double, 2> result = shift_of(sample, samples);
+  const double squares = std::round(std::sqrt(samples));
+  for (double& shift : result)
+    shift = sample == 0 ? 0 : (std::floor((shift + 0.5) * squares) + 0.5) / squares - 0.5 - shift;
+  return result;
 }
 
 }  // namespace goniochrome::render
