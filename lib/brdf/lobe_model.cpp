@@ -46,12 +46,12 @@ namespace {
 
 constexpr double kInstrumentLight_deg = 45;
 
+}  // namespace
+
 double instrument_view_deg(double aspecular_deg) {
   constexpr double kSteepestView_deg = 65;
   return std::min(std::abs(kInstrumentLight_deg - aspecular_deg), kSteepestView_deg);
 }
-
-}  // namespace
 
 double coat_passages_to_reading(double coat_index, double aspecular_deg, double cos_i, double cos_o) {
   if (coat_index == paint::kNoCoat) return 1;

@@ -62,6 +62,7 @@ color::Rgb brdf_by_angles(const paint::LobeFit& fit, double aspecular_rad, doubl
 color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg, double light_deg, double view_deg);
 // What a multi-angle instrument reads: light at 45 deg, the viewer in the plane of incidence. Beyond 110 deg, where no
 // instrument reads, the viewer is taken to stay at 65 deg from the normal.
+double instrument_view_deg(double aspecular_deg);
 color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg);
 
 }  // namespace goniochrome::brdf

@@ -88,10 +88,33 @@ bool is_exact(const FoundPaint& found) {
   return found.search.cost <= kExactCost;
 }
 
+// The angle of the viewer from the normal at each pixel of the buffers.
+class ViewAngles {
+ public:
+  explicit ViewAngles(const image::AovFile& buffers) : buffers_(buffers) {
+    const auto normal = buffers.channel("normal.X");
+    if (normal.ok() && buffers.has_rays) normal_ = *normal;
+  }
+
+  bool are_known() const { return normal_ >= 0; }
+
+  double at(std::uint32_t place) const {
+    const int width = buffers_.image.width;
+    const int x = static_cast<int>(place) % width, y = static_cast<int>(place) / width;
+    const float* n = buffers_.image.pixel(x, y) + normal_;
+    const Vec3 viewer = buffers_.to_viewer(x, y), normal{n[0], n[1], n[2]};
+    return std::min(90.0, std::atan2(length(cross(normal, viewer)), dot(normal, viewer)) / kDegree);
+  }
+
+ private:
+  const image::AovFile& buffers_;
+  int normal_ = -1;  // the first of three channels
+};
+
 // What the buffers and the picture have at each pixel, relative to the light.
 class Seen {
  public:
-  explicit Seen(const SketchInput& input) : input_(input), image_(input.buffers->image) {
+  explicit Seen(const SketchInput& input) : input_(input), image_(input.buffers->image), views_(*input.buffers) {
     aspecular_ = *input.buffers->channel("aspecular");
     lambert_ = *input.buffers->channel("lambert");
     const auto normal = input.buffers->channel("normal.X");
@@ -107,8 +130,11 @@ class Seen {
     const color::Rgb light = scale_ * edited_light(input_, place);
     return {pixel[aspecular_],
             pixel[lambert_] * coat_share(place, pixel),
-            {static_cast<float>(light.x), static_cast<float>(light.y), static_cast<float>(light.z)}};
+            {static_cast<float>(light.x), static_cast<float>(light.y), static_cast<float>(light.z)},
+            views_.are_known() ? static_cast<float>(views_.at(place)) : 0};
   }
+
+  bool knows_views() const { return views_.are_known(); }
 
   // Of the coat that the picture was drawn with.
   double coat_index() const { return normal_ < 0 ? paint::kNoCoat : brdf::kCoatIndex; }
@@ -128,6 +154,7 @@ class Seen {
 
   const SketchInput& input_;
   const image::Image& image_;
+  const ViewAngles views_;
   int aspecular_ = 0, lambert_ = 0;
   int normal_ = -1;  // the first of three channels, where the base is seen through a coat
   color::Rgb scale_{1, 1, 1};
@@ -189,9 +216,22 @@ void take_gloss(const Highlight& highlight, const std::function<bool(double)>& a
   if (highlight.by_contrast) take(*highlight.by_contrast, "contrast");
 }
 
-// The same cells as light on lobes: about `most` of them, of all angles and cosines alike.
+// What a lamp without extent lights of each part of the model, relative to white; its mirror image is a point.
+void lamp_columns(double aspecular_deg, double cos_i, const formats::Basis& basis, double coat_index, Vec3* columns) {
+  const auto light = [](double value) { return value * kPi * Vec3{1, 1, 1}; };
+  const double base = cos_i * instrument_passages(aspecular_deg, coat_index);
+  *columns++ = light(base);
+  for (const double exponent : basis.exponents) {
+    const double power = lobe_at(aspecular_deg, exponent);
+    *columns++ = light(base * power), *columns++ = light(power);
+  }
+  *columns = {};
+}
+
+// The same cells as light on lobes: about `most` of them, of all angles and cosines alike. `by_view`: the cells know
+// the angles of the viewer.
 SearchSamples search_samples(const std::vector<SketchCell>& cells, const formats::Basis& basis, double coat_index,
-                             bool display, std::size_t most) {
+                             bool by_view, bool display, std::size_t most) {
   const std::size_t step = sketch_step(cells.size(), most);
   SearchSamples samples;
   samples.columns = search_columns(basis);
@@ -199,15 +239,11 @@ SearchSamples search_samples(const std::vector<SketchCell>& cells, const formats
   samples.display = display;
   for (std::size_t i = 0; i < cells.size(); i += step) {
     const SketchCell& cell = cells[i];
-    const auto light = [&](double value) { samples.light.push_back(value * kPi * Vec3{1, 1, 1}); };
-    const double base = cell.cos_i * instrument_passages(cell.aspecular_deg, coat_index);
-    light(base);
-    for (const double exponent : basis.exponents) {
-      const double power = lobe_at(cell.aspecular_deg, exponent);
-      light(base * power), light(power);
-    }
-    light(0);  // the mirror image of a lamp is a point
+    samples.light.resize(samples.light.size() + samples.columns);
+    lamp_columns(cell.aspecular_deg, cell.cos_i, basis, coat_index,
+                 &samples.light[samples.seen.size() * samples.columns]);
     samples.seen.push_back(cell.seen);
+    if (by_view) samples.view_deg.push_back(cell.view_deg);
     samples.importance.push_back(cell_importance(cell));
   }
   return samples;
@@ -262,10 +298,10 @@ SketchCurve curve_of(const FoundPaint& found, const formats::Basis& basis, doubl
   SketchCurve curve;
   curve.coat_index = coat_index;
   curve.exponents = basis.exponents;
-  curve.diffuse = kPi * found.weights.front();
+  curve.diffuse = kPi * found.weights.all.front();
   for (std::size_t j = 0; j < basis.exponents.size(); ++j) {
-    curve.flake.push_back(kPi * found.weights[1 + 2 * j]);
-    curve.glare.push_back(kPi * found.weights[2 + 2 * j]);
+    curve.flake.push_back(kPi * found.weights.all[1 + 2 * j]);
+    curve.glare.push_back(kPi * found.weights.all[2 + 2 * j]);
   }
   return curve;
 }
@@ -295,7 +331,11 @@ SearchSamples samples_of(const SketchInput& input, const std::vector<std::uint32
     for (std::size_t i = begin; i < end; ++i) light.shade(places[i], &samples.light[i * samples.columns]);
   });
   const double scale = 1 / input.buffers->white_luminance;
-  for (const std::uint32_t place : places) samples.seen.push_back(scale * edited_light(input, place));
+  const ViewAngles views(*input.buffers);
+  for (const std::uint32_t place : places) {
+    samples.seen.push_back(scale * edited_light(input, place));
+    if (views.are_known()) samples.view_deg.push_back(views.at(place));
+  }
   return samples;
 }
 
@@ -347,15 +387,20 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
 
   // How the curve that was found is judged, and what is answered where none will do.
   SketchCurve curve;
+  const PaintWeights* by_view = nullptr;  // in place of the curve
+  std::vector<Vec3> columns(search_columns(basis));
   const auto difference = [&](std::size_t i) {
     const SketchSample& s = samples[i];
-    const color::Rgb shown =
-        static_cast<double>(s.cos_i) * curve.reflectance(s.aspecular_deg) + curve.gloss(s.aspecular_deg);
+    color::Rgb shown = static_cast<double>(s.cos_i) * curve.reflectance(s.aspecular_deg) + curve.gloss(s.aspecular_deg);
+    if (by_view != nullptr) {
+      lamp_columns(s.aspecular_deg, s.cos_i, basis, seen.coat_index(), columns.data());
+      shown = shown_light(columns.data(), by_view->mixed_at(s.view_deg), {});
+    }
     return color::delta_e_76(paint_lab({s.seen[0], s.seen[1], s.seen[2]}), paint_lab(as_displayed(shown, input)));
   };
   const auto judge = [&] { judge_sketch(samples.size(), with_differences, difference, fit); };
   const auto give_up = [&](const std::string& problem) {
-    curve = {}, curve.diffuse = mean_diffuse(cells);
+    curve = {}, curve.diffuse = mean_diffuse(cells), by_view = nullptr;
     fall_back(curve.diffuse, problem, fit);
     judge();
     return fit;
@@ -367,11 +412,12 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   const bool display = !input.edited->scene_linear;
   const double coat = seen.coat_index();
   const SearchFitters fitters(basis, coat);
-  const LobeSearch first(fitters, search_samples(cells, basis, coat, display, kFirstCells));
-  const LobeSearch search(fitters, search_samples(cells, basis, coat, display, kSearchCells));
+  const LobeSearch first(fitters, search_samples(cells, basis, coat, seen.knows_views(), display, kFirstCells));
+  const LobeSearch search(fitters, search_samples(cells, basis, coat, seen.knows_views(), display, kSearchCells));
   const FoundPaint found = search.find_plain(first);
   const bool as_good = is_as_good(found.search.cost, better.cost, !is_seen(cells, kFace_deg));
   curve = as_good ? curve_of(found, basis, coat) : better.curve;
+  if (as_good && !found.weights.views_deg.empty()) by_view = &found.weights;
   judge();
   if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));
   std::string problem;
@@ -444,9 +490,9 @@ void take_gloss_range(const LobeSearch& search, const FoundPaint& found, SketchF
 // at the steeper incidence of a highlight, so that it is sought from the brightness there.
 double gloss_of_index(const SketchInput& input, const SketchPixels& pixels, const FoundPaint& found, double gloss) {
   const double usual = *brdf::smooth_gloss(60, brdf::kCoatIndex), found_gloss = found.search.values.back();
-  const double base = found_gloss - found.weights.back().y * usual;  // what is read of diffuse and flake light
+  const double base = found_gloss - found.weights.all.back().y * usual;  // what is read of diffuse and flake light
   const double brighter = (gloss - base) / usual;
-  if (!(found.weights.back().y > 1 && brighter > 1) || pixels.used.empty()) return gloss;
+  if (!(found.weights.all.back().y > 1 && brighter > 1) || pixels.used.empty()) return gloss;
   const image::AovFile& buffers = *input.buffers;
   const int aspecular = *buffers.channel("aspecular"), normal = *buffers.channel("normal.X");
   const auto pixel = [&](std::uint32_t place) {
@@ -485,20 +531,23 @@ SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const S
   const LobeSearch search(fitters, lamps != nullptr ? samples_of(input, lamps->answer, light, lamps->answer.size())
                                                     : samples_of(input, pixels.used, light, kMostPixels));
   SketchFit fit;
-  std::vector<color::Rgb> weights(search_columns(light.basis));
-  std::vector<Vec3> columns(weights.size());
+  PaintWeights weights{std::vector<color::Rgb>(search_columns(light.basis))};
+  std::vector<Vec3> columns(weights.all.size());
+  const ViewAngles views(*input.buffers);
   const double scale = 1 / input.buffers->white_luminance;
   const auto difference = [&](std::size_t i) {
     light.shade(pixels.used[i], columns.data());
     const color::Rgb seen = scale * edited_light(input, pixels.used[i]);
-    return color::delta_e_76(paint_lab(seen),
-                             paint_lab(as_displayed(shown_light(columns.data(), weights, light.reflection), input)));
+    const color::Rgb shown =
+        views.are_known() ? shown_light(columns.data(), weights.mixed_at(views.at(pixels.used[i])), light.reflection)
+                          : shown_light(columns.data(), weights.all, light.reflection);
+    return color::delta_e_76(paint_lab(seen), paint_lab(as_displayed(shown, input)));
   };
   const auto judge = [&] { judge_sketch(pixels.used.size(), with_differences, difference, fit); };
   const auto give_up = [&](const std::string& reason) {
     const color::Rgb matt = search.matt();
     fall_back(matt, reason, fit);
-    weights.assign(weights.size(), color::Rgb{}), weights[0] = (1 / kPi) * matt;
+    weights = {std::vector<color::Rgb>(weights.all.size())}, weights.all[0] = (1 / kPi) * matt;
     judge();
     return fit;
   };
@@ -521,7 +570,7 @@ SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const S
   } else {
     take_found(found, fit);
   }
-  weights = fit.weights = found.weights;
+  weights = found.weights, fit.weights = found.weights.all;
   take_shown(
       light.basis, weights, light.coat_index,
       [&](double angle) {

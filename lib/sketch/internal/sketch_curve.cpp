@@ -49,11 +49,12 @@ SketchCell robust_mean(const SketchSample* samples, std::size_t count) {
     }
     if (!inside) continue;
     cell.count += 1, cell.aspecular_deg += s.aspecular_deg, cell.cos_i += s.cos_i;
+    cell.view_deg += s.view_deg;
     for (int c = 0; c < 3; ++c) cell.seen[c] += s.seen[c];
   }
   if (cell.count == 0) return cell;
   const double share = 1 / cell.count;
-  cell.aspecular_deg *= share, cell.cos_i *= share, cell.seen = share * cell.seen;
+  cell.aspecular_deg *= share, cell.cos_i *= share, cell.seen = share * cell.seen, cell.view_deg *= share;
   cell.count *= static_cast<double>(step);
   return cell;
 }
@@ -220,9 +221,9 @@ color::Rgb SketchCurve::reflectance(double aspecular_deg) const {
 }
 
 double instrument_passages(double aspecular_deg, double coat_index) {
-  constexpr double kLight_deg = 45, kSteepest_deg = 65;
-  const double view_deg = std::min(std::abs(kLight_deg - aspecular_deg), kSteepest_deg);
-  return brdf::coat_passages(coat_index, std::cos(kLight_deg * kDegree), std::cos(view_deg * kDegree));
+  constexpr double kLight_deg = 45;
+  return brdf::coat_passages(coat_index, std::cos(kLight_deg * kDegree),
+                             std::cos(brdf::instrument_view_deg(aspecular_deg) * kDegree));
 }
 
 color::Rgb SketchCurve::gloss(double aspecular_deg) const {

@@ -13,7 +13,8 @@ namespace goniochrome::sketch {
 // What many pixels of nearly the same angles show, without the outliers among them.
 struct SketchCell {
   double aspecular_deg = 0, cos_i = 0, count = 0;
-  color::Rgb seen;  // light relative to a white that faces the lamp
+  color::Rgb seen;      // light relative to a white that faces the lamp
+  double view_deg = 0;  // mean angle of the viewer from the normal
 };
 
 // How much a cell counts, 0..1: the root of its number of samples over 64, at most 1, so that the few pixels near
@@ -27,6 +28,7 @@ std::size_t sketch_step(std::size_t count, std::size_t most);
 struct SketchSample {
   float aspecular_deg, cos_i;
   std::array<float, 3> seen;
+  float view_deg = 0;  // of the viewer from the normal
 };
 
 // Sorts samples into cells of a quarter of a degree and a twelfth of the cosine.

@@ -71,10 +71,32 @@ color::Rgb shown_light(const Vec3* columns, const std::vector<color::Rgb>& weigh
   return sum;
 }
 
-void differences(const SearchSamples& samples, const std::vector<color::Lab>& target,
-                 const std::vector<color::Rgb>& weights, std::vector<double>& out) {
+PaintWeights::Mixed PaintWeights::mixed_at(double view_deg) const {
+  if (views_deg.empty()) return {&all, &all, 0};
+  const auto above = std::ranges::upper_bound(views_deg, view_deg);
+  if (above == views_deg.begin()) return {&at_views.front(), &at_views.front(), 0};
+  if (above == views_deg.end()) return {&at_views.back(), &at_views.back(), 0};
+  const std::vector<color::Rgb>* high = &at_views[static_cast<std::size_t>(above - views_deg.begin())];
+  return {high - 1, high, (view_deg - above[-1]) / (above[0] - above[-1])};
+}
+
+// Light is linear in the weights.
+color::Rgb shown_light(const Vec3* columns, const PaintWeights::Mixed& weights,
+                       const std::optional<color::ReflectionOperator>& reflection) {
+  const color::Rgb low = shown_light(columns, *weights.low, reflection);
+  return weights.share > 0 ? low + weights.share * (shown_light(columns, *weights.high, reflection) - low) : low;
+}
+
+color::Lab SearchSamples::shown_by(const PaintWeights& weights, std::size_t sample) const {
+  const Vec3* light_there = columns_of(sample);
+  return shown(view_deg.empty() ? shown_light(light_there, weights.all, reflection)
+                                : shown_light(light_there, weights.mixed_at(view_deg[sample]), reflection));
+}
+
+void differences(const SearchSamples& samples, const std::vector<color::Lab>& target, const PaintWeights& weights,
+                 std::vector<double>& out) {
   for (std::size_t i = 0; i < target.size(); ++i) {
-    const color::Lab lab = samples.shown(shown_light(samples.columns_of(i), weights, samples.reflection));
+    const color::Lab lab = samples.shown_by(weights, i);
     out[3 * i] = lab.L - target[i].L, out[3 * i + 1] = lab.a - target[i].a, out[3 * i + 2] = lab.b - target[i].b;
   }
 }
@@ -98,6 +120,17 @@ std::vector<color::Rgb> weights_of(const formats::Basis& basis, const paint::Lob
       if (lobe.exponent == basis.exponents[j]) w[1 + 2 * j] = lobe.directional_diffuse, w[2 + 2 * j] = lobe.gloss;
   }
   return w;
+}
+
+PaintWeights paint_weights(const formats::Basis& basis, const paint::LobeFit& lobes) {
+  PaintWeights weights{weights_of(basis, lobes)};
+  for (const paint::ViewLobes& view : lobes.views) {
+    paint::LobeFit one;
+    one.diffuse = view.diffuse, one.lobes = view.lobes;
+    weights.views_deg.push_back(view.view_deg);
+    weights.at_views.push_back(weights_of(basis, one));
+  }
+  return weights;
 }
 
 bool give_gloss(const brdf::GlossTable& table, double gloss_60_gu, paint::LobeFit& lobes) {
@@ -144,7 +177,7 @@ void FreeLobeFit::set_gloss_of(double gloss, std::vector<color::Rgb>& weights) c
 }
 
 double FreeLobeFit::cost(const std::vector<color::Rgb>& weights, std::vector<double>& r) const {
-  differences(samples_, target_, weights, r);
+  differences(samples_, target_, {weights}, r);
   return robust_cost(r, samples_.importance);
 }
 

@@ -18,12 +18,29 @@ double lobe_at(double aspecular_deg, double exponent);
 // Lab of a working-space color relative to white 1, as paints carry it.
 color::Lab paint_lab(const color::Rgb& rgb);
 
+// The weights of a paint found, in the order of the columns of SearchSamples: those for all views, and, where the paint
+// has others for several views (paint::LobeFit::views), those at each of these angles of the viewer.
+struct PaintWeights {
+  std::vector<color::Rgb> all;
+  std::vector<double> views_deg = {};  // ascending
+  std::vector<std::vector<color::Rgb>> at_views = {};
+
+  // Those that hold for a viewer at that angle from the normal are `low` and `share` of the way from there to `high`:
+  // linear between two views, constant beyond the ends.
+  struct Mixed {
+    const std::vector<color::Rgb>*low, *high;
+    double share;
+  };
+  Mixed mixed_at(double view_deg) const;
+};
+
 // What was seen, and the light of each part of the lobe model with weight 1 (1/sr) there, all relative to white.
 struct SearchSamples {
   std::size_t columns = 0;  // K_D, then K_DD and K_G of every lobe of the basis, then the mirror
   std::vector<Vec3> light;  // `columns` for each sample
   std::vector<color::Rgb> seen;
-  std::vector<double> importance;                            // of each sample; more than 0
+  std::vector<double> importance;     // of each sample; more than 0
+  std::vector<double> view_deg = {};  // of each sample's viewer from the normal; none: weights for all views are shown
   std::optional<color::ReflectionOperator> reflection = {};  // as that of a SketchLight
   double coat_index = paint::kNoCoat;                        // of the coat through which K_D and K_DD are lit
   bool display = false;  // seen on an sRGB display, whose gamut is then part of the picture
@@ -32,15 +49,19 @@ struct SearchSamples {
   const Vec3* columns_of(std::size_t sample) const { return &light[sample * columns]; }
   // The light of a sample as the picture could show it.
   color::Lab shown(const color::Rgb& rgb) const;
+  // What the paint shows there.
+  color::Lab shown_by(const PaintWeights& weights, std::size_t sample) const;
 };
 
 // The light that weights make of one sample's columns.
 color::Rgb shown_light(const Vec3* columns, const std::vector<color::Rgb>& weights,
                        const std::optional<color::ReflectionOperator>& reflection);
+color::Rgb shown_light(const Vec3* columns, const PaintWeights::Mixed& weights,
+                       const std::optional<color::ReflectionOperator>& reflection);
 
 // Writes, for each sample, the difference in Lab of what these weights show from `target`.
-void differences(const SearchSamples& samples, const std::vector<color::Lab>& target,
-                 const std::vector<color::Rgb>& weights, std::vector<double>& out);
+void differences(const SearchSamples& samples, const std::vector<color::Lab>& target, const PaintWeights& weights,
+                 std::vector<double>& out);
 
 // Gives lobes the gloss of a meter's reading as paints get it: a reading above what their coat reads asks for a coat of
 // a higher index, which changes how the light is shared between the sharpest lobe and the mirror. The result is as it
@@ -72,8 +93,8 @@ class FreeLobeFit {
   // The best from that start, with its gloss.
   FreeLobes refined(const FreeLobes& start) const;
 
-  // The same, and the best gloss about that of the start where the mirror has a share of it. Elsewhere gloss is known to
-  // no better than a part of a unit, and a flat search would only drift.
+  // The same, and the best gloss about that of the start where the mirror has a share of it. Elsewhere gloss is known
+  // to no better than a part of a unit, and a flat search would only drift.
   FreeLobes sharpened(const FreeLobes& start) const;
 
  private:
@@ -101,5 +122,8 @@ class FreeLobeFit {
 // Columns as lobes under such a coat, the mirror last, and back.
 paint::LobeFit lobes_of(const formats::Basis& basis, const std::vector<color::Rgb>& weights, double coat_index);
 std::vector<color::Rgb> weights_of(const formats::Basis& basis, const paint::LobeFit& lobes);
+
+// The weights of such lobes, and those of their views.
+PaintWeights paint_weights(const formats::Basis& basis, const paint::LobeFit& lobes);
 
 }  // namespace goniochrome::sketch

@@ -20,6 +20,7 @@ constexpr std::size_t kByAppearance = 8, kByThree = 10;  // numbers of a paint f
 // A paint of fewer numbers is believed where its cost is at most this part more than that of free lobes, whose gain may
 // be the noise's, or where it explains the picture to RMS 0.01 dE.
 constexpr double kSameCost = 1.05, kExactCost = 1e-4;
+constexpr double kLessCost = 0.999;     // of a paint of fewer numbers, for more: two numbers gain less from noise
 constexpr double kSameCostBy = 0.005;   // and of two values of gloss that the samples cannot tell
 constexpr double kRoundingCost = 1e-6;  // RMS 0.001 dE
 constexpr double kHopelessCost = 1.5;   // of enough, in a part of the samples
@@ -27,12 +28,6 @@ constexpr double kHopelessCost = 1.5;   // of enough, in a part of the samples
 // bring.
 constexpr double kFoundCost = 1e-3, kGoodCost = 0.02, kNoisyCost = 0.2, kRowsGain = 0.8;
 constexpr std::size_t kAtOnce = 2;  // starts; fixed, so that no result depends on the number of threads
-
-fit::FitOptions by(fit::FitMethod method, double coat_index) {
-  fit::FitOptions options;
-  options.method = method, options.coat_index = coat_index;
-  return options;
-}
 
 std::span<const double> angles_of(std::size_t numbers) {
   if (numbers == kByThree) return kThree_deg;
@@ -118,22 +113,56 @@ const char* FoundPaint::model() const {
   return search.values.size() == kByThree ? "search with free rows" : "search with free lobes";
 }
 
+namespace {
+
+SearchFitters::Ways ways_of(const formats::Basis& basis, double coat_index, const std::vector<double>& views_deg) {
+  const auto by = [&](fit::FitMethod method) {
+    fit::FitOptions options;
+    options.method = method, options.coat_index = coat_index, options.views_deg = views_deg;
+    return fit::PaintFitter(basis, options);
+  };
+  return {by(fit::FitMethod::kL2), by(fit::FitMethod::kL1)};
+}
+
+// Those of the instrument at three readings, ascending.
+std::vector<double> three_views_deg() {
+  std::vector<double> views;
+  for (const double angle_deg : kThree_deg) views.push_back(brdf::instrument_view_deg(angle_deg));
+  std::ranges::sort(views);
+  return views;
+}
+
+}  // namespace
+
 SearchFitters::SearchFitters(const formats::Basis& basis, double coat_index)
-    : gloss(basis.exponents),
-      smooth(basis, by(fit::FitMethod::kL2, coat_index)),
-      exact(basis, by(fit::FitMethod::kL1, coat_index)) {}
+    : gloss(basis.exponents), ways(ways_of(basis, coat_index, {})) {
+  if (coat_index != paint::kNoCoat) by_view = ways_of(basis, coat_index, three_views_deg());
+}
 
 LobeSearch::LobeSearch(const SearchFitters& fitters, SearchSamples samples)
-    : fitters_(fitters), basis_(fitters.smooth.basis()), samples_(std::move(samples)) {
+    : fitters_(fitters), basis_(fitters.ways.smooth.basis()), samples_(std::move(samples)) {
   for (const color::Rgb& seen : samples_.seen) target_.push_back(paint_lab(seen));
 }
 
-std::vector<color::Rgb> LobeSearch::weights(const fit::PaintFitter& fitter, const std::vector<double>& values) const {
+PaintWeights LobeSearch::weights(const fit::PaintFitter& fitter, const std::vector<double>& values) const {
   const auto fit = fitter.fit(paint_of(values));
-  return fit.ok() ? weights_of(basis_, fit->lobes) : std::vector<color::Rgb>(samples_.columns);
+  return fit.ok() ? paint_weights(basis_, fit->lobes) : PaintWeights{std::vector<color::Rgb>(samples_.columns)};
 }
 
-double LobeSearch::cost(const std::vector<color::Rgb>& w) const {
+// The weights of a paint found with another gloss, which is the same at all views; none where they cannot have it.
+PaintWeights LobeSearch::with_gloss(const FoundPaint& found, double gloss) const {
+  paint::LobeFit lobes = lobes_of(basis_, found.weights.all, samples_.coat_index);
+  if (!give_gloss(fitters_.gloss, gloss, lobes)) return {};
+  PaintWeights other = found.weights;
+  other.all = weights_of(basis_, lobes);
+  for (std::vector<color::Rgb>& view : other.at_views) {
+    for (std::size_t k = 2; k < view.size(); k += 2) view[k] = other.all[k];
+    view.back() = other.all.back();
+  }
+  return other;
+}
+
+double LobeSearch::cost(const PaintWeights& w) const {
   std::vector<double> r(3 * target_.size());
   differences(samples_, target_, w, r);
   return robust_cost(r, samples_.importance);
@@ -161,30 +190,25 @@ std::vector<FreeLobes> LobeSearch::with_other_gloss(const FoundPaint& found) con
   const double gloss = found.search.values.back();
   std::vector<double> readings = {gloss, 0, 10, 20, 40, 60, 75, 85, 92, 100};
   std::vector<FreeLobes> tried(readings.size());
-  parallel_for(tried.size(), 1, [&](std::size_t i, std::size_t) {
-    tried[i] = fit.refined({found.weights, readings[i], 0});
-  });
+  parallel_for(tried.size(), 1,
+               [&](std::size_t i, std::size_t) { tried[i] = fit.refined({found.weights.all, readings[i], 0}); });
   const double most = kSameCost * tried.front().cost + kSameCostBy;
   std::erase_if(tried, [&](const FreeLobes& one) { return one.cost > most; });
   return tried;
 }
 
 double LobeSearch::cost_with_gloss(const FoundPaint& found, double gloss) const {
-  paint::LobeFit lobes = lobes_of(basis_, found.weights, samples_.coat_index);
-  return give_gloss(fitters_.gloss, gloss, lobes) ? cost(weights_of(basis_, lobes)) : found.search.cost;
+  const PaintWeights other = with_gloss(found, gloss);
+  return other.all.empty() ? found.search.cost : cost(other);
 }
 
 bool LobeSearch::explains_as_well(const FoundPaint& found, double gloss) const {
   constexpr double kApart_de76 = 0.5;
-  paint::LobeFit lobes = lobes_of(basis_, found.weights, samples_.coat_index);
-  if (!give_gloss(fitters_.gloss, gloss, lobes)) return false;
-  const std::vector<color::Rgb> other = weights_of(basis_, lobes);
+  const PaintWeights other = with_gloss(found, gloss);
+  if (other.all.empty()) return false;
   double own = 0, cost = 0, all = 0;
   for (std::size_t i = 0; i < target_.size(); ++i) {
-    const auto shown = [&](const std::vector<color::Rgb>& w) {
-      return samples_.shown(shown_light(samples_.columns_of(i), w, samples_.reflection));
-    };
-    const color::Lab here = shown(found.weights), there = shown(other);
+    const color::Lab here = samples_.shown_by(found.weights, i), there = samples_.shown_by(other, i);
     if (color::delta_e_76(here, there) < kApart_de76) continue;
     const auto off = [&](const color::Lab& lab) {
       const double de = color::delta_e_76(lab, target_[i]);
@@ -197,39 +221,48 @@ bool LobeSearch::explains_as_well(const FoundPaint& found, double gloss) const {
 
 // The two ways from a paint to its lobes make different pictures, and which of them made this one is not known: both
 // are gone, the second from where the first arrived.
-LobeSearch::Way LobeSearch::way(const std::vector<double>& start) const {
-  SearchResult smooth = run(fitters_.smooth, parameters_of(start));
-  if (smooth.cost < kRoundingCost) return {std::move(smooth), &fitters_.smooth};
-  SearchResult exact = run(fitters_.exact, parameters_of(smooth.values));
-  return exact.cost < smooth.cost ? Way{std::move(exact), &fitters_.exact} : Way{std::move(smooth), &fitters_.smooth};
+LobeSearch::Way LobeSearch::way(const std::vector<double>& start, const SearchFitters::Ways& ways) const {
+  SearchResult smooth = run(ways.smooth, parameters_of(start));
+  if (smooth.cost < kRoundingCost) return {std::move(smooth), &ways.smooth};
+  SearchResult exact = run(ways.exact, parameters_of(smooth.values));
+  return exact.cost < smooth.cost ? Way{std::move(exact), &ways.exact} : Way{std::move(smooth), &ways.smooth};
 }
 
+// A paint of fewer numbers is the answer where it explains the samples as well as free lobes. Under a coat, three
+// readings may take weights for several views, which no free lobes have, so that a paint of them may explain what those
+// cannot; the way there leads through weights for the views of all readings, as those that come with a lost reading
+// come at once.
 FoundPaint LobeSearch::find(const LobeSearch& first) const {
   const auto enough = [](const FreeLobes& free) { return std::max(kSameCost * free.cost, kExactCost); };
   const FreeLobes begun = first.free_lobes().find(), free = free_lobes().sharpened(begun);
   const paint::LobeFit lobes = lobes_of(basis_, free.weights, samples_.coat_index);
   const std::vector<double> three = numbers_of(lobes, kThree_deg, free.gloss_60_gu);
-  std::vector<double> apart;  // of the face, from that of a paint of few numbers
-  for (const std::vector<double>& start : {appearance_of(three), three}) {
-    const Way way = first.way(start);
-    if (apart.empty())
-      for (std::size_t i = 0; i < 3; ++i) apart.push_back(std::abs(three[i] - way.result.values[i]));
-    if (way.result.cost > kHopelessCost * enough(begun)) continue;
+  std::optional<FoundPaint> fewer;
+  const auto take = [&](const Way& way) {
+    if (way.result.cost > kHopelessCost * enough(begun)) return;
     FoundPaint found{run(*way.fitter, parameters_of(way.result.values)), {}};
-    if (found.search.cost > enough(free)) continue;
+    if (found.search.cost > (fewer ? kLessCost * fewer->search.cost : enough(free))) return;
     found.weights = weights(*way.fitter, found.search.values);
-    return found;
-  }
-  return {{numbers_of(lobes, paint::kExportAngles_deg, free.gloss_60_gu), free.cost, 0, 0, apart}, free.weights};
+    fewer = std::move(found);
+  };
+  const Way designed = first.way(appearance_of(three), fitters_.ways);
+  take(designed);
+  if (!fewer) take(first.way(three, fitters_.ways));
+  const bool has_views = fitters_.by_view && !samples_.view_deg.empty();
+  if (has_views && !(fewer && fewer->search.cost <= kExactCost)) take(first.way(three, *fitters_.by_view));
+  if (fewer) return *fewer;
+  std::vector<double> apart;  // of the face, from that of a paint of few numbers
+  for (std::size_t i = 0; i < 3; ++i) apart.push_back(std::abs(three[i] - designed.result.values[i]));
+  return {{numbers_of(lobes, paint::kExportAngles_deg, free.gloss_60_gu), free.cost, 0, 0, apart}, {free.weights}};
 }
 
 // The gloss of least cost among some, the rest held: the cost has a valley at each lobe of the basis.
-void LobeSearch::scan_gloss(std::vector<double>& start) const {
+void LobeSearch::scan_gloss(const fit::PaintFitter& fitter, std::vector<double>& start) const {
   std::vector<double> values = start;
-  double least = cost(weights(fitters_.smooth, values));
+  double least = cost(weights(fitter, values));
   for (const double gloss : {0.0, 5.0, 15.0, 30.0, 50.0, 70.0, 82.0, 88.0, 93.0, 100.0}) {
     values.back() = gloss;
-    if (const double now = cost(weights(fitters_.smooth, values)); now < least) least = now, start.back() = gloss;
+    if (const double now = cost(weights(fitter, values)); now < least) least = now, start.back() = gloss;
   }
 }
 
@@ -244,15 +277,15 @@ LobeSearch::Way LobeSearch::best_way() const {
     for (std::size_t from = 0; from < starts.size() && best.result.cost > kFoundCost; from += kAtOnce) {
       const std::size_t count = std::min(kAtOnce, starts.size() - from);
       std::array<Way, kAtOnce> ways;
-      parallel_for(count, 1, [&](std::size_t i, std::size_t) { ways[i] = way(starts[from + i]); });
+      parallel_for(count, 1, [&](std::size_t i, std::size_t) { ways[i] = way(starts[from + i], fitters_.ways); });
       for (std::size_t i = 0; i < count; ++i)
         if (ways[i].result.cost < best.result.cost) best = std::move(ways[i]);
     }
   };
   std::vector<std::vector<double>> starts = first_starts(read_off);
-  scan_gloss(starts[0]);
+  scan_gloss(fitters_.ways.smooth, starts[0]);
   try_all({starts.data(), 1});  // mostly the way to an exact answer
-  scan_gloss(starts[1]);
+  scan_gloss(fitters_.ways.smooth, starts[1]);
   try_all(std::span(starts).subspan(1));
   if (best.result.cost <= kNoisyCost) try_all(further_starts(read_off));
   return best;
@@ -269,7 +302,14 @@ FoundPaint LobeSearch::find_plain(const LobeSearch& first) const {
       three.insert(three.end(), {lab.L, lab.a, lab.b});
     }
     three.push_back(best.result.values.back());
-    if (Way rows = way(three); rows.result.cost < kRowsGain * best.result.cost) best = std::move(rows);
+    const auto take = [&](Way rows) {
+      if (rows.result.cost < kRowsGain * best.result.cost) best = std::move(rows);
+    };
+    take(way(three, fitters_.ways));
+    if (fitters_.by_view && !samples_.view_deg.empty()) {
+      scan_gloss(fitters_.by_view->smooth, three);
+      take(way(three, *fitters_.by_view));
+    }
   }
   return {best.result, weights(*best.fitter, best.result.values)};
 }

@@ -2,6 +2,7 @@
 // [Shimizu2009] 3.7.5, goniochrome-theory(7), SKETCH FITTING.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "fit/paint_fit.h"
@@ -15,7 +16,7 @@ namespace goniochrome::sketch {
 // the export angles, gloss), which are read off lobes of any weight.
 struct FoundPaint {
   SearchResult search;
-  std::vector<color::Rgb> weights;  // of its lobes, in the order of the columns
+  PaintWeights weights;  // of its lobes
   paint::Paint paint() const;
   const char* model() const;
 };
@@ -23,8 +24,14 @@ struct FoundPaint {
 // The ways from a paint to its lobes: least squares, whose weights follow a paint smoothly, and least absolute error.
 struct SearchFitters {
   SearchFitters(const formats::Basis& basis, double coat_index);
+  struct Ways {
+    fit::PaintFitter smooth, exact;
+  };
   brdf::GlossTable gloss;
-  fit::PaintFitter smooth, exact;
+  Ways ways;
+  // Under a coat: with weights for the views of three readings, as a paint has them whose coat keeps weights for all
+  // views from meeting its readings.
+  std::optional<Ways> by_view;
 };
 
 class LobeSearch {
@@ -40,7 +47,8 @@ class LobeSearch {
   FoundPaint find(const LobeSearch& first) const;
 
   // For one lamp, whose glare is left out, so that wide gloss passes for flake: face, flop and travel, from that start
-  // and more until one explains the samples exactly, or the colors at three angles where they explain them better.
+  // and more until one explains the samples exactly, or the colors at three angles where they explain them better, with
+  // weights for all views or, under a coat, for several.
   FoundPaint find_plain(const LobeSearch& first) const;
 
   // Lobes with the gloss of a paint found, and with others whose cost is at most a part more: free flake weights that
@@ -58,16 +66,17 @@ class LobeSearch {
   color::Rgb matt() const;
 
  private:
-  std::vector<color::Rgb> weights(const fit::PaintFitter& fitter, const std::vector<double>& values) const;
-  double cost(const std::vector<color::Rgb>& weights) const;
+  PaintWeights weights(const fit::PaintFitter& fitter, const std::vector<double>& values) const;
+  PaintWeights with_gloss(const FoundPaint& found, double gloss) const;
+  double cost(const PaintWeights& weights) const;
   SearchResult run(const fit::PaintFitter& fitter, const std::vector<SearchParameter>& start) const;
   struct Way {
     SearchResult result;
     const fit::PaintFitter* fitter = nullptr;
   };
-  Way way(const std::vector<double>& start) const;
+  Way way(const std::vector<double>& start, const SearchFitters::Ways& ways) const;
   Way best_way() const;
-  void scan_gloss(std::vector<double>& start) const;
+  void scan_gloss(const fit::PaintFitter& fitter, std::vector<double>& start) const;
   FreeLobeFit free_lobes() const { return {basis_, fitters_.gloss, samples_, target_}; }
 
   const SearchFitters& fitters_;

@@ -21,9 +21,14 @@ constexpr std::size_t kFewestNear = 20;  // of these pixels; the noise of three 
 constexpr double kLeastShare = 0.3;      // of the pixels about an angle that must show the paint found
 constexpr double kLeastLobe = 0.05;      // of a lobe's peak, from which an angle is said to feel it
 
-color::Lab shown_lab(const formats::Basis& basis, const std::vector<color::Rgb>& weights, double coat_index,
-                     double angle_deg) {
-  return paint_lab(brdf::flake_reflectance_factor(lobes_of(basis, weights, coat_index), angle_deg));
+// What an instrument reads at an aspecular angle.
+color::Lab shown_lab(const formats::Basis& basis, const PaintWeights& weights, double coat_index, double angle_deg) {
+  const PaintWeights::Mixed mixed = weights.mixed_at(brdf::instrument_view_deg(angle_deg));
+  const auto factor = [&](const std::vector<color::Rgb>& of) {
+    return brdf::flake_reflectance_factor(lobes_of(basis, of, coat_index), angle_deg);
+  };
+  const color::Rgb low = factor(*mixed.low);
+  return paint_lab(mixed.share > 0 ? low + mixed.share * (factor(*mixed.high) - low) : low);
 }
 
 bool is_extrapolated(const SketchFit& fit, double angle_deg) {
@@ -32,7 +37,7 @@ bool is_extrapolated(const SketchFit& fit, double angle_deg) {
 
 }  // namespace
 
-void take_shown(const formats::Basis& basis, const std::vector<color::Rgb>& weights, double coat_index,
+void take_shown(const formats::Basis& basis, const PaintWeights& weights, double coat_index,
                 const std::function<bool(double angle_deg)>& is_told, SketchFit& fit) {
   for (paint::LabReading& row : fit.rows) {
     const double angle_deg = row.geometry.aspecular_deg;
@@ -53,10 +58,10 @@ void take_open_by_gloss(const formats::Basis& basis, const FreeLobes& found, con
   for (const paint::LabReading& row : fit.rows) {
     const double angle_deg = row.geometry.aspecular_deg;
     if (is_extrapolated(fit, angle_deg)) continue;
-    const color::Lab own = shown_lab(basis, found.weights, coat_index, angle_deg);
+    const color::Lab own = shown_lab(basis, {found.weights}, coat_index, angle_deg);
     double most_de00 = 0, gloss = 0;
     for (const FreeLobes& other : others) {
-      const double apart = color::delta_e_2000(own, shown_lab(basis, other.weights, coat_index, angle_deg));
+      const double apart = color::delta_e_2000(own, shown_lab(basis, {other.weights}, coat_index, angle_deg));
       if (apart > most_de00) most_de00 = apart, gloss = other.gloss_60_gu;
     }
     if (most_de00 > kOpen_de00)

@@ -14,7 +14,7 @@ namespace goniochrome::sketch {
 // the rows of face, flop and travel: the picture shows the lobes, which a curve of few numbers misses where the paint
 // does not follow one. Where such a paint explains the picture to rounding, no angle is to be told. Adds the rows of
 // export angles that the paint found has no reading for.
-void take_shown(const formats::Basis& basis, const std::vector<color::Rgb>& weights, double coat_index,
+void take_shown(const formats::Basis& basis, const PaintWeights& weights, double coat_index,
                 const std::function<bool(double angle_deg)>& is_told, SketchFit& fit);
 
 // Adds to fit.unsure the angles whose color is another one in lobes that explain the pixels as well, with other gloss:

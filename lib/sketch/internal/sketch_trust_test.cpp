@@ -38,8 +38,7 @@ SketchFit fit_at(std::initializer_list<double> angles_deg) {
 // The reflectance factor of the lobes is .1 + .5 cos^4 t, by hand.
 TEST(SketchTrust, RowsAreReadOffTheLobesWhereTheyAreTold) {
   SketchFit fit = fit_at({15, 45, 110});
-  take_shown(
-      basis(), weights(0.5), paint::kNoCoat, [](double angle) { return angle > 20; }, fit);
+  take_shown(basis(), {weights(0.5)}, paint::kNoCoat, [](double angle) { return angle > 20; }, fit);
   ASSERT_EQ(fit.rows.size(), 5U);
   const double expected[] = {50, lightness(0.1 + 0.5 * 0.674675), lightness(0.1 + 0.5 * 0.25),
                              lightness(0.1 + 0.5 * 0.0044873), lightness(0.1)};
@@ -53,8 +52,7 @@ TEST(SketchTrust, RowsAreReadOffTheLobesWhereTheyAreTold) {
 TEST(SketchTrust, RowsOfTheCurveStayWhereTheLobesAgree) {
   SketchFit fit = fit_at({110});
   fit.rows.front().lab = {lightness(0.1) + 0.1, 0, 0};
-  take_shown(
-      basis(), weights(0.5), paint::kNoCoat, [](double) { return true; }, fit);
+  take_shown(basis(), {weights(0.5)}, paint::kNoCoat, [](double) { return true; }, fit);
   EXPECT_EQ(fit.rows.back().lab.L, lightness(0.1) + 0.1);
 }
 
