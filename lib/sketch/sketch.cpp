@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <optional>
 
 #include "base/angles.h"
@@ -29,9 +30,10 @@ constexpr std::size_t kSearchCells = 700, kFirstCells = 400;  // that the answer
 constexpr double kTrustTo_deg = 113;                          // beyond it, no pixel is asked whether it shows a row
 constexpr double kSameCost = 1.05, kSameCostBy = 0.005;  // costs of two values of gloss that the pixels cannot tell
 
-constexpr std::size_t kMostPixels = 6000;   // of an environment's picture, looked at for the answer; more change it by
-                                            // less than 0.05 dE
-constexpr std::size_t kFirstPixels = 1000;  // and on the way to it
+constexpr std::size_t kMostPixels = 6000;    // of an environment's picture, looked at for the answer; more change it by
+                                             // less than 0.05 dE
+constexpr std::size_t kFirstPixels = 1000;   // and on the way to it
+constexpr std::size_t kRegionPixels = 2000;  // where the paints of regions are compared
 constexpr std::size_t kFewestPixels = 30;
 
 // How well a paint explains the pixels: RMS and median of the differences, and all of them where asked for.
@@ -525,6 +527,54 @@ std::vector<TrustPixel> trust_pixels(const SketchInput& input, const SketchPixel
   return shown;
 }
 
+// The numbers of used pixels in `kRegions` parts of the picture of as many pixels each: halves by their column, and
+// then parts by their row.
+std::vector<std::vector<std::size_t>> regions_of(const std::vector<std::uint32_t>& places, int width) {
+  constexpr std::size_t kColumns = 2, kRows = 4;
+  std::vector<std::size_t> order(places.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto by = [&](std::size_t begin, std::size_t end, bool column) {
+    std::ranges::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(begin),
+                             order.begin() + static_cast<std::ptrdiff_t>(end), {}, [&](std::size_t i) {
+                               const auto place = static_cast<int>(places[i]);
+                               return column ? place % width : place / width;
+                             });
+  };
+  by(0, order.size(), true);
+  std::vector<std::vector<std::size_t>> regions;
+  for (std::size_t c = 0; c < kColumns; ++c) {
+    const std::size_t begin = c * order.size() / kColumns, count = (c + 1) * order.size() / kColumns - begin;
+    by(begin, begin + count, false);
+    for (std::size_t r = 0; r < kRows; ++r)
+      regions.emplace_back(order.begin() + static_cast<std::ptrdiff_t>(begin + r * count / kRows),
+                           order.begin() + static_cast<std::ptrdiff_t>(begin + (r + 1) * count / kRows));
+  }
+  return regions;
+}
+
+// What light that the search does not know may change in the paint found: no region of the picture has as much of it as
+// another.
+void take_regions(const SketchInput& input, const std::vector<std::uint32_t>& used, const SketchLight& light,
+                  const SearchFitters& fitters, const FoundPaint& found, SketchFit& fit) {
+  const std::size_t step = std::max<std::size_t>(1, used.size() / kRegionPixels);
+  std::vector<std::uint32_t> places;
+  for (std::size_t i = 0; i < used.size(); i += step) places.push_back(used[i]);
+  const LobeSearch search(fitters, samples_of(input, places, light, places.size()));
+  const auto regions = regions_of(places, input.buffers->image.width);
+  std::vector<PaintWeights> without(regions.size());
+  parallel_for(without.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t left_out = begin; left_out < end; ++left_out) {
+      std::vector<std::size_t> rest;
+      for (std::size_t r = 0; r < regions.size(); ++r)
+        if (r != left_out) rest.insert(rest.end(), regions[r].begin(), regions[r].end());
+      std::ranges::sort(rest);
+      without[left_out] = search.in_part(found, rest).weights;
+    }
+  });
+  fit.regions_de00 = apart_by_regions(light.basis, found.weights, without, light.coat_index);
+  for (double& apart : fit.regions_de00) apart *= 2;
+}
+
 SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
                    const SketchLimits& limits, bool with_differences, const Looked* lamps) {
   const SearchFitters fitters(light.basis, light.coat_index);
@@ -571,6 +621,7 @@ SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const S
     take_found(found, fit);
   }
   weights = found.weights, fit.weights = found.weights.all;
+  fit.by_views = !found.weights.views_deg.empty();
   take_shown(
       light.basis, weights, light.coat_index,
       [&](double angle) {
@@ -579,6 +630,8 @@ SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const S
       fit);
   const std::vector<FreeLobes> others = first.with_other_gloss(found);
   take_open_by_gloss(light.basis, others.front(), others, light.coat_index, fit);
+  if (light.is_open && !input.buffers->drawn_by_rays.empty())
+    take_regions(input, pixels.used, light, fitters, found, fit);
   if (lamps != nullptr) take_thinly_seen(trust_pixels(input, pixels, difference), fit);
   judge();
   if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));

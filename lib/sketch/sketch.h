@@ -50,6 +50,10 @@ struct SketchFit {
   double condition = 0;
   double rms_de76 = 0, median_de76 = 0;  // edited picture against the paint found, relative to white
   double seen_from_deg = 0, seen_to_deg = 0;
+  // By how much the paints differ that regions of the picture show, where it was drawn in light that the search does
+  // not know: at the export angles, two standard errors, CIEDE2000.
+  std::vector<double> regions_de00;
+  bool by_views = false;            // the paint found has weights for several views
   std::vector<color::Rgb> weights;  // of the lobes found, in the order of search_columns(); none of a point light
   std::vector<float> de76;          // of every used pixel, in the order of SketchPixels::used; where asked for
 };
@@ -71,6 +75,7 @@ struct SketchLight {
   // K_DD and K_G of every lobe, then the mirror.
   std::function<void(std::uint32_t place, Vec3* columns)> shade;
   double coat_index = paint::kNoCoat;  // of the coat through which K_D and K_DD are lit
+  bool is_open = true;                 // nothing blocks it, and no surface sends it on
 };
 
 // The number of those parts.

@@ -304,7 +304,7 @@ SketchLight SketchTransport::light(int samples) const {
   };
   const std::vector<double>& coats = transport_->worn.coats;
   const double coat = coats.empty() ? paint::kNoCoat : *std::ranges::max_element(coats);
-  return {basis, reflection_, shade, coat};
+  return {basis, reflection_, shade, coat, false};
 }
 
 std::vector<int> SketchTransport::mesh_parts() const {

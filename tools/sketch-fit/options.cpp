@@ -91,6 +91,10 @@ void add_report(cli::ToolSpec& spec) {
       {"flop", "L*, a*, b* of its flop"},
       {"rows[]: geometry, L, a, b", "its colors at the export angles"},
       {"extrapolated_deg[]", "those of the angles that no pixel shows"},
+      {"regions_de00[]",
+       "Where the picture shows what the mesh does to light, which only a transport knows: by how much the colors at "
+       "the "
+       "export angles may be off, two standard errors by what parts of the picture show, CIEDE2000; else empty."},
       {"unsure[]: angle_deg, de00, reason",
        "other angles whose color the picture leaves open, with the CIEDE2000 difference by which it may be off, or "
        "null"},

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/text.h"
+#include "paint/curve.h"
 #include "paint_stream.h"
 #include "residual.h"
 #include "sketch/registration.h"
@@ -57,10 +58,12 @@ Result<void> check_light(const Options& options, const image::AovFile& buffers) 
   return {};
 }
 
-// Warns of effects that a picture under an environment shows and that the search does not know.
-void warn_of_effects(const image::AovFile& buffers, cli::Session& session) {
+// Warns of effects that a picture under an environment shows and that the search does not know. It knows weights that
+// change with the view where the paint found has some.
+void warn_of_effects(const image::AovFile& buffers, bool found_views, cli::Session& session) {
   std::string unknown;
-  for (const std::string& effect : sketch::effects_without_light(buffers)) unknown += ",-" + effect;
+  for (const std::string& effect : sketch::effects_without_light(buffers))
+    if (!(effect == "travel" && found_views)) unknown += ",-" + effect;
   if (!unknown.empty())
     session.warn(
         fmt::format("{} was drawn with effects that the search does not know, and the paint will be off: render "
@@ -206,6 +209,7 @@ void report_fit(const sketch::SketchFit& fit, bool environment, Json& results) {
   const bool told = !fit.gloss_from.empty() && fit.gloss_from != "undetermined";
   results["gloss_60_gu"] = told ? Json(fit.gloss_60_gu) : Json(nullptr);
   results["gloss_range_gu"] = fit.gloss_high_gu > 0 ? Json({fit.gloss_low_gu, fit.gloss_high_gu}) : Json(nullptr);
+  results["regions_de00"] = fit.regions_de00;
   results["gloss_from"] = fit.gloss_from.empty() ? Json(nullptr) : Json(fit.gloss_from);
   results["condition"] = fit.condition > 0 ? json_number(fit.condition) : Json(nullptr);
   results["aspecular_from_deg"] = environment ? Json(nullptr) : Json(fit.seen_from_deg);
@@ -258,13 +262,20 @@ sketch::SketchFit fit_in_transport(const sketch::SketchInput& input, const sketc
   return fit;
 }
 
-// What a fit without traced light leaves out.
-void tell_shadows(const image::AovFile& buffers, cli::Session& session) {
+// What a fit without traced light leaves out, and how far that may lead.
+void tell_shadows(const image::AovFile& buffers, const sketch::SketchFit& fit, cli::Session& session) {
+  std::string by;
+  for (std::size_t i = 0; i < fit.regions_de00.size(); ++i)
+    by += fmt::format("{} {:.1f} dE00 at {} deg",
+                      i == 0                            ? ", by about"
+                      : i + 1 < fit.regions_de00.size() ? ","
+                                                        : " and",
+                      fit.regions_de00[i], paint::kExportAngles_deg[i]);
   if (!buffers.drawn_by_rays.empty())
     session.warn(
-        fmt::format("{} shows {}: no paint explains what the mesh does to light, so that the paint found is off: "
+        fmt::format("{} shows {}: no paint explains what the mesh does to light, so that the paint found is off{}: "
                     "render picture and buffers with --effects auto,-rays, or the buffers with --aov transport",
-                    buffers.path, buffers.drawn_by_rays));
+                    buffers.path, buffers.drawn_by_rays, by));
   session.say(fmt::format(
       "{} holds no transport: the paint is sought in light that nothing blocks and no surface sends back. Where the "
       "picture has shadows or the body in itself, give buffers of render-osmesa --aov transport",
@@ -373,8 +384,6 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   const sketch::SketchInput& input = material.input;
   tell_registration(material, options, session);
   for (const std::string& warning : material.picture.warnings) session.warn(warning);
-  if (!options.env.empty() && !material.transport) warn_of_effects(material.buffers, session);
-  if (!material.transport) tell_shadows(material.buffers, session);
   warn_of_left_out(options, material, session);
   const Stopwatch clock;
   GONIO_ASSIGN(sketch::SketchPixels pixels, sketch::sketch_pixels(input));
@@ -394,6 +403,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     fit = sketch::sketch_point(input, pixels, material.basis, limits, differences);
     GONIO_TRY(fit_lamps(material, limits, differences, pixels, fit));
   }
+  if (!options.env.empty() && !material.transport) warn_of_effects(material.buffers, fit.by_views, session);
+  if (!material.transport) tell_shadows(material.buffers, fit, session);
   sketch::take_left_out(left_out_of(material), fit);
   keep_gloss(start, fit);
   Json& results = session.results();

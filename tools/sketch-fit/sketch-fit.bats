@@ -183,6 +183,22 @@ planted() {
   [[ $output != *"no paint explains"* ]] || { echo "$output"; return 1; }
 }
 
+@test "under an environment, parts of a picture with shadows tell how far the paint may be off" {
+  prefilter-envmap -q small.exr --basis "$TESTDATA/b7.basis.xml" -o small.env.exr
+  scene="--mesh $TESTDATA/box.obj --env small.env.exr --paint fitted.xml#satin --size 160x100 --samples 1"
+  render-osmesa -q $scene --tolerance 1 --aov normal,aspecular,lambert,mask,part -o shadows.exr
+  run sketch-fit -i shadows.exr -b shadows.exr --env small.env.exr --report r.json -o found.xml
+  [[ $output == *"the paint found is off, by about "*" dE00 at 15 deg, "*" and "*" dE00 at 110 deg: render"* ]] || { echo "$output"; return 1; }
+  [ "$(jq -c '[.results.regions_de00 | length, max > 0.5]' r.json)" = '[5,true]' ]
+  # What is traced knows the shadows, and open light has none.
+  render-osmesa -q $scene --tolerance 1 --aov transport -o traced.exr
+  sketch-fit -q -i shadows.exr -b traced.exr --report r.json -o found.xml
+  [ "$(jq -c .results.regions_de00 r.json)" = '[]' ]
+  render-osmesa -q $scene --effects auto,-rays --aov normal,aspecular,lambert,mask,part -o open.exr
+  sketch-fit -q -i open.exr -b open.exr --env small.env.exr --report r.json -o found.xml
+  [ "$(jq -c .results.regions_de00 r.json)" = '[]' ]
+}
+
 @test "light that the picture was drawn without is told with its remedy" {
   scene="--mesh $TESTDATA/speed-shape.obj --light 35,45 --paint fitted.xml#steel --size 320x200 --samples 1 --aov normal,aspecular,lambert,mask,part"
   render-osmesa -q $scene --effects all,-rays,-lobe-20 -o without.exr

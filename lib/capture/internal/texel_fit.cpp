@@ -322,6 +322,8 @@ TexelFit TexelFitter::finished(const TexelSamples& samples, State state) {
     if (is_shown && seen < kSeen) fit.certain = false;
     fit.surface.lobes.push_back(lobe);
   }
+  std::ranges::stable_partition(fit.surface.lobes,
+                                [](const brdf::LafortuneLobe& lobe) { return lobe.albedo != color::Rgb{}; });
   for (Eigen::Index i = 0; i < samples.count(); ++i) {
     if (weight_[i] > 0)
       ++fit.used;

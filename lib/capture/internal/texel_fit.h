@@ -24,7 +24,9 @@ struct TexelOptions {
 struct TexelFit {
   LobeShapes shapes;  // ascending exponents
   SharedFrame frame;
-  brdf::Lafortune surface;  // in the frame that is turned by half of frame.twice_angle; without light, no lobes
+  // In the frame that is turned by half of frame.twice_angle, with ascending exponents, but lobes that no value shows at
+  // the end, so that neighbors have the same lobe at the same place; without light, no lobes.
+  brdf::Lafortune surface;
   double spread = 1;        // of the residuals, in the standard deviations that were expected
   int used = 0;             // values that count
   int left_out = 0;         // values that were found to be shadows or outliers

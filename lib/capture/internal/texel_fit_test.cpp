@@ -102,6 +102,23 @@ TEST(TexelFit, SaturatedValuesAreBounds) {
   EXPECT_LE(error_of({.lobes = 1}, bright, 60, false), 0.02);
 }
 
+// A surface of one lobe, fitted by two: which exponent the dark one has is noise. The control is the order by exponents
+// alone, by which it would be the first lobe of many texels and the second of others.
+TEST(TexelFit, LobesThatNoValueShowsComeLast) {
+  TexelFitter fitter({.lobes = 2});
+  const auto poses = gantry(60, 1);
+  int dark = 0, first_by_exponent = 0;
+  for (int i = 0; i < kTexels; ++i) {
+    const TexelFit fit =
+        fitter.fit(photographed(varnished(i / 120.0), poses, {}, static_cast<std::uint64_t>(i) + 7), {});
+    const brdf::LafortuneLobe &first = fit.surface.lobes[0], &second = fit.surface.lobes[1];
+    EXPECT_NE(first.albedo, color::Rgb{}) << i;
+    if (second.albedo != color::Rgb{}) continue;
+    ++dark, first_by_exponent += second.exponent < first.exponent;
+  }
+  EXPECT_GT(first_by_exponent, 5) << "the control must fail; " << dark << " texels have a dark lobe";
+}
+
 TEST(TexelFit, ErrorFallsWithPhotographsAndLobes) {
   const double few = error_of({}, {.noise = 0.05}, 20), more = error_of({}, {.noise = 0.05}, 60),
                most = error_of({}, {.noise = 0.05}, 180);

@@ -240,7 +240,7 @@ FoundPaint LobeSearch::find(const LobeSearch& first) const {
   std::optional<FoundPaint> fewer;
   const auto take = [&](const Way& way) {
     if (way.result.cost > kHopelessCost * enough(begun)) return;
-    FoundPaint found{run(*way.fitter, parameters_of(way.result.values)), {}};
+    FoundPaint found{run(*way.fitter, parameters_of(way.result.values)), {}, way.fitter};
     if (found.search.cost > (fewer ? kLessCost * fewer->search.cost : enough(free))) return;
     found.weights = weights(*way.fitter, found.search.values);
     fewer = std::move(found);
@@ -254,6 +254,18 @@ FoundPaint LobeSearch::find(const LobeSearch& first) const {
   std::vector<double> apart;  // of the face, from that of a paint of few numbers
   for (std::size_t i = 0; i < 3; ++i) apart.push_back(std::abs(three[i] - designed.result.values[i]));
   return {{numbers_of(lobes, paint::kExportAngles_deg, free.gloss_60_gu), free.cost, 0, 0, apart}, {free.weights}};
+}
+
+FoundPaint LobeSearch::in_part(const FoundPaint& found, const std::vector<std::size_t>& samples) const {
+  const LobeSearch part(fitters_, samples_.part(samples));
+  FoundPaint other = found;
+  if (found.fitter != nullptr) {
+    other.search = part.run(*found.fitter, parameters_of(found.search.values));
+    other.weights = part.weights(*found.fitter, other.search.values);
+  } else {
+    other.weights = {part.free_lobes().refined({found.weights.all, found.search.values.back(), 0}).weights};
+  }
+  return other;
 }
 
 // The gloss of least cost among some, the rest held: the cost has a valley at each lobe of the basis.
@@ -311,7 +323,7 @@ FoundPaint LobeSearch::find_plain(const LobeSearch& first) const {
       take(way(three, *fitters_.by_view));
     }
   }
-  return {best.result, weights(*best.fitter, best.result.values)};
+  return {best.result, weights(*best.fitter, best.result.values), best.fitter};
 }
 
 }  // namespace goniochrome::sketch

@@ -16,7 +16,8 @@ namespace goniochrome::sketch {
 // the export angles, gloss), which are read off lobes of any weight.
 struct FoundPaint {
   SearchResult search;
-  PaintWeights weights;  // of its lobes
+  PaintWeights weights;                      // of its lobes
+  const fit::PaintFitter* fitter = nullptr;  // that made them of the numbers; null: they are free
   paint::Paint paint() const;
   const char* model() const;
 };
@@ -50,6 +51,10 @@ class LobeSearch {
   // and more until one explains the samples exactly, or the colors at three angles where they explain them better, with
   // weights for all views or, under a coat, for several.
   FoundPaint find_plain(const LobeSearch& first) const;
+
+  // What a part of the samples, by their numbers, shows of a paint that was found in all of them: the nearest paint of
+  // as many numbers that explains these.
+  FoundPaint in_part(const FoundPaint& found, const std::vector<std::size_t>& samples) const;
 
   // Lobes with the gloss of a paint found, and with others whose cost is at most a part more: free flake weights that
   // are refined from those found. The first one has the gloss found.

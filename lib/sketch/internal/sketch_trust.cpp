@@ -71,6 +71,22 @@ void take_open_by_gloss(const formats::Basis& basis, const FreeLobes& found, con
   }
 }
 
+std::vector<double> apart_by_regions(const formats::Basis& basis, const PaintWeights& found,
+                                     const std::vector<PaintWeights>& without, double coat_index) {
+  std::vector<double> apart;
+  const auto count = static_cast<double>(without.size());
+  for (const double angle_deg : paint::kExportAngles_deg) {
+    const color::Lab own = shown_lab(basis, found, coat_index, angle_deg);
+    double squares = 0;
+    for (const PaintWeights& other : without) {
+      const double one = color::delta_e_2000(own, shown_lab(basis, other, coat_index, angle_deg));
+      squares += one * one;
+    }
+    apart.push_back(std::sqrt((count - 1) / count * squares));
+  }
+  return apart;
+}
+
 void take_thinly_seen(const std::vector<TrustPixel>& pixels, SketchFit& fit) {
   for (const paint::LabReading& row : fit.rows) {
     const double angle_deg = row.geometry.aspecular_deg;
