@@ -34,6 +34,7 @@ constexpr std::size_t kMostPixels = 6000;    // of an environment's picture, loo
                                              // less than 0.05 dE
 constexpr std::size_t kFirstPixels = 1000;   // and on the way to it
 constexpr std::size_t kRegionPixels = 2000;  // where the paints of regions are compared
+constexpr double kRegionErrors = 4;          // standard errors; what regions share counts as much as what they do not
 constexpr std::size_t kFewestPixels = 30;
 
 // How well a paint explains the pixels: RMS and median of the differences, and all of them where asked for.
@@ -572,7 +573,7 @@ void take_regions(const SketchInput& input, const std::vector<std::uint32_t>& us
     }
   });
   fit.regions_de00 = apart_by_regions(light.basis, found.weights, without, light.coat_index);
-  for (double& apart : fit.regions_de00) apart *= 2;
+  for (double& apart : fit.regions_de00) apart *= kRegionErrors;
 }
 
 SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,

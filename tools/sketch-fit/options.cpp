@@ -94,7 +94,7 @@ void add_report(cli::ToolSpec& spec) {
       {"regions_de00[]",
        "Where the picture shows what the mesh does to light, which only a transport knows: by how much the colors at "
        "the "
-       "export angles may be off, two standard errors by what parts of the picture show, CIEDE2000; else empty."},
+       "export angles may be off, four standard errors by what parts of the picture show, CIEDE2000; else empty."},
       {"unsure[]: angle_deg, de00, reason",
        "other angles whose color the picture leaves open, with the CIEDE2000 difference by which it may be off, or "
        "null"},
