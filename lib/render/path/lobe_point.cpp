@@ -153,7 +153,7 @@ LobePoint::Sent LobePoint::sent(const Hit& hit, const Float3& direction, const S
       add(light.direction, 1 / (light.pdf + others * reflection.pdf), light.radiance);
   }
   if (!t.emitters_.empty()) {
-    const EmitterSample light = t.emitters_.drawn(start, onward[3], numbers[2], numbers[3]);
+    const EmitterSample light = t.emitters_.drawn(lit_point(at), onward[3], numbers[2], numbers[3]);
     const Reflection reflection = light.pdf > 0 ? painted.at(light.direction) : Reflection{};
     if (reflection.pdf > 0 && !t.rays_->blocked(start, light.direction, kShort * light.distance))
       add(light.direction, 1 / (light.pdf + others * reflection.pdf), light.radiance);
@@ -178,7 +178,8 @@ LobePoint::Sent LobePoint::sent(const Hit& hit, const Float3& direction, const S
     end = floor.fixed, deeper = floor.bounced;
   } else if (next.any()) {
     end = t.emitters_.radiance(t.rays_->part(next.triangle));
-    if (end != color::Rgb{} && !mirrored) light_pdf = t.emitters_.pdf(next.triangle, drawn.direction, next.distance);
+    if (end != color::Rgb{} && !mirrored)
+      light_pdf = t.emitters_.pdf(lit_point(at), next.triangle, drawn.direction, next.distance);
     if (further.bounces > 0) deeper = t.bounced(next, start, drawn.direction, further, sequence, index, 6);
   } else if (t.environment_) {
     const LightSample light = t.environment_->at(drawn.direction);
@@ -224,7 +225,8 @@ void LobePoint::add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t 
   if (!hit.any()) return;
   const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
   if (emission != color::Rgb{}) {
-    const double share = 1 / (pdf + transport_.emitters_.pdf(hit.triangle, ray.direction, hit.distance));
+    const double share =
+        1 / (pdf + transport_.emitters_.pdf(lit_point(spot_), hit.triangle, ray.direction, hit.distance));
     for (std::size_t k = 0; k < count; ++k) sums.emitted[first + k] += (share / sums.directions * values[k]) * emission;
   }
   if (options_.bounces == 0 && !transport_.is_laid(hit)) return;
@@ -238,7 +240,7 @@ void LobePoint::add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t 
 }
 
 void LobePoint::add_emitter(const std::array<double, 4>& numbers, Sums& sums, int which) const {
-  const EmitterSample light = transport_.emitters_.drawn(spot_.start, numbers[0], numbers[1], numbers[2]);
+  const EmitterSample light = transport_.emitters_.drawn(lit_point(spot_), numbers[0], numbers[1], numbers[2]);
   float values[2 * kMostTracedLobes + 2];
   const float kernels_pdf = light.pdf > 0 ? kernels_.at(light.direction, values) : 0;
   if (!(kernels_pdf > 0) || transport_.rays_->blocked(spot_.start, light.direction, kShort * light.distance)) return;

@@ -291,7 +291,9 @@ LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& 
     } else if (hit.any()) {
       const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
       if (emission != color::Rgb{})
-        arriving += pdf / (pdf + transport_.emitters_.pdf(hit.triangle, ray.direction, hit.distance)) * emission;
+        arriving += pdf /
+                    (pdf + transport_.emitters_.pdf(lit_point(spot_), hit.triangle, ray.direction, hit.distance)) *
+                    emission;
       if (options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse))
         sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
     }
@@ -359,7 +361,7 @@ void PointTransport::add_sent(const Float3& direction, const color::Rgb& sent, f
 }
 
 color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) const {
-  const EmitterSample light = transport_.emitters_.drawn(spot_.start, numbers[0], numbers[1], numbers[2]);
+  const EmitterSample light = transport_.emitters_.drawn(lit_point(spot_), numbers[0], numbers[1], numbers[2]);
   if (!(light.pdf > 0)) return {};
   const Reflection reflection = painted_.at(light.direction);
   if (!(reflection.pdf > 0) ||

@@ -46,9 +46,8 @@ double excess_of(const envmap::Environment& environment, double wrong_factor = 1
 TEST(Samplers, TheEnvironmentIsDrawnAsItsDensitySays) {
   EXPECT_LT(excess_of(environment_of(32, 16, uneven)), 5);
   EXPECT_GT(excess_of(environment_of(32, 16, uneven), 1.05), 5);  // control
-  const envmap::CubeMap cube = cube_of(8, [](const Vec3& d) {
-    return Vec3{1.1 + d.x, d.y > 0.5 ? 5.0 : 0.2, 1 + d.z * d.z};
-  });
+  const envmap::CubeMap cube =
+      cube_of(8, [](const Vec3& d) { return Vec3{1.1 + d.x, d.y > 0.5 ? 5.0 : 0.2, 1 + d.z * d.z}; });
   EXPECT_LT(excess_of(envmap::Environment::from_cube(cube, "cube")), 5);
   image::Image disc{24, 24, 3, std::vector<float>(24 * 24 * 3, 0.5F), {}};
   for (std::size_t i = 0; i < disc.data.size(); i += 7) disc.data[i] = 2;
@@ -162,30 +161,103 @@ TEST(Samplers, BrushedLobesAreDrawnAsTheirDensitySays) {
   for (const double view_deg : {10.0, 60.0}) EXPECT_LT(excess_of(glossy(), view_deg, set.tilts), 5);
 }
 
+// A dim and a bright panel: from afar, from so near that they fill most of the sphere, and where the horizon of the
+// surface cuts them.
 TEST(Samplers, EmittersAreDrawnAsTheirDensitySays) {
-  // A dim and a bright panel, seen from above and from the side.
-  mesh::Mesh mesh = panels_mesh(2);
+  const mesh::Mesh mesh = panels_mesh(2);
   const auto scene = rays::RayScene::create(mesh);
   ASSERT_TRUE(scene.ok());
   const auto emitters = Emitters::create(*scene, {{1, 1, 1}, {2, 5, 2}});
   ASSERT_TRUE(emitters.ok());
-  const Float3 from = scene->local({0.3, 0.2, 0.6});
-  for (const double wrong : {1.0, 1.05}) {
-    const double found = excess(
-        SphereBins({0, 0, -1}, 60, 12), 400000,
-        [&](double choice, double u, double v) { return rays::vec3(emitters->drawn(from, choice, u, v).direction); },
-        [&](const Vec3& d) {
-          const rays::Hit hit = scene->closest(from, float3(d));
-          const double pdf = hit.any() ? emitters->pdf(hit.triangle, float3(d), hit.distance) : 0.0;
-          return d.x > 0 ? wrong * pdf : pdf;
-        },
-        96);
-    if (wrong == 1) {
-      EXPECT_LT(found, 5);
-    } else {
-      EXPECT_GT(found, 5);
+  struct Case {
+    Vec3 from, normal;
+  };
+  for (const auto& [from, normal] : {Case{{0.3, 0.2, 4}, {0, 0, -1}}, Case{{0.3, 0.2, 0.6}, {0, 0, -1}},
+                                     Case{{-0.2, 0.1, 0.05}, {0, 0, -1}}, Case{{0.3, 0.2, 0.6}, {-1, 0, 0}}}) {
+    const LitPoint at{scene->local(from), float3(normal)};
+    for (const double wrong : {1.0, 1.05}) {
+      const double found = excess(
+          SphereBins({0, 0, -1}, 60, 12), 400000,
+          [&](double choice, double u, double v) -> std::optional<Vec3> {
+            const EmitterSample drawn = emitters->drawn(at, choice, u, v);
+            if (!(drawn.pdf > 0)) return std::nullopt;
+            return rays::vec3(drawn.direction);
+          },
+          [&](const Vec3& d) {
+            const rays::Hit hit = scene->closest(at.position, float3(d));
+            const double pdf = hit.any() ? emitters->pdf(at, hit.triangle, float3(d), hit.distance) : 0.0;
+            return d.x > 0 ? wrong * pdf : pdf;
+          },
+          80);
+      if (wrong == 1) {
+        EXPECT_LT(found, 5) << from.z << ' ' << normal.x;
+      } else {
+        EXPECT_GT(found, 5) << from.z << ' ' << normal.x;  // control
+      }
     }
   }
+}
+
+// The density of what is drawn is that of a ray in the same direction, and the ray is as long.
+TEST(Samplers, WhatIsDrawnFromEmittersIsWhatRaysMeet) {
+  const mesh::Mesh mesh = panels_mesh(3);
+  const auto scene = rays::RayScene::create(mesh);
+  ASSERT_TRUE(scene.ok());
+  const auto emitters = Emitters::create(*scene, {{1, 1, 1}, {}, {2, 5, 2}});
+  ASSERT_TRUE(emitters.ok());
+  TestNumbers next(8);
+  int astray = 0;
+  constexpr int kCount = 4000;
+  for (int i = 0; i < kCount; ++i) {
+    const LitPoint at{scene->local({4 * next() - 2, 2 * next() - 1, 0.01 + 2 * next() * next()}), {0, 0, -1}};
+    const EmitterSample drawn = emitters->drawn(at, next(), next(), next());
+    ASSERT_GT(drawn.pdf, 0);
+    const rays::Hit hit = scene->closest(at.position, drawn.direction);
+    // A direction in floats may fall past the edge of its triangle.
+    if (!hit.any() || scene->part(hit.triangle) != drawn.part) {
+      ++astray;
+      continue;
+    }
+    EXPECT_NEAR(hit.distance / drawn.distance, 1, 1e-4);
+    if (std::abs(hit.u * hit.v * (1 - hit.u - hit.v)) < 1e-6) continue;
+    EXPECT_NEAR(emitters->pdf(at, hit.triangle, drawn.direction, hit.distance) / drawn.pdf, 1, 1e-3);
+  }
+  EXPECT_LT(astray, kCount / 500);
+}
+
+// A strip 2 long and 1/16 wide, 1/8 before a surface, whose irradiance for a radiance of 1 is known in closed form: pi
+// F of a parallel rectangle with a corner on the normal. Drawn evenly by area, the control, this light has a relative
+// variance of 11 a sample; by what the strip sends to the point it has 0.95, of which the choice between its two
+// triangles is the most.
+TEST(Samplers, AStripNearASurfaceHasLittleNoise) {
+  mesh::Mesh mesh;
+  constexpr double kLong = 2, kWide = 1.0 / 16, kHigh = 1.0 / 8;
+  mesh.positions = {{0, 0, 0}, {kLong, 0, 0}, {kLong, kWide, 0}, {0, kWide, 0}};
+  mesh.normals.assign(4, {0, 0, 1});
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.parts = {{"strip", "", 0, 2}};
+  const auto scene = rays::RayScene::create(mesh);
+  ASSERT_TRUE(scene.ok());
+  const auto emitters = Emitters::create(*scene, {{1, 1, 1}});
+  ASSERT_TRUE(emitters.ok());
+  const double a = kLong / kHigh, b = kWide / kHigh, root_a = std::sqrt(1 + a * a), root_b = std::sqrt(1 + b * b);
+  const double irradiance = 0.5 * (a / root_a * std::atan(b / root_a) + b / root_b * std::atan(a / root_b));
+  const LitPoint at{scene->local({0, 0, kHigh}), {0, 0, -1}};
+  double sum = 0, squares = 0, by_area = 0;
+  constexpr int kCount = 40000;
+  TestNumbers next(6);
+  for (int i = 0; i < kCount; ++i) {
+    const EmitterSample drawn = emitters->drawn(at, next(), next(), next());
+    const double value = drawn.pdf > 0 ? -drawn.direction.z / drawn.pdf : 0.0;
+    sum += value / kCount, squares += value * value / kCount;
+    const double x = kLong * next(), y = kWide * next(), square = x * x + y * y + kHigh * kHigh,
+                 even = kLong * kWide * kHigh * kHigh / (square * square);
+    by_area += even * even / kCount;
+  }
+  const double variance = squares / (irradiance * irradiance) - 1;
+  EXPECT_NEAR(sum / irradiance, 1, 5 * std::sqrt(variance / kCount));
+  EXPECT_LT(variance, 2);
+  EXPECT_GT(by_area / (irradiance * irradiance) - 1, 5);  // control
 }
 
 TEST(Samplers, EmittersWithoutAreaOrWithoutAnEndAreRefused) {

@@ -225,7 +225,7 @@ void SpectralPaths::add_direct(const Transport& transport, const Vertex& vertex,
   const rays::RayScene& rays = transport.rays();
   const Float3& start = vertex.spot.start;
   if (!transport.emitters_.empty()) {
-    const EmitterSample light = transport.emitters_.drawn(start, emitter[0], emitter[1], emitter[2]);
+    const EmitterSample light = transport.emitters_.drawn(lit_point(vertex.spot), emitter[0], emitter[1], emitter[2]);
     if (light.pdf > 0) {
       const PaintedPoint::Shares shares = vertex.painted.shares(light.direction);
       if (shares.pdf > 0 && !rays.blocked(start, light.direction, Transport::kShort * light.distance))
@@ -272,7 +272,8 @@ SpectralPaths::Next SpectralPaths::next_ray(const Transport& transport, const Ve
 }
 
 // The emitter and the lamps that the next ray found.
-void SpectralPaths::add_found(const Transport& transport, const Next& next, const Carrier& path, Carrier& sum) const {
+void SpectralPaths::add_found(const Transport& transport, const Vertex& vertex, const Next& next, const Carrier& path,
+                              Carrier& sum) const {
   static constexpr Carrier kWhole = [] {
     Carrier ones{};
     ones.fill(1);
@@ -292,7 +293,8 @@ void SpectralPaths::add_found(const Transport& transport, const Next& next, cons
   if (!next.hit.any() || next.hit.triangle == rays::kFloor) return;
   const int part = transport.rays().part(next.hit.triangle);
   if (transport.emitters_.radiance(part) == color::Rgb{}) return;
-  const double light_pdf = transport.emitters_.pdf(next.hit.triangle, next.direction, next.hit.distance);
+  const double light_pdf =
+      transport.emitters_.pdf(lit_point(vertex.spot), next.hit.triangle, next.direction, next.hit.distance);
   const double share = mirrored ? 1 : next.pdf / (next.pdf + light_pdf);
   add_product(sum, static_cast<float>(share), path, kWhole, emission(part));
 }
@@ -314,7 +316,7 @@ void SpectralPaths::add_path(const Transport& transport, const PathOptions& opti
     add_direct(transport, vertex, path, emitter, lamp, sum);
     const Next next = next_ray(transport, vertex, onward, path);
     if (!(next.pdf > 0)) return;
-    add_found(transport, next, path, sum);
+    add_found(transport, vertex, next, path, sum);
     if (!next.hit.any() || surfaces == most) return;
     if (surfaces >= kRouletteFrom) {
       const float worth = std::ranges::max(path) * static_cast<float>(transport.brightness(next.hit)),

@@ -42,7 +42,8 @@ class SpectralPaths {
                   const std::array<double, 4>& emitter, const std::array<double, 4>& lamp, Carrier& sum) const;
   Next next_ray(const Transport& transport, const Vertex& vertex, const std::array<double, 4>& numbers,
                 Carrier& path) const;
-  void add_found(const Transport& transport, const Next& next, const Carrier& path, Carrier& sum) const;
+  void add_found(const Transport& transport, const Vertex& vertex, const Next& next, const Carrier& path,
+                 Carrier& sum) const;
   void add_path(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
                 const rays::Float3& to_viewer, const Sequence& sequence, std::uint32_t index, Carrier& sum) const;
   const Carrier& emission(int part) const {

@@ -341,7 +341,7 @@ color::Rgb Transport::direct_light(const Vertex& vertex, const PathProduct& path
     }
   }
   if (!emitters_.empty()) {
-    const EmitterSample light = emitters_.drawn(start, choice, numbers[2], numbers[3]);
+    const EmitterSample light = emitters_.drawn(lit_point(vertex.spot), choice, numbers[2], numbers[3]);
     if (light.pdf > 0) {
       const Reflection reflection = vertex.painted.at(light.direction);
       if (reflection.pdf > 0 && !rays_->blocked(start, light.direction, kShort * light.distance))
@@ -403,7 +403,8 @@ Transport::Next Transport::next_ray(const Vertex& vertex, PathProduct& path,
 }
 
 // The environment or an emitter that the next ray found.
-color::Rgb Transport::light_at_end(const Next& next, const PathProduct& path, bool laid) const {
+color::Rgb Transport::light_at_end(const Vertex& vertex, const Next& next, const PathProduct& path) const {
+  const bool laid = vertex.is_laid;
   const auto share = [&](double light_pdf) { return std::isinf(next.pdf) ? 1 : next.pdf / (next.pdf + light_pdf); };
   color::Rgb sum;
   if (std::isinf(next.pdf) && !lights_.empty()) sum += path.shown(mirrored_lamps(next.start, next.direction, next.hit));
@@ -415,7 +416,8 @@ color::Rgb Transport::light_at_end(const Next& next, const PathProduct& path, bo
   if (!next.hit.any()) return sum;
   const color::Rgb& emission = emitters_.radiance(rays_->part(next.hit.triangle));
   if (emission == color::Rgb{}) return sum;
-  return sum + share(emitters_.pdf(next.hit.triangle, next.direction, next.hit.distance)) * path.shown(emission);
+  return sum + share(emitters_.pdf(lit_point(vertex.spot), next.hit.triangle, next.direction, next.hit.distance)) *
+                   path.shown(emission);
 }
 
 // What the surface at `hit` sends back along the ray, its own emission apart.
@@ -440,7 +442,7 @@ color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const Pa
     sum += direct_light(vertex, path, to_light, onward[3]);
     const Next next = next_ray(vertex, path, onward);
     if (!(next.pdf > 0)) break;
-    sum += light_at_end(next, path, vertex.is_laid);
+    sum += light_at_end(vertex, next, path);
     if (!next.hit.any() || (surfaces == most && !is_laid(next.hit))) break;
     if (bounce >= kRouletteFrom) {
       const double most_chance = bounce >= kEndlessFrom ? kEndlessChance : 1;
@@ -468,7 +470,7 @@ Transport::FloorLight Transport::off_floor(const Hit& hit, const Float3& origin,
   light.fixed += direct_light(vertex, path, to_light, onward[3]);
   const Next next = next_ray(vertex, path, onward);
   if (!(next.pdf > 0)) return light;
-  light.fixed += light_at_end(next, path, true);
+  light.fixed += light_at_end(vertex, next, path);
   if (!next.hit.any() || bounces == 0) return light;
   PathOptions further;
   further.bounces = bounces;

@@ -173,7 +173,7 @@ class Transport {
   color::Rgb direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,
                           double choice) const;
   Next next_ray(const Vertex& vertex, PathProduct& path, const std::array<double, 4>& numbers) const;
-  color::Rgb light_at_end(const Next& next, const PathProduct& path, bool laid) const;
+  color::Rgb light_at_end(const Vertex& vertex, const Next& next, const PathProduct& path) const;
   // A lamp as the point sees it, and how far a ray to it goes (local).
   struct SeenLamp {
     Light light;
