@@ -14,6 +14,7 @@
 #include "render/exact.h"
 #include "render/internal/seen.h"
 #include "render/path/scenes_for_paths_for_test.h"
+#include "render/plan/spread_pixels.h"
 
 namespace goniochrome::render {
 namespace {
@@ -102,18 +103,15 @@ struct Seen {
 Seen seen_of(const PathStage& stage, const Camera& camera, int width, int height) {
   Seen seen;
   const VisibleSurface surface = visible_surface(stage.transport->rays(), *rays(camera, width, height), width, height);
+  const auto gbuffer = std::make_shared<const Gbuffer>(surface.gbuffer);
   std::vector<SurfacePoint> exact;
   ExactModel model;
   model.fresnel = true;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const Gbuffer& g = surface.gbuffer;
-      if (g.part(x, y) < 0) continue;
-      seen.points.push_back({spot_at(stage.transport->rays(), surface, x, y), rays::float3(g.to_viewer(x, y))});
-      seen.to_viewer.push_back(g.to_viewer(x, y));
-      exact.push_back(
-          {g.normal(x, y), g.to_viewer(x, y), &stage.scene.paints[static_cast<std::size_t>(g.part(x, y))], &model});
-    }
+  for (const auto& [g, x, y] : spread_pixels({gbuffer}, gbuffer->data.size())) {
+    seen.points.push_back({spot_at(stage.transport->rays(), surface, x, y), rays::float3(g->to_viewer(x, y))});
+    seen.to_viewer.push_back(g->to_viewer(x, y));
+    exact.push_back(
+        {g->normal(x, y), g->to_viewer(x, y), &stage.scene.paints[static_cast<std::size_t>(g->part(x, y))], &model});
   }
   seen.base = reference_radiance(exact, stage.environment ? &*stage.environment : nullptr, stage.scene.lights);
   return seen;
