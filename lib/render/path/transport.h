@@ -251,12 +251,13 @@ class PointTransport {
   }
   // The same of any sequence.
   color::Rgb part_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count) const {
-    return shares_of(sequence, first, count, nullptr).sum();
+    return shares_of(sequence, first, count).sum();
   }
+  LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count,
+                        bool* any_blocked = nullptr) const;
 
  private:
   struct Ray;
-  LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count, bool* any_blocked) const;
   void narrow_to_mesh();
   void add_lights();
   void add_mirror();

@@ -10,6 +10,7 @@
 
 #include "render/plan/pane_probe.h"
 #include "render/plan/path_price.h"
+#include "render/plan/spread_pixels.h"
 
 namespace goniochrome::render {
 
@@ -22,7 +23,7 @@ constexpr std::size_t kRayProbe = 4096;
 constexpr double kSafety = 0.8;
 constexpr RayEffects kAll{true, true, true};
 
-bool RayEffects::*const kFlags[kEffects] = {&RayEffects::shadow, &RayEffects::self, &RayEffects::bounce};
+bool RayEffects::* const kFlags[kEffects] = {&RayEffects::shadow, &RayEffects::self, &RayEffects::bounce};
 
 RayEffects nested(RayEffects effects) {
   effects.self = effects.self && effects.shadow;
@@ -225,7 +226,7 @@ FloorChoice floor_choice(const RayProbe& probe, const FloorProbe& beside, const 
   RayEffects all = kAll;
   const RayLimits limits = limits_of(wishes, forced_state(wishes));
   const double mesh_ms = probe.cost(all, aim, wishes.visible_points, wishes.samples, limits).ms;
-  const double without_ms = probe.cost_without_floor(all, aim, wishes.visible_points, wishes.samples, limits).ms;
+  const double without_ms = probe.cost_without_floor(aim, wishes.visible_points, wishes.samples, limits).ms;
   const double beside_ms = beside.cost_ms(wishes.floor_pixels, wishes.samples);
   item.cost_ms = std::max(0.0, mesh_ms + beside_ms - without_ms);
   item.decision = forced ? Decision::kForcedOn : Decision::kDrawn;
@@ -251,7 +252,7 @@ RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<con
   }
   std::vector<VisiblePoint> points;
   std::vector<RayPoint> ray_points;
-  const std::vector<ProbePixel> pixels_seen = probe_pixels(gbuffers, kRayProbe);
+  const std::vector<ProbePixel> pixels_seen = spread_pixels(gbuffers, kRayProbe);
   for (const auto& [gbuffer, x, y] : pixels_seen) {
     points.push_back(gbuffer->point(x, y, {}, scene.mesh));
     ray_points.push_back(ray_point(rays.transport->rays(), *scene.mesh, *gbuffer, x, y));

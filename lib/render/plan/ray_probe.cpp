@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/clock.h"
 #include "base/parallel.h"
@@ -14,43 +13,39 @@ namespace goniochrome::render {
 
 namespace {
 
-// The points, and the fans of each in the first round. Rare bright paths hold much of the light that is passed on: a
-// point that has seen none of them looks darker than it is, so that fewer points with more fans tell its worth better.
-constexpr std::size_t kPoints = 2048;
-constexpr int kFirstFans = 4;
-// Those of them at which a floor is traced as well.
-constexpr std::size_t kFloorPoints = 512;
-// No point gets more fans than that, and all points together no more than so many.
+// The fans of each point in the first round: two tell its noise.
+constexpr int kFirstFans = 2;
+// What the floor changes is told from so many points or more, if there are so many.
+constexpr std::size_t kFloorPoints = 1024;
+// No point gets more fans than that, and all points together no more than so many, and no fewer.
 constexpr int kMostFans = 128;
-constexpr int kMostInAll = 65536;
-constexpr int kMostRounds = 8;
-// A percentile is known well enough when its standard error is within this part of it, or below what nobody sees.
-constexpr double kSharpPart = 0.07, kUnseen = 0.03;
+constexpr int kLeastInAll = 8192, kMostInAll = 32768;
+// A point's fans are of so many independent sequences in turn: the longer one is, the more evenly it covers what the
+// point sees.
+constexpr std::uint32_t kSequences = 2;
+constexpr int kMostRounds = 6;
+// The noise of a point is small enough when it is within this part of the percentile, apart from what nobody sees.
+constexpr double kSharpPart = 0.15, kUnseen = 0.03;
 // A point may lie on either side of the percentile if it is no farther from it than so many standard errors.
 constexpr double kDoubt = 2;
 // Points that are traced once more without light that is passed on, for the time of that.
 constexpr std::size_t kTimed = 64;
 
-// The fans from `first` in steps of `step`.
-LightShares mean_of(const std::vector<LightShares>& fans, std::size_t first, std::size_t step) {
-  LightShares sum;
-  int count = 0;
-  for (std::size_t i = first; i < fans.size(); i += step, ++count) sum += fans[i];
-  return count > 0 ? (1.0 / count) * sum : sum;
+constexpr RayEffects kAll{true, true, true};
+
+constexpr RayEffects kNoSelf{true, false, true}, kNoBounce{true, true, false};
+
+// Whether pictures of a mesh are the same with both.
+bool alike(const RayEffects& a, const RayEffects& b) {
+  return a.shadow == b.shadow && a.self == b.self && a.bounce == b.bounce;
 }
 
-constexpr RayEffects kAll{true, true, true};
+std::size_t number_of(const RayEffects& effects) {
+  return (effects.self ? 1 : 0) + (effects.bounce ? 2 : 0);
+}
 
 std::size_t place_of_percentile(std::size_t count) {
   return (count * 95 + 99) / 100 - 1;
-}
-
-// A step near the golden section of n that shares no factor with it: points taken in such steps are spread evenly, as
-// many as there may be.
-std::size_t scattering(std::size_t n) {
-  auto step = static_cast<std::size_t>(0.6180339887 * static_cast<double>(n)) + 1;
-  while (n > 1 && std::gcd(step, n) != 1) ++step;
-  return step;
 }
 
 }  // namespace
@@ -62,27 +57,26 @@ RayPoint ray_point(const rays::RayScene& scene, const mesh::Mesh& mesh, const Gb
   return {scene.spot(hit, scene.local(gbuffer.rays.eye), rays::float3(-to_viewer)), rays::float3(to_viewer)};
 }
 
-// The three comparisons that a plan makes, and that of the floor.
-const std::vector<RayProbe::Comparison>& RayProbe::comparisons() {
-  static const std::vector<Comparison> all = {
-      {kAll, {}}, {kAll, {true, false, true}}, {kAll, {true, true, false}}, {kAll, kAll, true}};
-  return all;
-}
-
 RayProbe RayProbe::traced(const ProbeSetting& setting, const std::vector<RayPoint>& points,
                           const std::vector<color::Rgb>& base) {
   RayProbe probe;
   probe.white_ = setting.white_luminance > 0 ? setting.white_luminance : 1;
   probe.visible_points_ = setting.visible_points;
   if (points.empty()) return probe;
-  probe.floor_points_ = setting.without_floor != nullptr ? std::min(kFloorPoints, points.size()) : 0;
-  probe.add_points(points, base, std::min(kPoints, points.size()));
+  probe.points_ = points, probe.base_ = base;
+  probe.drawn_.resize(points.size());
+  probe.floor_step_ = std::max<std::size_t>(1, points.size() / kFloorPoints);
+  if (setting.without_floor != nullptr)
+    probe.without_floor_.resize((points.size() + probe.floor_step_ - 1) / probe.floor_step_);
   const Stopwatch clock;
-  probe.trace(setting, std::vector<int>(probe.size(), kFirstFans));
+  probe.trace(setting, std::vector<int>(points.size(), kFirstFans));
   const double first_round_ms = 1000 * clock.elapsed_s();
-  if (probe.free() && probe.floor_points_ == 0) return probe;
+  if (probe.free() && probe.without_floor_.empty()) return probe;
   probe.refine(setting);
-  probe.time(setting, first_round_ms / static_cast<double>(probe.size() + probe.floor_points_));
+  for (const RayEffects& effects : {kAll, kNoSelf, kNoBounce, RayEffects{true, false, false}})
+    probe.needs_[number_of(effects)] = probe.needs(probe.drawn_, 1, effects);
+  probe.needs_without_floor_ = probe.needs(probe.without_floor_, probe.floor_step_, kAll);
+  probe.time(setting, first_round_ms / static_cast<double>(probe.size() + probe.without_floor_.size()));
   return probe;
 }
 
@@ -91,7 +85,9 @@ RayProbe RayProbe::traced(const ProbeSetting& setting, const std::vector<RayPoin
 void RayProbe::time(const ProbeSetting& setting, double of_point_ms) {
   constexpr int kFew = 2, kMany = 10;
   RayProbe plain;
-  for (std::size_t i = 0; i < std::min(size(), kTimed); ++i) plain.points_.push_back({points_[i].at, {}, {}, {}});
+  const std::size_t step = (size() + kTimed - 1) / kTimed;
+  for (std::size_t i = 0; i < size(); i += step) plain.points_.push_back(points_[i]), plain.base_.push_back(base_[i]);
+  plain.drawn_.resize(plain.size());
   ProbeSetting without = setting;
   without.bounces = 0;
   const auto traced_ms = [&](int fans) {
@@ -105,18 +101,15 @@ void RayProbe::time(const ProbeSetting& setting, double of_point_ms) {
   passed_ms_ = std::max(direct_ms_, (of_point_ms - point_ms_) / kFirstFans);
 }
 
-void RayProbe::add_points(const std::vector<RayPoint>& points, const std::vector<color::Rgb>& base, std::size_t count) {
-  const std::size_t step = scattering(points.size());
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t i = k * step % points.size();
-    points_.push_back({points[i], base[i], {}, {}});
-  }
+std::size_t RayProbe::fans(std::size_t i) const {
+  const bool twice = !without_floor_.empty() && i % floor_step_ == 0;
+  return drawn_[i].fans.size() + (twice ? without_floor_[i / floor_step_].fans.size() : 0);
 }
 
 std::size_t RayProbe::samples() const {
-  std::size_t fans = 0;
-  for (const Point& point : points_) fans += point.drawn.fans.size() + point.without_floor.fans.size();
-  return fans * kFan;
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < size(); ++i) sum += fans(i);
+  return sum * kFan;
 }
 
 void RayProbe::trace(const ProbeSetting& setting, const std::vector<int>& more) {
@@ -125,18 +118,20 @@ void RayProbe::trace(const ProbeSetting& setting, const std::vector<int>& more) 
   options.correction = true;
   PathOptions whole = options;
   whole.correction = false;
-  const auto add = [&](const Transport& transport, std::size_t i, Light& light) {
-    const RayPoint& from = points_[i].at;
+  const auto add = [&](const Transport& transport, std::size_t i, SampledLight& light) {
+    const RayPoint& from = points_[i];
     // As path_picture() has it.
-    const bool hidden = transport.open_share(from.spot) < kMostlyHidden;
-    const PointTransport at(transport, hidden ? whole : options, from.spot, from.to_viewer);
+    if (light.fans.empty()) light.hidden = transport.open_share(from.spot) < kMostlyHidden;
+    const PointTransport at(transport, light.hidden ? whole : options, from.spot, from.to_viewer);
     light.certain = at.certain();
     light.sure = {at.sure(), {}, {}};
-    if (hidden) light.sure.direct += -1.0 * points_[i].base;
-    light.blocked = light.blocked || hidden || at.sure() != color::Rgb{};
+    if (light.hidden) light.sure.direct += -1.0 * base_[i];
+    light.blocked = light.blocked || light.hidden || at.sure() != color::Rgb{};
     for (int k = 0; k < more[i] && !light.certain; ++k) {
+      const std::size_t fan = light.fans.size();
+      const Sequence sequence(mixed(mixed(setting.seed, i), fan % kSequences), kFan * kMostFans / kSequences);
       bool blocked = false;
-      light.fans.push_back(at.batch_shares(mixed(mixed(setting.seed, i), light.fans.size()), 0, kFan, &blocked));
+      light.fans.push_back(at.shares_of(sequence, static_cast<std::uint32_t>(fan / kSequences * kFan), kFan, &blocked));
       light.blocked = light.blocked || blocked;
     }
   };
@@ -144,167 +139,198 @@ void RayProbe::trace(const ProbeSetting& setting, const std::vector<int>& more) 
   parallel_for(points_.size(), kTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (more[i] == 0) continue;
-      add(*setting.transport, i, points_[i].drawn);
-      if (i < floor_points_) add(*setting.without_floor, i, points_[i].without_floor);
+      add(*setting.transport, i, drawn_[i]);
+      if (i % floor_step_ == 0 && !without_floor_.empty())
+        add(*setting.without_floor, i, without_floor_[i / floor_step_]);
     }
   });
-  blocked_ = 0;
-  for (const Point& point : points_) blocked_ += point.drawn.blocked ? 1 : 0;
+  tell_lights(points_, 1, drawn_);
+  tell_lights(points_, floor_step_, without_floor_);
+  tell_floor();
+  blocked_ = static_cast<std::size_t>(std::ranges::count_if(drawn_, &SampledLight::blocked));
 }
 
-// A percentile is decided by the points about it: those get samples that may lie on either side of it, until the
-// percentiles are sharp or the samples are spent.
+// Both draw the same random numbers, so that their difference has less noise than either, and it is told as light is:
+// each told by points of its own that are alike, they would differ where they do not.
+void RayProbe::tell_floor() {
+  of_floor_.resize(without_floor_.size());
+  for (std::size_t j = 0; j < of_floor_.size(); ++j) {
+    const SampledLight &with = drawn_[j * floor_step_], &without = without_floor_[j];
+    SampledLight& change = of_floor_[j];
+    change.sure = with.sure;
+    change.sure += -1.0 * without.sure;
+    change.certain = with.certain && without.certain;
+    change.hidden = with.hidden;
+    change.fans.assign(std::max(with.fans.size(), without.fans.size()), {});
+    for (std::size_t k = 0; k < with.fans.size(); ++k) change.fans[k] += with.fans[k];
+    for (std::size_t k = 0; k < without.fans.size(); ++k) change.fans[k] += -1.0 * without.fans[k];
+  }
+  tell_lights(points_, floor_step_, of_floor_);
+}
+
+// A percentile is decided by the points about it: those get samples that may lie on either side of it, until their
+// noise is small or the samples are spent. That the percentile seems to be known is no reason to stop sooner: the noise
+// of all points together moves it to one side.
 void RayProbe::refine(const ProbeSetting& setting) {
+  // Where few points need rays at all, these get the more of them.
+  for (int fans = kFirstFans; 2 * fans <= kMostFans && samples() < std::size_t{kLeastInAll} * kFan; fans *= 2)
+    trace(setting, std::vector<int>(size(), fans));
   for (int round = 0; round < kMostRounds; ++round) {
-    std::vector<double> wish(size(), 0);
-    bool sharp = true;
-    for (const Comparison& comparison : comparisons()) {
-      if (count_for(comparison) == 0) continue;
-      const std::vector<Change> all = changes(comparison);
-      if (add_ambiguous(all, worth(all), wish)) sharp = false;
-    }
-    if (sharp) return;
-    std::vector<std::size_t> order(size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return wish[a] > wish[b]; });
-    int left = kMostInAll - static_cast<int>(samples() / kFan);
+    compare();
+    const std::vector<std::size_t> noisy = in_doubt();
+    const auto left = static_cast<double>(kMostInAll) - static_cast<double>(samples()) / kFan;
+    double wanted = 0;
+    for (const std::size_t i : noisy) wanted += static_cast<double>(fans(i));
+    if (noisy.empty() || left <= 0) return;
+    // Where that is too much, some of them, all over the picture.
+    const double taken = std::min(1.0, left / wanted);
     std::vector<int> more(size(), 0);
-    bool any = false;
-    for (const std::size_t i : order) {
-      const int has = fans(i);
-      if (wish[i] == 0 || left <= 0) break;
-      more[i] = std::clamp(std::max(has, kFirstFans), 0, std::min(left, kMostFans - has));
-      left -= i < floor_points_ ? 2 * more[i] : more[i];
-      any = any || more[i] > 0;
-    }
-    if (!any) return;
+    for (std::size_t k = 0; k < noisy.size(); ++k)
+      if (std::floor((k + 1.0) * taken) > std::floor(static_cast<double>(k) * taken))
+        more[noisy[k]] = static_cast<int>(drawn_[noisy[k]].fans.size());
     trace(setting, more);
   }
+  compare();
 }
 
-// How much each of the points in doubt wishes for samples; whether there is any.
-bool RayProbe::add_ambiguous(const std::vector<Change>& changes, const Worth& worth, std::vector<double>& wish) const {
-  const double enough = std::max(kUnseen, kSharpPart * worth.de00_p95);
-  // A point that rare bright paths have missed so far shows too small an error of its own: it has at least what
-  // 19 of 20 points have.
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < changes.size(); ++i)
-    if (changes[i].standard_error > 0) errors.push_back(changes[i].standard_error * std::sqrt(fans(i)));
-  double usual = 0;
-  if (!errors.empty()) {
-    const auto large = errors.begin() + static_cast<std::ptrdiff_t>(19 * errors.size() / 20);
-    std::ranges::nth_element(errors, large);
-    usual = *large;
+// The points that may lie on either side of a percentile, and whose noise is too much to tell.
+std::vector<std::size_t> RayProbe::in_doubt() const {
+  std::vector<char> noisy(size(), 0);
+  for (const Changes& all : compared_) {
+    const std::size_t step = all.of.floor ? floor_step_ : 1;
+    const double worth = all.worth.de00_p95;
+    parallel_for(all.de00.size(), 128, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = begin; j < end; ++j) {
+        const std::size_t i = j * step;
+        const double away = std::abs(all.de00[j] - worth);
+        if (drawn_[i].certain || 2 * drawn_[i].fans.size() > std::size_t{kMostFans} || away > worth + kUnseen) continue;
+        const double error = noise(i, all.of);
+        if (error > kSharpPart * worth + kUnseen && away <= kDoubt * error) noisy[i] = 1;
+      }
+    });
   }
-  bool any = false;
-  for (std::size_t i = 0; i < changes.size(); ++i) {
-    const Change& change = changes[i];
-    if (fans(i) == 0 || fans(i) >= kMostFans) continue;
-    const double error = std::max(change.standard_error, usual / std::sqrt(fans(i)));
-    if (error <= 0.5 * enough || std::abs(change.de00 - worth.de00_p95) > kDoubt * error) continue;
-    wish[i] = std::max(wish[i], error / enough);
-    any = true;
+  std::vector<std::size_t> points;
+  for (std::size_t i = 0; i < size(); ++i)
+    if (noisy[i] != 0) points.push_back(i);
+  return points;
+}
+
+// The three comparisons that a plan makes, and that of the floor.
+void RayProbe::compare() {
+  compared_ = {changes({kAll, {}}), changes({kAll, kNoSelf}), changes({kAll, kNoBounce})};
+  if (!without_floor_.empty()) compared_.push_back(changes({kAll, kAll, true}));
+}
+
+double RayProbe::change(std::size_t i, const Comparison& comparison) const {
+  const SampledLight& light = drawn_[i];
+  const color::Rgb with = light.told.shown(comparison.with);
+  color::Rgb without = light.told.shown(comparison.without);
+  if (comparison.floor) {
+    if (!light.blocked && !without_floor_[i / floor_step_].blocked) return 0;
+    without += -1.0 * of_floor_[i / floor_step_].told.sum();
+  } else if (!light.blocked) {
+    return 0;
   }
-  return any;
+  return seen_difference(base_[i] + with, base_[i] + without, white_);
 }
 
-color::Rgb RayProbe::added(std::size_t i, const RayEffects& effects) const {
-  const Light& light = points_[i].drawn;
-  return light.sure.shown(effects) + mean_of(light.fans, 0, 1).shown(effects);
-}
-
-// With n fans the expectation of the squared difference is d^2 + c/n + O(1/n^2), whatever the metric: c holds the
-// variance and the curvature. Halves of the fans have twice the excess, which takes it off.
-RayProbe::Change RayProbe::change(std::size_t i, const Comparison& comparison) const {
-  const Point& point = points_[i];
-  const Light& first = point.drawn;
-  const Light& second = comparison.floor ? point.without_floor : point.drawn;
-  if (!first.blocked && !second.blocked) return {};
-  const auto squared = [&](std::size_t begin, std::size_t step) {
-    LightShares a = mean_of(first.fans, begin, step), b = mean_of(second.fans, begin, step);
-    a += first.sure, b += second.sure;
-    const double d =
-        seen_difference(point.base + a.shown(comparison.with), point.base + b.shown(comparison.without), white_);
-    return d * d;
-  };
-  const double whole = squared(0, 1);
-  const std::size_t count = first.fans.size();
-  if (count < 2) return {std::sqrt(whole), 0};
-  Estimates values;
-  for (std::size_t k = 0; k < count; ++k) {
-    const color::Rgb other = k < second.fans.size() ? second.fans[k].shown(comparison.without) : color::Rgb{};
-    values.add(first.fans[k].shown(comparison.with) - other);
-  }
-  Covariance covariance = values.covariance();
-  for (double& element : covariance) element /= static_cast<double>(count);
-  const color::Rgb shown =
-      point.base + first.sure.shown(comparison.with) + mean_of(first.fans, 0, 1).shown(comparison.with);
-  return {std::sqrt(std::max(0.0, 2 * whole - 0.5 * (squared(0, 2) + squared(1, 2)))),
-          noise_de00(shown, covariance, white_)};
-}
-
-std::size_t RayProbe::count_for(const Comparison& comparison) const {
-  return comparison.floor ? floor_points_ : size();
-}
-
-std::vector<RayProbe::Change> RayProbe::changes(const Comparison& comparison) const {
-  std::vector<Change> all(count_for(comparison));
-  parallel_for(all.size(), 128, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) all[i] = change(i, comparison);
-  });
-  return all;
+double RayProbe::noise(std::size_t i, const Comparison& comparison) const {
+  const Covariance noise = comparison.floor ? covariance(of_floor_[i / floor_step_], kAll, {})
+                                            : covariance(drawn_[i], comparison.with, comparison.without);
+  return noise_de00(base_[i] + drawn_[i].told.shown(comparison.with), noise, white_);
 }
 
 // The percentile's own error: of n points, drawn from N, the k-th in order lies between those that are one standard
 // deviation away from it in the order. The choice of points moves the place with the variance n 0.95 0.05 (1 - n/N),
 // and each point that noise may have put on the wrong side moves it with 1/4.
-Worth RayProbe::worth(std::vector<Change> changes) const {
-  if (changes.empty()) return {};
-  std::ranges::sort(changes, {}, &Change::de00);
-  const std::size_t n = changes.size(), k = place_of_percentile(n);
-  const double worth = changes[k].de00;
-  const auto in_doubt = static_cast<double>(std::ranges::count_if(changes, [&](const Change& change) {
-    return change.standard_error > 0 && std::abs(change.de00 - worth) <= change.standard_error;
-  }));
+RayProbe::Changes RayProbe::changes(const Comparison& comparison) const {
+  const std::size_t step = comparison.floor ? floor_step_ : 1;
+  Changes all;
+  all.of = comparison;
+  all.de00.resize(comparison.floor ? without_floor_.size() : size());
+  if (all.de00.empty()) return all;
+  parallel_for(all.de00.size(), 128, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t j = begin; j < end; ++j) all.de00[j] = change(j * step, comparison);
+  });
+  std::vector<double> sorted = all.de00;
+  std::ranges::sort(sorted);
+  const std::size_t n = sorted.size(), k = place_of_percentile(n);
+  const double worth = sorted[k];
+  const auto half_width = [&](double places) {
+    const auto spread = static_cast<std::size_t>(std::lround(places));
+    return 0.5 * (sorted[std::min(n - 1, k + spread)] - sorted[k - std::min(k, spread)]);
+  };
+  std::vector<char> doubted(n, 0);
+  parallel_for(n, 128, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t j = begin; j < end; ++j) {
+      const double away = std::abs(all.de00[j] - worth);
+      doubted[j] = all.de00[j] > 0 && away <= 0.5 * worth + kUnseen && away <= noise(j * step, comparison) ? 1 : 0;
+    }
+  });
+  const auto in_doubt = static_cast<double>(std::ranges::count(doubted, 1));
   const auto count = static_cast<double>(n);
   const double chosen = visible_points_ > 0 ? std::max(0.0, 1 - count / visible_points_) : 1;
-  const double places = std::sqrt(0.95 * 0.05 * count * chosen + 0.25 * in_doubt);
-  const auto spread = static_cast<std::size_t>(std::lround(places));
-  return {worth, 0.5 * (changes[std::min(n - 1, k + spread)].de00 - changes[k - std::min(k, spread)].de00)};
+  all.worth = {worth, half_width(std::sqrt(0.95 * 0.05 * count * chosen + 0.25 * in_doubt))};
+  return all;
 }
 
 Worth RayProbe::worth(const RayEffects& with, const RayEffects& without) const {
-  return worth(changes({with, without, false}));
+  for (const Changes& known : compared_)
+    if (!known.of.floor && alike(known.of.with, with) && alike(known.of.without, without)) return known.worth;
+  return changes({with, without, false}).worth;
 }
 
 std::optional<Worth> RayProbe::floor_worth() const {
-  if (floor_points_ == 0) return std::nullopt;
-  return worth(changes({kAll, kAll, true}));
+  if (without_floor_.empty()) return std::nullopt;
+  return compared_.back().worth;
+}
+
+// As path_picture() judges noise: a point's own variance counts by its freedom, that of the points that are alike as so
+// many.
+std::vector<double> RayProbe::needs(const Lights& lights, std::size_t step, const RayEffects& effects) const {
+  constexpr double kOfAlike = 4;
+  std::vector<Covariance> own(lights.size());
+  parallel_for(lights.size(), 128, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Estimates values;
+      for (const LightShares& fan : lights[i].fans) values.add(fan.shown(effects));
+      own[i] = values.covariance();
+    }
+  });
+  std::vector<double> needs(lights.size(), 0);
+  parallel_for(lights.size(), 128, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const SampledLight& light = lights[i];
+      if (light.certain) continue;
+      const double freedom = static_cast<double>(light.fans.size()) - 1;
+      Covariance of_fan{};
+      for (std::size_t c = 0; c < of_fan.size(); ++c) {
+        double alike = 0;
+        for (std::uint32_t a = 0; a < light.alike_count; ++a) alike += own[light.alike[a]][c] / light.alike_count;
+        of_fan[c] = (freedom * own[i][c] + kOfAlike * alike) / (freedom + kOfAlike);
+      }
+      const double noise = noise_de00(base_[i * step] + light.told.shown(effects), of_fan, white_);
+      needs[i] = noise * noise;
+    }
+  });
+  return needs;
 }
 
 // As path_picture() shares out its samples.
-RayCost RayProbe::cost_of(Light Point::*of, std::size_t count, const RayEffects& effects, double tolerance_de00,
-                          double visible_points, int samples, const RayLimits& limits) const {
+RayCost RayProbe::cost_of(const Lights& lights, const std::vector<double>& needs, const RayEffects& effects,
+                          double tolerance_de00, double visible_points, int samples, const RayLimits& limits) const {
   RayCost cost;
-  if (!effects.shadow || count == 0) return cost;
+  if (!effects.shadow || lights.empty()) return cost;
   constexpr double kFewest = 1;
   const double groups = std::ceil(samples / 4.0), tolerance = tolerance_de00 * std::sqrt(groups);
   std::vector<double> needed;
-  std::size_t traced = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Light& light = points_[i].*of;
-    traced += light.certain ? 0 : 1;
-    Estimates values;
-    for (const LightShares& fan : light.fans) values.add(fan.shown(effects));
-    const color::Rgb shown = light.sure.shown(effects) + mean_of(light.fans, 0, 1).shown(effects);
-    const double one = noise_de00(points_[i].base + shown, values.covariance(), white_) / tolerance;
-    needed.push_back(light.certain ? 0 : one * one);
-  }
-  const auto n = static_cast<double>(count);
+  for (const double need : needs) needed.push_back(need / (tolerance * tolerance));
+  const auto traced = std::ranges::count(lights, false, &SampledLight::certain);
+  const auto n = static_cast<double>(lights.size());
   const auto fans_of = [&](double most) {
     double fans = 0;
-    for (std::size_t i = 0; i < count; ++i)
-      fans += (points_[i].*of).certain ? 0 : std::clamp(std::ceil(needed[i]), kFewest, most);
+    for (std::size_t i = 0; i < lights.size(); ++i)
+      fans += lights[i].certain ? 0 : std::clamp(std::ceil(needed[i]), kFewest, most);
     return fans;
   };
   const double wanted = std::max(kFewest, std::ceil(1.05 * percentile_95(needed)));
@@ -331,12 +357,12 @@ RayCost RayProbe::cost_of(Light Point::*of, std::size_t count, const RayEffects&
 
 RayCost RayProbe::cost(const RayEffects& effects, double tolerance_de00, double visible_points, int samples,
                        const RayLimits& limits) const {
-  return cost_of(&Point::drawn, points_.size(), effects, tolerance_de00, visible_points, samples, limits);
+  return cost_of(drawn_, needs_[number_of(effects)], effects, tolerance_de00, visible_points, samples, limits);
 }
 
-RayCost RayProbe::cost_without_floor(const RayEffects& effects, double tolerance_de00, double visible_points,
-                                     int samples, const RayLimits& limits) const {
-  return cost_of(&Point::without_floor, floor_points_, effects, tolerance_de00, visible_points, samples, limits);
+RayCost RayProbe::cost_without_floor(double tolerance_de00, double visible_points, int samples,
+                                     const RayLimits& limits) const {
+  return cost_of(without_floor_, needs_without_floor_, kAll, tolerance_de00, visible_points, samples, limits);
 }
 
 }  // namespace goniochrome::render

@@ -2,7 +2,7 @@
 // how long it takes. goniochrome-theory(7), PLAN, Effects of rays.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -12,14 +12,9 @@
 #include "render/effects.h"
 #include "render/gbuffer.h"
 #include "render/path/transport.h"
+#include "render/plan/sampled_light.h"
 
 namespace goniochrome::render {
-
-// A visible point as rays leave it.
-struct RayPoint {
-  rays::Spot spot;
-  rays::Float3 to_viewer;
-};
 
 // The point that a pixel of a rasterized G-buffer shows, on the very triangle that was drawn there. The pixel must show
 // the mesh, and the G-buffer must have triangles.
@@ -61,9 +56,9 @@ struct ProbeSetting {
 // Some points, with the light that the mesh takes from them and sends to them. Immutable.
 class RayProbe {
  public:
-  // Traces from as many of the points as it takes to know the worth of the effects, within a fixed number of samples.
-  // `points` are in any order that follows the picture; `base` is what they show without the mesh in the way.
-  // Bit-identical for any number of threads, but for the time that it measures.
+  // Traces from the points, which follow the picture in both directions and are evenly spread over it, until the worth
+  // of the effects is known or a fixed number of samples is spent. `base` is what they show without the mesh in the
+  // way. Bit-identical for any number of threads, but for the time that it measures.
   static RayProbe traced(const ProbeSetting& setting, const std::vector<RayPoint>& points,
                          const std::vector<color::Rgb>& base);
 
@@ -74,16 +69,13 @@ class RayProbe {
   std::size_t size() const { return points_.size(); }
   // Of all points together.
   std::size_t samples() const;
-  // What the effects add to the radiance of a point.
-  color::Rgb added(std::size_t point, const RayEffects& effects) const;
-  // What changing the effects changes. Both pictures are told from the same rays. Noise makes points differ that are
-  // the same, so that its share is taken off: theory(7) says how.
+  // What changing the effects changes. Both pictures are told from the same rays.
   Worth worth(const RayEffects& with, const RayEffects& without) const;
   // What the floor changes on the mesh where all other effects are drawn, told from some of the points; nothing where
   // no floor was probed.
   std::optional<Worth> floor_worth() const;
-  // As cost(), of the mesh without the floor that was probed, told from these points.
-  RayCost cost_without_floor(const RayEffects& effects, double tolerance_de00, double visible_points, int samples,
+  // As cost(), of all effects on the mesh without the floor that was probed, told from these points.
+  RayCost cost_without_floor(double tolerance_de00, double visible_points, int samples,
                              const RayLimits& limits = {}) const;
   // Of drawing so many visible points until their noise is within the tolerance or a limit is reached, in so many
   // samples of each pixel.
@@ -91,43 +83,43 @@ class RayProbe {
                const RayLimits& limits = {}) const;
 
  private:
-  struct Light {
-    LightShares sure;
-    std::vector<LightShares> fans;  // means of kFan samples each
-    bool certain = false, blocked = false;
-  };
-  struct Point {
-    RayPoint at;
-    color::Rgb base;
-    Light drawn, without_floor;
-  };
-  // One difference at a point, and the standard error of it.
-  struct Change {
-    double de00 = 0, standard_error = 0;
-  };
+  using Lights = std::vector<SampledLight>;
   // With the floor, if there is one, in both; or `floor`: in the first alone.
   struct Comparison {
     RayEffects with, without;
     bool floor = false;
   };
-  static const std::vector<Comparison>& comparisons();
-  void add_points(const std::vector<RayPoint>& points, const std::vector<color::Rgb>& base, std::size_t count);
+  // What it changes at points, and the percentile of that.
+  struct Changes {
+    Comparison of;
+    std::vector<double> de00;
+    Worth worth;
+  };
+  std::size_t fans(std::size_t point) const;  // with the floor and without it
   void trace(const ProbeSetting& setting, const std::vector<int>& more);
+  void tell_floor();
   void refine(const ProbeSetting& setting);
+  void compare();
+  std::vector<std::size_t> in_doubt() const;
   void time(const ProbeSetting& setting, double of_point_ms);
-  Change change(std::size_t point, const Comparison& comparison) const;
-  std::vector<Change> changes(const Comparison& comparison) const;
-  std::size_t count_for(const Comparison& comparison) const;
-  int fans(std::size_t i) const {
-    return static_cast<int>(std::max(points_[i].drawn.fans.size(), points_[i].without_floor.fans.size()));
-  }
-  Worth worth(std::vector<Change> changes) const;
-  RayCost cost_of(Light Point::*light, std::size_t count, const RayEffects& effects, double tolerance_de00,
-                  double visible_points, int samples, const RayLimits& limits) const;
-  bool add_ambiguous(const std::vector<Change>& changes, const Worth& worth, std::vector<double>& wish) const;
+  double change(std::size_t point, const Comparison& comparison) const;
+  // The standard error of that by the samples of the point alone, in CIEDE2000.
+  double noise(std::size_t point, const Comparison& comparison) const;
+  Changes changes(const Comparison& comparison) const;
+  std::vector<double> needs(const Lights& lights, std::size_t step, const RayEffects& effects) const;
+  RayCost cost_of(const Lights& lights, const std::vector<double>& needs, const RayEffects& effects,
+                  double tolerance_de00, double visible_points, int samples, const RayLimits& limits) const;
 
-  std::vector<Point> points_;
-  std::size_t floor_points_ = 0;  // the first of them
+  std::vector<RayPoint> points_;
+  std::vector<color::Rgb> base_;
+  Lights drawn_;
+  Lights without_floor_, of_floor_;  // of every so many-th point, and what the floor adds there
+  std::size_t floor_step_ = 1;
+  std::vector<Changes> compared_;  // as compare() makes them
+  // The variance of one fan at each point, in CIEDE2000: of drawing with `self`, with `bounce`, with both and with
+  // neither, and of all effects without the floor.
+  std::array<std::vector<double>, 4> needs_;
+  std::vector<double> needs_without_floor_;
   double white_ = 1, visible_points_ = 0;
   std::size_t blocked_ = 0;
   // Of a fan, with light passed on and without, and of a point apart from its fans.

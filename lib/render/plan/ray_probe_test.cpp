@@ -14,6 +14,7 @@
 #include "render/exact.h"
 #include "render/internal/seen.h"
 #include "render/path/scenes_for_paths_for_test.h"
+#include "render/plan/spread_pixels.h"
 
 namespace goniochrome::render {
 namespace {
@@ -68,16 +69,8 @@ std::vector<NamedLight> five_lights() {
   const auto lamp = [](int x, int y, int left, int top, int size) {
     return x >= left && x < left + size && y >= top && y < top + size;
   };
-  return {{"even",
-           [](int, int) {
-             return color::Rgb{1, 1, 1};
-           },
-           {}},
-          {"overcast",
-           [](int, int y) {
-             return (y < 8 ? 1.2 - 0.05 * y : 0.15) * color::Rgb{0.9, 1, 1.1};
-           },
-           {}},
+  return {{"even", [](int, int) { return color::Rgb{1, 1, 1}; }, {}},
+          {"overcast", [](int, int y) { return (y < 8 ? 1.2 - 0.05 * y : 0.15) * color::Rgb{0.9, 1, 1.1}; }, {}},
           {"studio",
            [=](int x, int y) {
              const double light = lamp(x, y, 6, 3, 3) ? 12 : lamp(x, y, 20, 5, 2) ? 8 : 0.15;
@@ -85,9 +78,7 @@ std::vector<NamedLight> five_lights() {
            },
            {}},
           {"sun",
-           [=](int x, int y) {
-             return lamp(x, y, 11, 4, 1) ? color::Rgb{90, 85, 70} : color::Rgb{0.3, 0.4, 0.6};
-           },
+           [=](int x, int y) { return lamp(x, y, 11, 4, 1) ? color::Rgb{90, 85, 70} : color::Rgb{0.3, 0.4, 0.6}; },
            {}},
           {"lamps", nullptr, {{normalized({1, 2, 1}), {0.8, 0.8, 0.8}}, {normalized({-1, 0.5, 1}), {0.3, 0.25, 0.2}}}}};
 }
@@ -102,18 +93,15 @@ struct Seen {
 Seen seen_of(const PathStage& stage, const Camera& camera, int width, int height) {
   Seen seen;
   const VisibleSurface surface = visible_surface(stage.transport->rays(), *rays(camera, width, height), width, height);
+  const auto gbuffer = std::make_shared<const Gbuffer>(surface.gbuffer);
   std::vector<SurfacePoint> exact;
   ExactModel model;
   model.fresnel = true;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const Gbuffer& g = surface.gbuffer;
-      if (g.part(x, y) < 0) continue;
-      seen.points.push_back({spot_at(stage.transport->rays(), surface, x, y), rays::float3(g.to_viewer(x, y))});
-      seen.to_viewer.push_back(g.to_viewer(x, y));
-      exact.push_back(
-          {g.normal(x, y), g.to_viewer(x, y), &stage.scene.paints[static_cast<std::size_t>(g.part(x, y))], &model});
-    }
+  for (const auto& [g, x, y] : spread_pixels({gbuffer}, gbuffer->data.size())) {
+    seen.points.push_back({spot_at(stage.transport->rays(), surface, x, y), rays::float3(g->to_viewer(x, y))});
+    seen.to_viewer.push_back(g->to_viewer(x, y));
+    exact.push_back(
+        {g->normal(x, y), g->to_viewer(x, y), &stage.scene.paints[static_cast<std::size_t>(g->part(x, y))], &model});
   }
   seen.base = reference_radiance(exact, stage.environment ? &*stage.environment : nullptr, stage.scene.lights);
   return seen;
