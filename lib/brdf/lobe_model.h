@@ -60,9 +60,10 @@ color::Rgb brdf_by_angles(const paint::LobeFit& fit, double aspecular_rad, doubl
 // The reflectance factor pi f without conventional gloss at an aspecular angle, by the weights for all views, where
 // light and viewer are at those angles from the normal.
 color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg, double light_deg, double view_deg);
-// What a multi-angle instrument reads: light at 45 deg, the viewer in the plane of incidence. Beyond 110 deg, where no
-// instrument reads, the viewer is taken to stay at 65 deg from the normal.
+// The angle from the normal at which a multi-angle instrument views a surface that is lit at 45 deg, in the plane of
+// incidence. Beyond 110 deg, where no instrument reads, the viewer is taken to stay at 65 deg.
 double instrument_view_deg(double aspecular_deg);
+// What such an instrument reads.
 color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg);
 
 }  // namespace goniochrome::brdf

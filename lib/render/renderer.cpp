@@ -35,8 +35,7 @@ bool same_view(const View& a, const View& b) {
 }
 
 std::optional<rays::Floor> floor_of(const std::optional<Ground>& ground) {
-  if (!ground) return std::nullopt;
-  return rays::Floor{ground->height};
+  return ground ? std::optional(rays::Floor{ground->height}) : std::nullopt;
 }
 
 // What the rays of the pixels meet of the mesh, as Rasterizer has it: the floor is no part of the mesh.

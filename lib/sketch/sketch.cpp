@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <optional>
 
 #include "base/angles.h"
@@ -15,8 +14,10 @@
 #include "paint/curve.h"
 #include "sketch/internal/sketch_curve.h"
 #include "sketch/internal/sketch_gloss.h"
+#include "sketch/internal/sketch_regions.h"
 #include "sketch/internal/sketch_search.h"
 #include "sketch/internal/sketch_trust.h"
+#include "sketch/internal/view_angles.h"
 
 namespace goniochrome::sketch {
 
@@ -90,29 +91,6 @@ bool is_exact(const FoundPaint& found) {
   constexpr double kExactCost = 1e-4;  // RMS 0.01 dE
   return found.search.cost <= kExactCost;
 }
-
-// The angle of the viewer from the normal at each pixel of the buffers.
-class ViewAngles {
- public:
-  explicit ViewAngles(const image::AovFile& buffers) : buffers_(buffers) {
-    const auto normal = buffers.channel("normal.X");
-    if (normal.ok() && buffers.has_rays) normal_ = *normal;
-  }
-
-  bool are_known() const { return normal_ >= 0; }
-
-  double at(std::uint32_t place) const {
-    const int width = buffers_.image.width;
-    const int x = static_cast<int>(place) % width, y = static_cast<int>(place) / width;
-    const float* n = buffers_.image.pixel(x, y) + normal_;
-    const Vec3 viewer = buffers_.to_viewer(x, y), normal{n[0], n[1], n[2]};
-    return std::min(90.0, std::atan2(length(cross(normal, viewer)), dot(normal, viewer)) / kDegree);
-  }
-
- private:
-  const image::AovFile& buffers_;
-  int normal_ = -1;  // the first of three channels
-};
 
 // What the buffers and the picture have at each pixel, relative to the light.
 class Seen {
@@ -509,69 +487,15 @@ double gloss_of_index(const SketchInput& input, const SketchPixels& pixels, cons
   return std::min(100.0, base + *brdf::smooth_gloss(60, brdf::coat_index_of_mirror(brighter, cosine)));
 }
 
-// Some pixels about each export angle, and how far they are from the paint found.
-std::vector<TrustPixel> trust_pixels(const SketchInput& input, const SketchPixels& pixels,
-                                     const std::function<double(std::size_t)>& difference) {
-  constexpr std::size_t kMostNear = 300;
-  const image::Image& image = input.buffers->image;
-  const int aspecular = *input.buffers->channel("aspecular");
-  std::vector<TrustPixel> shown;
-  for (const double angle_deg : paint::kExportAngles_deg) {
-    std::vector<std::size_t> near;
-    for (std::size_t i = 0; i < pixels.used.size(); ++i) {
-      const float at = image.data[static_cast<std::size_t>(pixels.used[i]) * image.channels + aspecular];
-      if (std::abs(at - angle_deg) <= kReach_deg) near.push_back(i);
-    }
-    const std::size_t step = std::max<std::size_t>(1, near.size() / kMostNear);
-    for (std::size_t i = 0; i < near.size(); i += step) shown.push_back({angle_deg, difference(near[i])});
-  }
-  return shown;
-}
-
-// The numbers of used pixels in `kRegions` parts of the picture of as many pixels each: halves by their column, and
-// then parts by their row.
-std::vector<std::vector<std::size_t>> regions_of(const std::vector<std::uint32_t>& places, int width) {
-  constexpr std::size_t kColumns = 2, kRows = 4;
-  std::vector<std::size_t> order(places.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto by = [&](std::size_t begin, std::size_t end, bool column) {
-    std::ranges::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(begin),
-                             order.begin() + static_cast<std::ptrdiff_t>(end), {}, [&](std::size_t i) {
-                               const auto place = static_cast<int>(places[i]);
-                               return column ? place % width : place / width;
-                             });
-  };
-  by(0, order.size(), true);
-  std::vector<std::vector<std::size_t>> regions;
-  for (std::size_t c = 0; c < kColumns; ++c) {
-    const std::size_t begin = c * order.size() / kColumns, count = (c + 1) * order.size() / kColumns - begin;
-    by(begin, begin + count, false);
-    for (std::size_t r = 0; r < kRows; ++r)
-      regions.emplace_back(order.begin() + static_cast<std::ptrdiff_t>(begin + r * count / kRows),
-                           order.begin() + static_cast<std::ptrdiff_t>(begin + (r + 1) * count / kRows));
-  }
-  return regions;
-}
-
-// What light that the search does not know may change in the paint found: no region of the picture has as much of it as
-// another.
+// How far light that the search does not know may have led: no two regions of a picture have as much of it, so that
+// they disagree about the paint.
 void take_regions(const SketchInput& input, const std::vector<std::uint32_t>& used, const SketchLight& light,
                   const SearchFitters& fitters, const FoundPaint& found, SketchFit& fit) {
   const std::size_t step = std::max<std::size_t>(1, used.size() / kRegionPixels);
   std::vector<std::uint32_t> places;
   for (std::size_t i = 0; i < used.size(); i += step) places.push_back(used[i]);
   const LobeSearch search(fitters, samples_of(input, places, light, places.size()));
-  const auto regions = regions_of(places, input.buffers->image.width);
-  std::vector<PaintWeights> without(regions.size());
-  parallel_for(without.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t left_out = begin; left_out < end; ++left_out) {
-      std::vector<std::size_t> rest;
-      for (std::size_t r = 0; r < regions.size(); ++r)
-        if (r != left_out) rest.insert(rest.end(), regions[r].begin(), regions[r].end());
-      std::ranges::sort(rest);
-      without[left_out] = search.in_part(found, rest).weights;
-    }
-  });
+  const std::vector<PaintWeights> without = without_each_region(search, found, places, input.buffers->image.width);
   fit.regions_de00 = apart_by_regions(light.basis, found.weights, without, light.coat_index);
   for (double& apart : fit.regions_de00) apart *= kRegionErrors;
 }

@@ -92,9 +92,10 @@ void add_report(cli::ToolSpec& spec) {
       {"rows[]: geometry, L, a, b", "its colors at the export angles"},
       {"extrapolated_deg[]", "those of the angles that no pixel shows"},
       {"regions_de00[]",
-       "Where the picture shows what the mesh does to light, which only a transport knows: by how much the colors at "
-       "the "
-       "export angles may be off, four standard errors by what parts of the picture show, CIEDE2000; else empty."},
+       "by how much the colors at the export angles may be off where the picture has shadows or light that the body "
+       "sends to itself and the buffers have no transport: four standard errors, told by how far regions of the "
+       "picture "
+       "disagree, CIEDE2000; else empty"},
       {"unsure[]: angle_deg, de00, reason",
        "other angles whose color the picture leaves open, with the CIEDE2000 difference by which it may be off, or "
        "null"},
@@ -141,7 +142,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "where the buffers have them.",
       "Buffers with a transport hold the light that each lobe gathers at every pixel, with shadows and with light that "
       "the body sends to itself. The picture is then linear in the paint, and is solved in that light. Without it the "
-      "light is that which nothing blocks, and a message says so.",
+      "light is that which nothing blocks, and a message says so. Where an environment lights such a picture, the "
+      "message tells by how much the paint may be off.",
       "The picture may be an EXR, HDR, PNG, JPEG, TIFF, PNM, DPX, WebP, BMP or TGA. Whole numbers (PNG, JPEG, TIFF) "
       "are what a display shows: sRGB, or what an "
       "embedded ICC profile says, be it of RGB, of gray or of CMYK, after the view and the exposure of render-osmesa. "

@@ -267,7 +267,7 @@ void tell_shadows(const image::AovFile& buffers, const sketch::SketchFit& fit, c
   std::string by;
   for (std::size_t i = 0; i < fit.regions_de00.size(); ++i)
     by += fmt::format("{} {:.1f} dE00 at {} deg",
-                      i == 0                            ? ", by about"
+                      i == 0                            ? ", by up to about"
                       : i + 1 < fit.regions_de00.size() ? ","
                                                         : " and",
                       fit.regions_de00[i], paint::kExportAngles_deg[i]);

@@ -46,8 +46,9 @@ double excess_of(const envmap::Environment& environment, double wrong_factor = 1
 TEST(Samplers, TheEnvironmentIsDrawnAsItsDensitySays) {
   EXPECT_LT(excess_of(environment_of(32, 16, uneven)), 5);
   EXPECT_GT(excess_of(environment_of(32, 16, uneven), 1.05), 5);  // control
-  const envmap::CubeMap cube =
-      cube_of(8, [](const Vec3& d) { return Vec3{1.1 + d.x, d.y > 0.5 ? 5.0 : 0.2, 1 + d.z * d.z}; });
+  const envmap::CubeMap cube = cube_of(8, [](const Vec3& d) {
+    return Vec3{1.1 + d.x, d.y > 0.5 ? 5.0 : 0.2, 1 + d.z * d.z};
+  });
   EXPECT_LT(excess_of(envmap::Environment::from_cube(cube, "cube")), 5);
   image::Image disc{24, 24, 3, std::vector<float>(24 * 24 * 3, 0.5F), {}};
   for (std::size_t i = 0; i < disc.data.size(); i += 7) disc.data[i] = 2;

@@ -253,6 +253,7 @@ class PointTransport {
   color::Rgb part_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count) const {
     return shares_of(sequence, first, count).sum();
   }
+  // The same by shares, as batch_shares().
   LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count,
                         bool* any_blocked = nullptr) const;
 

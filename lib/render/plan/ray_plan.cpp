@@ -23,7 +23,7 @@ constexpr std::size_t kRayProbe = 4096;
 constexpr double kSafety = 0.8;
 constexpr RayEffects kAll{true, true, true};
 
-bool RayEffects::* const kFlags[kEffects] = {&RayEffects::shadow, &RayEffects::self, &RayEffects::bounce};
+bool RayEffects::*const kFlags[kEffects] = {&RayEffects::shadow, &RayEffects::self, &RayEffects::bounce};
 
 RayEffects nested(RayEffects effects) {
   effects.self = effects.self && effects.shadow;

@@ -69,8 +69,16 @@ std::vector<NamedLight> five_lights() {
   const auto lamp = [](int x, int y, int left, int top, int size) {
     return x >= left && x < left + size && y >= top && y < top + size;
   };
-  return {{"even", [](int, int) { return color::Rgb{1, 1, 1}; }, {}},
-          {"overcast", [](int, int y) { return (y < 8 ? 1.2 - 0.05 * y : 0.15) * color::Rgb{0.9, 1, 1.1}; }, {}},
+  return {{"even",
+           [](int, int) {
+             return color::Rgb{1, 1, 1};
+           },
+           {}},
+          {"overcast",
+           [](int, int y) {
+             return (y < 8 ? 1.2 - 0.05 * y : 0.15) * color::Rgb{0.9, 1, 1.1};
+           },
+           {}},
           {"studio",
            [=](int x, int y) {
              const double light = lamp(x, y, 6, 3, 3) ? 12 : lamp(x, y, 20, 5, 2) ? 8 : 0.15;
@@ -78,7 +86,9 @@ std::vector<NamedLight> five_lights() {
            },
            {}},
           {"sun",
-           [=](int x, int y) { return lamp(x, y, 11, 4, 1) ? color::Rgb{90, 85, 70} : color::Rgb{0.3, 0.4, 0.6}; },
+           [=](int x, int y) {
+             return lamp(x, y, 11, 4, 1) ? color::Rgb{90, 85, 70} : color::Rgb{0.3, 0.4, 0.6};
+           },
            {}},
           {"lamps", nullptr, {{normalized({1, 2, 1}), {0.8, 0.8, 0.8}}, {normalized({-1, 0.5, 1}), {0.3, 0.25, 0.2}}}}};
 }

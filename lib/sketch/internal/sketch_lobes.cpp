@@ -145,6 +145,16 @@ PaintWeights paint_weights(const formats::Basis& basis, const paint::LobeFit& lo
   return weights;
 }
 
+color::Lab instrument_lab(const formats::Basis& basis, const PaintWeights& weights, double coat_index,
+                          double aspecular_deg) {
+  const PaintWeights::Mixed mixed = weights.mixed_at(brdf::instrument_view_deg(aspecular_deg));
+  const auto factor = [&](const std::vector<color::Rgb>& of) {
+    return brdf::flake_reflectance_factor(lobes_of(basis, of, coat_index), aspecular_deg);
+  };
+  const color::Rgb low = factor(*mixed.low);
+  return paint_lab(mixed.share > 0 ? low + mixed.share * (factor(*mixed.high) - low) : low);
+}
+
 bool give_gloss(const brdf::GlossTable& table, double gloss_60_gu, paint::LobeFit& lobes) {
   const std::vector<paint::GlossReading> reading = {{60, gloss_60_gu}};
   const double traced = lobes.coat_index;

@@ -125,6 +125,10 @@ class FreeLobeFit {
 paint::LobeFit lobes_of(const formats::Basis& basis, const std::vector<color::Rgb>& weights, double coat_index);
 std::vector<color::Rgb> weights_of(const formats::Basis& basis, const paint::LobeFit& lobes);
 
+// The color that an instrument reads of a paint with these weights at an aspecular angle.
+color::Lab instrument_lab(const formats::Basis& basis, const PaintWeights& weights, double coat_index,
+                          double aspecular_deg);
+
 // The weights of such lobes, and those of their views.
 PaintWeights paint_weights(const formats::Basis& basis, const paint::LobeFit& lobes);
 

@@ -228,10 +228,9 @@ LobeSearch::Way LobeSearch::way(const std::vector<double>& start, const SearchFi
   return exact.cost < smooth.cost ? Way{std::move(exact), &ways.exact} : Way{std::move(smooth), &ways.smooth};
 }
 
-// A paint of fewer numbers is the answer where it explains the samples as well as free lobes. Under a coat, three
-// readings may take weights for several views, which no free lobes have, so that a paint of them may explain what those
-// cannot; the way there leads through weights for the views of all readings, as those that come with a lost reading
-// come at once.
+// A paint of fewer numbers is the answer where it explains the samples as well as free lobes. Under a coat, a paint of
+// three readings may have weights for several views, and then explains what free lobes cannot. It is sought with such
+// weights for every trial: if only trials with a lost reading had them, the cost would jump between trials.
 FoundPaint LobeSearch::find(const LobeSearch& first) const {
   const auto enough = [](const FreeLobes& free) { return std::max(kSameCost * free.cost, kExactCost); };
   const FreeLobes begun = first.free_lobes().find(), free = free_lobes().sharpened(begun);

@@ -85,5 +85,42 @@ TEST(LobeSearch, ASolidWhoseCoatTakesItsReadingsIsFoundByItsViews) {
   }
 }
 
+// The same under one lamp, 25 to 110 deg from specular, from viewers at any angle. A lamp lights no mirror image, and
+// gloss passes for flake there, so that the rows alone are asked for. The control is as above.
+TEST(LobeSearch, UnderALampASolidIsFoundByItsViewsAsWell) {
+  std::mt19937_64 random(22);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const formats::Basis& basis = sketch_scene::basis();
+  fit::FitOptions options;
+  options.coat_index = brdf::kCoatIndex;
+  const SearchFitters fitters(basis, brdf::kCoatIndex);
+  const paint::Paint truth = solid({43, 58, 37}, {42.2, 59, 38.5}, {41.7, 59.4, 39});
+  const auto fit = fit::PaintFitter(basis, options).fit(truth);
+  ASSERT_TRUE(fit.ok());
+  const PaintWeights weights = paint_weights(basis, fit->lobes);
+  SearchSamples samples;
+  samples.columns = search_columns(basis);
+  samples.coat_index = brdf::kCoatIndex;
+  for (int i = 0; i < 700; ++i) {
+    const double aspecular_deg = 12 + 98 * unit(random), base = (0.3 + 0.7 * unit(random)) * kPi;
+    samples.view_deg.push_back(75 * unit(random));
+    samples.light.push_back(base * Vec3{1, 1, 1});
+    for (const double exponent : basis.exponents) {
+      const double power = lobe_at(aspecular_deg, exponent);
+      samples.light.push_back(base * power * Vec3{1, 1, 1});
+      samples.light.push_back(kPi * power * Vec3{1, 1, 1});
+    }
+    samples.light.emplace_back();
+    samples.seen.push_back(
+        shown_light(samples.columns_of(samples.size()), weights.mixed_at(samples.view_deg.back()), {}));
+    samples.importance.push_back(1);
+  }
+  SearchSamples blind = samples;
+  blind.view_deg.clear();
+  const LobeSearch search(fitters, samples), control(fitters, blind);
+  EXPECT_LE(worst_de00(search.find_plain(search), truth), 0.1);
+  EXPECT_GT(worst_de00(control.find_plain(control), truth), 0.3) << "the control must fail";
+}
+
 }  // namespace
 }  // namespace goniochrome::sketch

@@ -21,16 +21,6 @@ constexpr std::size_t kFewestNear = 20;  // of these pixels; the noise of three 
 constexpr double kLeastShare = 0.3;      // of the pixels about an angle that must show the paint found
 constexpr double kLeastLobe = 0.05;      // of a lobe's peak, from which an angle is said to feel it
 
-// What an instrument reads at an aspecular angle.
-color::Lab shown_lab(const formats::Basis& basis, const PaintWeights& weights, double coat_index, double angle_deg) {
-  const PaintWeights::Mixed mixed = weights.mixed_at(brdf::instrument_view_deg(angle_deg));
-  const auto factor = [&](const std::vector<color::Rgb>& of) {
-    return brdf::flake_reflectance_factor(lobes_of(basis, of, coat_index), angle_deg);
-  };
-  const color::Rgb low = factor(*mixed.low);
-  return paint_lab(mixed.share > 0 ? low + mixed.share * (factor(*mixed.high) - low) : low);
-}
-
 bool is_extrapolated(const SketchFit& fit, double angle_deg) {
   return std::ranges::find(fit.extrapolated_deg, angle_deg) != fit.extrapolated_deg.end();
 }
@@ -42,14 +32,14 @@ void take_shown(const formats::Basis& basis, const PaintWeights& weights, double
   for (paint::LabReading& row : fit.rows) {
     const double angle_deg = row.geometry.aspecular_deg;
     if (!is_told(angle_deg)) continue;
-    const color::Lab shown = shown_lab(basis, weights, coat_index, angle_deg);
+    const color::Lab shown = instrument_lab(basis, weights, coat_index, angle_deg);
     if (color::delta_e_2000(shown, row.lab) > kApart_de00) row.lab = shown;
   }
   for (const double angle_deg : paint::kExportAngles_deg) {
     const auto behind = std::ranges::find_if(
         fit.rows, [&](const paint::LabReading& row) { return row.geometry.aspecular_deg >= angle_deg; });
     if (behind != fit.rows.end() && behind->geometry.aspecular_deg == angle_deg) continue;
-    fit.rows.insert(behind, {{45, angle_deg}, shown_lab(basis, weights, coat_index, angle_deg)});
+    fit.rows.insert(behind, {{45, angle_deg}, instrument_lab(basis, weights, coat_index, angle_deg)});
   }
 }
 
@@ -58,10 +48,10 @@ void take_open_by_gloss(const formats::Basis& basis, const FreeLobes& found, con
   for (const paint::LabReading& row : fit.rows) {
     const double angle_deg = row.geometry.aspecular_deg;
     if (is_extrapolated(fit, angle_deg)) continue;
-    const color::Lab own = shown_lab(basis, {found.weights}, coat_index, angle_deg);
+    const color::Lab own = instrument_lab(basis, {found.weights}, coat_index, angle_deg);
     double most_de00 = 0, gloss = 0;
     for (const FreeLobes& other : others) {
-      const double apart = color::delta_e_2000(own, shown_lab(basis, {other.weights}, coat_index, angle_deg));
+      const double apart = color::delta_e_2000(own, instrument_lab(basis, {other.weights}, coat_index, angle_deg));
       if (apart > most_de00) most_de00 = apart, gloss = other.gloss_60_gu;
     }
     if (most_de00 > kOpen_de00)
@@ -71,20 +61,22 @@ void take_open_by_gloss(const formats::Basis& basis, const FreeLobes& found, con
   }
 }
 
-std::vector<double> apart_by_regions(const formats::Basis& basis, const PaintWeights& found,
-                                     const std::vector<PaintWeights>& without, double coat_index) {
-  std::vector<double> apart;
-  const auto count = static_cast<double>(without.size());
+std::vector<TrustPixel> trust_pixels(const SketchInput& input, const SketchPixels& pixels,
+                                     const std::function<double(std::size_t)>& difference) {
+  constexpr std::size_t kMostNear = 300;
+  const image::Image& image = input.buffers->image;
+  const int aspecular = *input.buffers->channel("aspecular");
+  std::vector<TrustPixel> shown;
   for (const double angle_deg : paint::kExportAngles_deg) {
-    const color::Lab own = shown_lab(basis, found, coat_index, angle_deg);
-    double squares = 0;
-    for (const PaintWeights& other : without) {
-      const double one = color::delta_e_2000(own, shown_lab(basis, other, coat_index, angle_deg));
-      squares += one * one;
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < pixels.used.size(); ++i) {
+      const float at = image.data[static_cast<std::size_t>(pixels.used[i]) * image.channels + aspecular];
+      if (std::abs(at - angle_deg) <= kReach_deg) near.push_back(i);
     }
-    apart.push_back(std::sqrt((count - 1) / count * squares));
+    const std::size_t step = std::max<std::size_t>(1, near.size() / kMostNear);
+    for (std::size_t i = 0; i < near.size(); i += step) shown.push_back({angle_deg, difference(near[i])});
   }
-  return apart;
+  return shown;
 }
 
 void take_thinly_seen(const std::vector<TrustPixel>& pixels, SketchFit& fit) {

@@ -22,16 +22,14 @@ void take_shown(const formats::Basis& basis, const PaintWeights& weights, double
 void take_open_by_gloss(const formats::Basis& basis, const FreeLobes& found, const std::vector<FreeLobes>& others,
                         double coat_index, SketchFit& fit);
 
-// How far the paints apart are that regions of a picture show: for each export angle the standard error by the
-// jackknife, CIEDE2000, of `found`, whose search is `without` in all regions but one. goniochrome-theory(7), SKETCH
-// FITTING.
-std::vector<double> apart_by_regions(const formats::Basis& basis, const PaintWeights& found,
-                                     const std::vector<PaintWeights>& without, double coat_index);
-
 // A pixel under a lamp, and how far it is from the paint found (CIE 1976).
 struct TrustPixel {
   double aspecular_deg = 0, de76 = 0;
 };
+
+// Some pixels about each export angle. `difference` is how far a used pixel is, by its number among these.
+std::vector<TrustPixel> trust_pixels(const SketchInput& input, const SketchPixels& pixels,
+                                     const std::function<double(std::size_t)>& difference);
 
 // Adds to fit.unsure the angles that too few of the pixels show as the paint found has them.
 void take_thinly_seen(const std::vector<TrustPixel>& pixels, SketchFit& fit);

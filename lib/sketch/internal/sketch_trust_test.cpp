@@ -56,19 +56,6 @@ TEST(SketchTrust, RowsOfTheCurveStayWhereTheLobesAgree) {
   EXPECT_EQ(fit.rows.back().lab.L, lightness(0.1) + 0.1);
 }
 
-// The jackknife of two regions by hand: sqrt(1/2 (d1^2 + d2^2)), of differences in lightness alone. The lobe of exponent
-// 4 is nearly nothing at 110 deg, so that it leaves the color there alone.
-TEST(SketchTrust, RegionsThatShowOtherPaintsTellHowFarTheColorMayBeOff) {
-  const PaintWeights found{weights(0.5)}, low{weights(0.4)}, high{weights(0.7)};
-  const std::vector<double> apart = apart_by_regions(basis(), found, {low, high}, paint::kNoCoat);
-  ASSERT_EQ(apart.size(), 5U);
-  const auto at_45 = [](double weight) { return color::Lab{lightness(0.1 + weight * 0.25), 0, 0}; };
-  const double d1 = color::delta_e_2000(at_45(0.5), at_45(0.4)), d2 = color::delta_e_2000(at_45(0.5), at_45(0.7));
-  EXPECT_NEAR(apart[2], std::sqrt(0.5 * (d1 * d1 + d2 * d2)), 2e-3 * apart[2]);
-  EXPECT_LT(apart[4], 0.01);
-  EXPECT_EQ(apart_by_regions(basis(), found, {found, found}, paint::kNoCoat)[0], 0);
-}
-
 // Twenty pixels that agree tell a color; nineteen do not, and neither do twenty among a hundred that disagree.
 TEST(SketchTrust, FewPixelsLeaveAColorOpen) {
   std::vector<TrustPixel> pixels(20, {44, 1});

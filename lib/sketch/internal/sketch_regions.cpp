@@ -1,0 +1,73 @@
+#include "sketch/internal/sketch_regions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "paint/curve.h"
+
+namespace goniochrome::sketch {
+
+namespace {
+
+// The numbers of the pixels in eight parts of the picture that have equally many: halves by their column, each of which
+// is quartered by its rows.
+std::vector<std::vector<std::size_t>> regions_of(const std::vector<std::uint32_t>& places, int width) {
+  constexpr std::size_t kColumns = 2, kRows = 4;
+  std::vector<std::size_t> order(places.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto part = [&](std::size_t from, std::size_t to) {
+    return std::ranges::subrange(order.begin() + static_cast<std::ptrdiff_t>(from),
+                                 order.begin() + static_cast<std::ptrdiff_t>(to));
+  };
+  const auto column = [&](std::size_t i) { return static_cast<int>(places[i]) % width; };
+  const auto row = [&](std::size_t i) { return static_cast<int>(places[i]) / width; };
+  std::ranges::stable_sort(order, {}, column);
+  std::vector<std::vector<std::size_t>> regions;
+  for (std::size_t c = 0; c < kColumns; ++c) {
+    const std::size_t first = c * order.size() / kColumns, count = (c + 1) * order.size() / kColumns - first;
+    std::ranges::stable_sort(part(first, first + count), {}, row);
+    for (std::size_t r = 0; r < kRows; ++r) {
+      const auto region = part(first + r * count / kRows, first + (r + 1) * count / kRows);
+      regions.emplace_back(region.begin(), region.end());
+    }
+  }
+  return regions;
+}
+
+}  // namespace
+
+std::vector<PaintWeights> without_each_region(const LobeSearch& search, const FoundPaint& found,
+                                              const std::vector<std::uint32_t>& places, int width) {
+  const auto regions = regions_of(places, width);
+  std::vector<PaintWeights> without(regions.size());
+  parallel_for(without.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t left_out = begin; left_out < end; ++left_out) {
+      std::vector<std::size_t> rest;
+      for (std::size_t r = 0; r < regions.size(); ++r)
+        if (r != left_out) rest.insert(rest.end(), regions[r].begin(), regions[r].end());
+      std::ranges::sort(rest);
+      without[left_out] = search.in_part(found, rest).weights;
+    }
+  });
+  return without;
+}
+
+std::vector<double> apart_by_regions(const formats::Basis& basis, const PaintWeights& found,
+                                     const std::vector<PaintWeights>& without, double coat_index) {
+  std::vector<double> apart;
+  const auto count = static_cast<double>(without.size());
+  for (const double angle_deg : paint::kExportAngles_deg) {
+    const color::Lab own = instrument_lab(basis, found, coat_index, angle_deg);
+    double squares = 0;
+    for (const PaintWeights& other : without) {
+      const double one = color::delta_e_2000(own, instrument_lab(basis, other, coat_index, angle_deg));
+      squares += one * one;
+    }
+    apart.push_back(std::sqrt((count - 1) / count * squares));
+  }
+  return apart;
+}
+
+}  // namespace goniochrome::sketch

@@ -1,0 +1,22 @@
+// How far regions of one picture disagree about the paint, which tells how far light that the search does not know
+// leads it. goniochrome-theory(7), SKETCH FITTING.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sketch/internal/sketch_search.h"
+
+namespace goniochrome::sketch {
+
+// The paints that are found without one of eight regions each, from one that was found in all of them. The samples of
+// the search are the pixels at `places` of a picture of that width.
+std::vector<PaintWeights> without_each_region(const LobeSearch& search, const FoundPaint& found,
+                                              const std::vector<std::uint32_t>& places, int width);
+
+// The standard error of a paint found at each export angle, CIEDE2000, by the jackknife [Miller1974] of the paints that
+// are found without one region each.
+std::vector<double> apart_by_regions(const formats::Basis& basis, const PaintWeights& found,
+                                     const std::vector<PaintWeights>& without, double coat_index);
+
+}  // namespace goniochrome::sketch

@@ -1,0 +1,86 @@
+// How far regions of a picture disagree about its paint.
+#include "sketch/internal/sketch_regions.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "base/angles.h"
+#include "sketch/internal/sketch_scene_for_test.h"
+
+namespace goniochrome::sketch {
+namespace {
+
+formats::Basis one_lobe() {
+  return {"one", {4}, false};
+}
+
+// A gray base of reflectance .1 below a lobe of flake of this strength.
+PaintWeights gray(double flake) {
+  return {{(0.1 / kPi) * color::Rgb{1, 1, 1}, (flake / kPi) * color::Rgb{1, 1, 1}, {}, {}}};
+}
+
+double lightness(double reflectance) {
+  return 116 * std::cbrt(reflectance) - 16;  // CIE 1976, above L* 8
+}
+
+// The jackknife of two regions by hand: sqrt(1/2 (d1^2 + d2^2)), of differences in lightness alone. The lobe of
+// exponent 4 is nearly nothing at 110 deg, so that it leaves the color there alone.
+TEST(SketchRegions, TheJackknifeIsThatByHand) {
+  const PaintWeights found = gray(0.5), low = gray(0.4), high = gray(0.7);
+  const std::vector<double> apart = apart_by_regions(one_lobe(), found, {low, high}, paint::kNoCoat);
+  ASSERT_EQ(apart.size(), 5U);
+  const auto at_45 = [](double weight) { return color::Lab{lightness(0.1 + weight * 0.25), 0, 0}; };
+  const double d1 = color::delta_e_2000(at_45(0.5), at_45(0.4)), d2 = color::delta_e_2000(at_45(0.5), at_45(0.7));
+  EXPECT_NEAR(apart[2], std::sqrt(0.5 * (d1 * d1 + d2 * d2)), 2e-3 * apart[2]);
+  EXPECT_LT(apart[4], 0.01);
+  EXPECT_EQ(apart_by_regions(one_lobe(), found, {found, found}, paint::kNoCoat)[0], 0);
+}
+
+// A picture whose lower half gets this part of the light that the search knows. Every pixel sees its own light.
+double told(double lit) {
+  constexpr int kSide = 32;
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const SearchFitters fitters(sketch_scene::basis(), paint::kNoCoat);
+  const PaintWeights paint =
+      paint_weights(sketch_scene::basis(), sketch_scene::lobes(sketch_scene::random_paint(random)));
+  SearchSamples samples;
+  samples.columns = search_columns(sketch_scene::basis());
+  std::vector<std::uint32_t> places;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    for (std::size_t k = 0; k < samples.columns; ++k) {
+      const bool is_mirror = k + 1 == samples.columns;
+      const double whole = k == 0      ? kPi
+                           : is_mirror ? 0.04
+                                       : 2 * kPi / (sketch_scene::basis().exponents[(k - 1) / 2] + 1);
+      samples.light.push_back((0.3 + 0.7 * unit(random)) * whole * Vec3{1, 1, 1});
+    }
+    const color::Rgb all = shown_light(samples.columns_of(samples.size()), paint.all, {});
+    samples.seen.push_back((i < kSide * kSide / 2 ? 1 : lit) * all);
+    samples.importance.push_back(1);
+    places.push_back(static_cast<std::uint32_t>(i));
+  }
+  const LobeSearch search(fitters, samples);
+  const FoundPaint found = search.find(search);
+  const auto apart = apart_by_regions(sketch_scene::basis(), found.weights,
+                                      without_each_region(search, found, places, kSide), paint::kNoCoat);
+  const color::Lab at_45 = instrument_lab(sketch_scene::basis(), found.weights, paint::kNoCoat, 45);
+  EXPECT_LE(color::delta_e_2000(at_45, instrument_lab(sketch_scene::basis(), paint, paint::kNoCoat, 45)),
+            4 * apart[2] + 0.02)
+      << lit;
+  return apart[2];
+}
+
+// What is found in a picture with a shadow is off by no more than four standard errors, which grow with the shadow. The
+// control is the picture without one, whose regions agree.
+TEST(SketchRegions, AShadowOnOneHalfIsTold) {
+  const double none = told(1), light = told(0.9), deep = told(0.6);
+  EXPECT_LT(none, 0.02);
+  EXPECT_GT(light, 0.1);
+  EXPECT_GT(deep, light);
+}
+
+}  // namespace
+}  // namespace goniochrome::sketch
