@@ -252,6 +252,13 @@ Result<SketchLight> lamp_light(const image::AovFile& buffers, const formats::Bas
 
 namespace {
 
+// Of the samples of a pixel about its center, along a row.
+double half_variance(int samples) {
+  double sum = 0;
+  for (const auto& [dx, dy] : render::sample_shifts(samples)) sum += 0.5 * dx * dx / samples;
+  return sum;
+}
+
 // Adds to the columns what a point gathers, times its share; `factors` of each point's bounced light, or null.
 void add_point(const render::LobeTransport& t, std::size_t point, const std::vector<color::Rgb>* factors, double share,
                Vec3* columns) {
@@ -278,12 +285,12 @@ Result<std::optional<SketchTransport>> SketchTransport::of(const image::AovFile&
 
 // The columns of a transport are those of the search; its gloss has the coat's reflectance in it, the search's has it
 // relative to that of the reading. A column that bends by d from pixel to pixel is, in the mean over samples of the
-// variance v about the center, off by v d/2 from what it is there.
+// variance v about the center, off by v d/2 from what it is there: what the picture's samples and those of the
+// transport differ by is made up for.
 SketchLight SketchTransport::light(int samples) const {
   formats::Basis basis;
   basis.name = "transport", basis.exponents = transport_->columns.exponents, basis.mirror = true;
-  double bend = 0;
-  for (const auto& [dx, dy] : render::sample_shifts(samples)) bend += 0.5 * dx * dx / samples;
+  const double bend = half_variance(samples) - half_variance(transport_->samples);
   const auto shade = [transport = transport_, factors = factors_, bend](std::uint32_t place, Vec3* out) {
     const render::LobeTransport& t = *transport;
     std::fill_n(out, t.columns.count(), Vec3{});
@@ -296,7 +303,7 @@ SketchLight SketchTransport::light(int samples) const {
       for (const std::size_t point : {*before, *behind}) add_point(t, point, factors.get(), bend, out);
       share -= 2 * bend;
     };
-    if (bend > 0) {
+    if (bend != 0) {
       add_bend(point_at(t, x - 1, y), point_at(t, x + 1, y));
       add_bend(point_at(t, x, y - 1), point_at(t, x, y + 1));
     }

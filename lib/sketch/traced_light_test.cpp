@@ -39,9 +39,10 @@ std::vector<double> of_even_light() {
 }
 
 // `floor`: what the last pixel shows wears these weights and is no part of the mesh.
-image::AovFile buffers_of(const std::vector<Lit>& pixels, const std::optional<color::Rgb>& floor = {}) {
+image::AovFile buffers_of(const std::vector<Lit>& pixels, const std::optional<color::Rgb>& floor = {},
+                          int samples = 1) {
   render::LobeTransport t;
-  t.width = static_cast<int>(pixels.size()), t.height = 1;
+  t.width = static_cast<int>(pixels.size()), t.height = 1, t.samples = samples;
   t.columns.exponents = kExponents;
   t.worn.groups = {{0}, 1};
   t.worn.weights = {std::vector<color::Rgb>(t.columns.count(), color::Rgb{0.1, 0.1, 0.1})};
@@ -129,27 +130,31 @@ TEST(TracedLight, ADropperInAShadowFindsThePaintOfTheSurface) {
 }
 
 // Light that bends from pixel to pixel, and its mean over the samples of a pixel, which are taken from the function
-// itself. The control: the light of the centers.
-TEST(SketchTransport, APictureOfSeveralSamplesShowsTheirMean) {
+// itself: those of the picture and of the transport may be as many, or more or fewer. The control: the light as it is
+// kept.
+TEST(SketchTransport, APictureOfOtherSamplesThanTheTransportShowsTheirMean) {
   const auto bent = [](double x) { return 1 + 2 * (x - 3) * (x - 3); };  // relative to white
-  std::vector<Lit> row;
-  for (int x = 0; x < 7; ++x) row.push_back({kWhite * bent(x) * color::Rgb{1, 0.5, 0.25}, of_even_light()});
-  const auto transport = SketchTransport::of(buffers_of(row));
-  ASSERT_TRUE(transport.ok() && transport->has_value());
-  std::vector<Vec3> columns(2 * kExponents.size() + 2);
-  const auto diffuse = [&](int samples, std::uint32_t place) {
-    (*transport)->light(samples).shade(place, columns.data());
-    return columns[0];
+  const auto mean = [&](double x, int samples) {
+    double sum = 0;
+    for (const auto& shift : render::sample_shifts(samples)) sum += bent(x + shift[0]) / samples;
+    return sum;
   };
-  for (const int samples : {4, 16})
-    for (const std::uint32_t place : {2U, 3U, 4U}) {
-      double mean = 0;
-      for (const auto& shift : render::sample_shifts(samples)) mean += bent(place + shift[0]) / samples;
-      const Vec3 light = diffuse(samples, place);
-      for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], mean * std::pow(0.5, c), 2e-3 * mean) << place;
-      EXPECT_NEAR(diffuse(1, place).x, bent(place), 1e-3 * bent(place)) << place;
-      EXPECT_GT(mean - bent(place), 0.1) << "the control must fail";
-    }
+  for (const int kept : {1, 4}) {
+    std::vector<Lit> row;
+    for (int x = 0; x < 7; ++x) row.push_back({kWhite * mean(x, kept) * color::Rgb{1, 0.5, 0.25}, of_even_light()});
+    const auto transport = SketchTransport::of(buffers_of(row, {}, kept));
+    ASSERT_TRUE(transport.ok() && transport->has_value());
+    std::vector<Vec3> columns(2 * kExponents.size() + 2);
+    for (const int samples : {1, 4, 16})
+      for (const std::uint32_t place : {2U, 3U, 4U}) {
+        const double wanted = mean(place, samples);
+        (*transport)->light(samples).shade(place, columns.data());
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(columns[0][c], wanted * std::pow(0.5, c), 2e-3 * wanted) << place;
+        if ((samples == 1) != (kept == 1)) {
+          EXPECT_GT(std::abs(wanted - mean(place, kept)), 0.1) << "the control must fail";
+        }
+      }
+  }
 }
 
 // A floor that shows the environment wears no paint, which the weights of a file tell. The control: a floor of paint.

@@ -218,8 +218,8 @@ Result<void> Shooting::write(const Shot& shot, const std::optional<display::Disp
     if (request_.transport) {
       const envmap::Environment* environment = stage_.source.environment ? &*stage_.source.environment : nullptr;
       const bool with_maps = !by_rays() && (request_.engine == nullptr || request_.engine->is_planned);
-      GONIO_ASSIGN(traced, traced_view(drawn, environment, with_maps, *frame_.gbuffer, white_.luminance,
-                                       options_.bounces, session_));
+      GONIO_ASSIGN(traced, traced_view(drawn, environment, with_maps, *frame_.gbuffer, request_.samples,
+                                       white_.luminance, options_.bounces, session_));
       frame_.gbuffer = traced->gbuffer;
       stopped_ |= !traced->reached;
     }

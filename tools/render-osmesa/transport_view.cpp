@@ -129,7 +129,7 @@ Result<void> can_trace_view(const render::Scene& scene) {
 }
 
 Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environment* environment, bool with_maps,
-                               const render::Gbuffer& seen, double white_luminance, int bounces,
+                               const render::Gbuffer& seen, int samples, double white_luminance, int bounces,
                                cli::Session& session) {
   render::PathScene path;
   path.scene = &scene, path.environment = environment;
@@ -158,6 +158,7 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
   request.white_luminance = white_luminance > 0 ? white_luminance : 1;
   request.seed = session.common().seed;
   request.bounces = bounces;
+  request.pixel_samples = samples;
   request.time_limit_s = session.common().time_limit_s;
   request.progress = [&](double noise, double seconds) {
     session.progress(fmt::format("transport: noise {:.2f} dE00 after {:.1f} s", noise, seconds));

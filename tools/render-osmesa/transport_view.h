@@ -26,11 +26,12 @@ struct TracedView {
 // Whether the light of the scene is a sum of lobes. Error: what it wears that is none.
 Result<void> can_trace_view(const render::Scene& scene);
 
-// Traces what is seen through `rays` in all that the scene has, and tells how. `with_maps`: open light by the
-// environment's maps, else by rays alone. The scene is one that
-// can_trace_view() accepts. Error: what paths do not trace; maps that the environment lacks.
+// Traces what is seen through `rays` in all that the scene has, as the mean over so many samples of a pixel, and tells
+// how. `with_maps`: open light by the environment's maps, else by rays alone. The scene is one that can_trace_view()
+// accepts. Error: what paths do not trace; maps that the environment lacks.
 Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environment* environment, bool with_maps,
-                               const render::Gbuffer& seen, double white_luminance, int bounces, cli::Session& session);
+                               const render::Gbuffer& seen, int samples, double white_luminance, int bounces,
+                               cli::Session& session);
 
 // The transport of --gbuffer and what its file says of the light.
 struct KeptTransport {

@@ -1,7 +1,9 @@
 #include "render/path/lobe_point.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "base/angles.h"
 
@@ -94,25 +96,22 @@ LobePoint::Ray LobePoint::drawn_ray(const std::array<double, 4>& numbers) const 
   return ray;
 }
 
-std::vector<LobePoint::Ray> LobePoint::traced_rays(int sequences, int directions, std::uint64_t seed,
-                                                   bool& any_blocked) const {
-  std::vector<Ray> rays(static_cast<std::size_t>(sequences) * static_cast<std::size_t>(directions));
-  for (int which = 0; which < sequences; ++which) {
-    const Sequence sequence(mixed(seed, static_cast<std::uint64_t>(which)), static_cast<std::uint32_t>(directions));
-    for (int first = 0; first < directions; first += 8) {
-      Ray* eight = &rays[static_cast<std::size_t>(which) * static_cast<std::size_t>(directions) +
-                         static_cast<std::size_t>(first)];
-      rays::Fan fan;
-      fan.origin = spot_.start;
-      for (int i = 0; i < 8; ++i) {
-        eight[i] = drawn_ray(sequence.point(static_cast<std::uint32_t>(first + i), 0));
-        fan.x[i] = eight[i].direction.x, fan.y[i] = eight[i].direction.y, fan.z[i] = eight[i].direction.z;
-        if (eight[i].above) fan.wanted |= 1U << i;
-      }
-      const unsigned blocked = transport_.rays_->blocked(fan);
-      for (int i = 0; i < 8; ++i) eight[i].blocked = (blocked >> i & 1U) != 0;
-      any_blocked = any_blocked || blocked != 0;
+// Those of one sequence.
+std::vector<LobePoint::Ray> LobePoint::traced_rays(int directions, std::uint64_t seed, bool& any_blocked) const {
+  std::vector<Ray> rays(static_cast<std::size_t>(directions));
+  const Sequence sequence(seed, static_cast<std::uint32_t>(directions));
+  for (int first = 0; first < directions; first += 8) {
+    Ray* eight = &rays[static_cast<std::size_t>(first)];
+    rays::Fan fan;
+    fan.origin = spot_.start;
+    for (int i = 0; i < 8; ++i) {
+      eight[i] = drawn_ray(sequence.point(static_cast<std::uint32_t>(first + i), 0));
+      fan.x[i] = eight[i].direction.x, fan.y[i] = eight[i].direction.y, fan.z[i] = eight[i].direction.z;
+      if (eight[i].above) fan.wanted |= 1U << i;
     }
+    const unsigned blocked = transport_.rays_->blocked(fan);
+    for (int i = 0; i < 8; ++i) eight[i].blocked = (blocked >> i & 1U) != 0;
+    any_blocked = any_blocked || blocked != 0;
   }
   return rays;
 }
@@ -288,7 +287,7 @@ bool LobePoint::lamp_values(std::size_t which, const Transport::SeenLamp& lamp, 
 }
 
 // Lamps, whose shadow rays decide all, and what the mirror sees without a bounce.
-void LobePoint::add_sure(const color::Rgb* open_light, LobeEstimate& result) const {
+void LobePoint::add_sure(const color::Rgb* open_mirror, double share, std::vector<color::Rgb>& direct) const {
   float values[2 * kMostTracedLobes + 2];
   for (std::size_t i = 0; i < transport_.lights_.size(); ++i) {
     const Transport::SeenLamp lamp = transport_.seen_lamp(i, spot_.start);
@@ -300,33 +299,60 @@ void LobePoint::add_sure(const color::Rgb* open_light, LobeEstimate& result) con
       if (!(kernels_.at(direction, values) > 0)) continue;
       if (!open_ && transport_.rays_->blocked(spot_.start, direction, lamp.reach)) continue;
     }
-    for (std::size_t k = 0; k < columns_.count(); ++k) result.direct[k] += (kPi * values[k]) * light.white;
+    for (std::size_t k = 0; k < columns_.count(); ++k) direct[k] += (share * kPi * values[k]) * light.white;
   }
-  color::Rgb& mirror = result.direct[columns_.mirror()];
+  color::Rgb& mirror = direct[columns_.mirror()];
+  const double weight = share * kernels_.mirror();
   if (!transport_.lights_.empty())
-    mirror += kernels_.mirror() * transport_.mirrored_lamps(spot_.start, painted_.mirrored(), mirror_hit_);
+    mirror += weight * transport_.mirrored_lamps(spot_.start, painted_.mirrored(), mirror_hit_);
   if (mirror_hit_.any()) {
-    mirror += kernels_.mirror() * transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle));
-  } else if (open_light != nullptr) {
-    mirror += open_light[columns_.mirror()];
+    mirror += weight * transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle));
+  } else if (open_mirror != nullptr) {
+    mirror += share * *open_mirror;
   } else if (transport_.environment_) {
-    mirror += kernels_.mirror() * transport_.mirrored_environment(painted_.mirrored());
+    mirror += weight * transport_.mirrored_environment(painted_.mirrored());
   }
 }
 
+namespace {
+
+// Of so many points, the one that a sequence starts from: the even sequences go through all of them in one order and
+// the odd ones in another, so that where one half starts says nothing of where the other does.
+std::size_t start_of(int sequence, std::size_t points, std::uint64_t seed) {
+  const auto half = static_cast<std::uint64_t>(sequence % 2), turn = static_cast<std::uint64_t>(sequence / 2) / points;
+  const auto step = static_cast<std::size_t>(sequence / 2) % points;
+  std::array<std::uint8_t, LobePoint::kMostPoints> order;
+  std::iota(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(points), std::uint8_t{0});
+  for (std::size_t i = 0; i <= step && i + 1 < points; ++i) {
+    const std::uint64_t number = mixed(mixed(seed, 2 * turn + half), 0x57A7U + i);
+    std::swap(order[i], order[i + static_cast<std::size_t>(number % (points - i))]);
+  }
+  return order[step];
+}
+
+}  // namespace
+
 // All that a floor shows is light of its one column; what the mesh sends to it came through other surfaces.
-LobeEstimate LobePoint::floor_estimate(int sequences, int directions, std::uint64_t seed) const {
+LobeEstimate LobePoint::floor_estimate(std::span<const LobePoint* const> points, int sequences, int directions,
+                                       std::uint64_t seed) {
+  const LobePoint& any = *points.front();
   LobeEstimate result;
-  result.direct.resize(columns_.count()), result.bounced.resize(columns_.count());
-  result.covariance.resize(columns_.count()), result.classes.resize(groups_.classes());
-  const PointTransport point(transport_, options_, spot_, painted_.to_viewer());
-  result.direct[LobeColumns::diffuse()] = point.sure();
-  if (point.certain()) return result;
+  result.direct.resize(any.columns_.count()), result.bounced.resize(any.columns_.count());
+  result.covariance.resize(any.columns_.count()), result.classes.resize(any.groups_.classes());
+  std::vector<PointTransport> floors;
+  bool certain = true;
+  for (const LobePoint* point : points) {
+    floors.emplace_back(point->transport_, point->options_, point->spot_, point->painted_.to_viewer());
+    result.direct[LobeColumns::diffuse()] += (1.0 / static_cast<double>(points.size())) * floors.back().sure();
+    certain = certain && floors.back().certain();
+  }
+  if (certain) return result;
   result.sequences = sequences;
   const int batches = std::max(1, directions / kBatch);
   LightShares mean;
   Estimates shown;
   for (int which = 0; which < sequences; ++which) {
+    const PointTransport& point = floors[start_of(which, floors.size(), seed)];
     LightShares of_sequence;
     for (int i = 0; i < batches; ++i)
       of_sequence += (1.0 / batches) * point.batch_shares(mixed(mixed(seed, static_cast<std::uint64_t>(which)),
@@ -337,9 +363,19 @@ LobeEstimate LobePoint::floor_estimate(int sequences, int directions, std::uint6
   result.direct[LobeColumns::diffuse()] += mean.direct;
   result.bounced[LobeColumns::diffuse()] = mean.into_lobes + mean.into_diffuse;
   result.covariance[LobeColumns::diffuse()] = shown.covariance();
-  const int floor = groups_.of_part[static_cast<std::size_t>(spot_.part)];
-  result.classes[groups_.at(floor, PaintGroups::kDeeper)] = result.bounced[LobeColumns::diffuse()];
+  const int floor = any.groups_.of_part[static_cast<std::size_t>(any.spot_.part)];
+  result.classes[any.groups_.at(floor, PaintGroups::kDeeper)] = result.bounced[LobeColumns::diffuse()];
   return result;
+}
+
+void LobePoint::add_sequence(const std::vector<Ray>& rays, std::uint64_t seed, Sums& sums, int which) const {
+  const Sequence sequence(seed, static_cast<std::uint32_t>(sums.directions));
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (rays[i].above && (rays[i].blocked || transport_.environment_))
+      add_ray(rays[i], sequence, static_cast<std::uint32_t>(i), sums, which);
+  if (!transport_.emitters_.empty())
+    for (std::uint32_t i = 0; i < rays.size(); ++i) add_emitter(sequence.point(i, 1), sums, which);
+  add_mirror(seed, sums, which);
 }
 
 // Light L from free directions is what is wanted; M is known of all directions. For any beta that does not depend on
@@ -348,46 +384,47 @@ LobeEstimate LobePoint::floor_estimate(int sequences, int directions, std::uint6
 // has the right expectation: beta = 1 takes away what is hidden, beta = 0 sums what is free. The quieter of both is the
 // one with the smaller second moment; beta = free2/(free2 + hidden2) is taken for the even sequences from the odd
 // ones and for the odd ones from the even ones, so that it depends on no sample that it weighs.
-LobeEstimate LobePoint::estimate(const color::Rgb* open_light, int sequences, int directions,
-                                 std::uint64_t seed) const {
-  if (is_laid_) return floor_estimate(sequences, directions, seed);
-  const std::size_t count = columns_.count();
+LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const color::Rgb* open_light,
+                                 const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed) {
+  const LobePoint& any = *points.front();
+  if (any.is_laid_) return floor_estimate(points, sequences, directions, seed);
+  const Transport& transport = any.transport_;
+  const LobeColumns& columns = any.columns_;
+  const std::size_t count = columns.count();
   LobeEstimate result;
   result.direct.resize(count), result.bounced.resize(count), result.covariance.resize(count);
-  result.classes.resize(groups_.classes());
-  add_sure(open_light, result);
+  result.classes.resize(any.groups_.classes());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i]->add_sure(open_light != nullptr ? &open_mirrors[i] : nullptr, 1.0 / static_cast<double>(points.size()),
+                        result.direct);
   const auto add_open = [&] {
     for (std::size_t k = 0; open_light != nullptr && k + 1 < count; ++k) result.direct[k] += open_light[k];
   };
-  if (open_ && (open_light != nullptr || !transport_.environment_)) {
+  const bool summed = open_light == nullptr && transport.environment_ != nullptr;
+  if (!summed && std::ranges::all_of(points, [](const LobePoint* point) { return point->open_; })) {
     add_open();
     return result;
   }
   result.sequences = sequences;
-  bool any_blocked = false;
-  const std::vector<Ray> rays = traced_rays(sequences, directions, seed, any_blocked);
-  const bool summed = open_light == nullptr && transport_.environment_ != nullptr;
-  if (!any_blocked && !summed && !mirror_hit_.any()) {
+  bool any_blocked = summed;
+  std::vector<std::vector<Ray>> rays;
+  const auto seed_of = [seed](int which) { return mixed(seed, static_cast<std::uint64_t>(which)); };
+  const auto start = [&](int which) -> const LobePoint& { return *points[start_of(which, points.size(), seed)]; };
+  for (int which = 0; which < sequences; ++which) {
+    rays.push_back(start(which).traced_rays(directions, seed_of(which), any_blocked));
+    any_blocked = any_blocked || start(which).mirror_hit_.any();
+  }
+  if (!any_blocked) {
     add_open();
     return result;
   }
-  Sums sums(static_cast<std::size_t>(sequences), directions, count, groups_.classes());
-  const auto per_sequence = static_cast<std::uint32_t>(directions);
-  for (int which = 0; which < sequences; ++which) {
-    const std::uint64_t own = mixed(seed, static_cast<std::uint64_t>(which));
-    const Sequence sequence(own, per_sequence);
-    for (std::uint32_t i = 0; i < per_sequence; ++i) {
-      const Ray& ray = rays[static_cast<std::size_t>(which) * per_sequence + i];
-      if (ray.above && (ray.blocked || transport_.environment_)) add_ray(ray, sequence, i, sums, which);
-    }
-    if (!transport_.emitters_.empty())
-      for (std::uint32_t i = 0; i < per_sequence; ++i) add_emitter(sequence.point(i, 1), sums, which);
-    add_mirror(own, sums, which);
-  }
+  Sums sums(static_cast<std::size_t>(sequences), directions, count, any.groups_.classes());
+  for (int which = 0; which < sequences; ++which)
+    start(which).add_sequence(rays[static_cast<std::size_t>(which)], seed_of(which), sums, which);
   for (std::size_t c = 0; c < sums.classes.size(); ++c) result.classes[c] = (1.0 / sequences) * sums.classes[c];
   for (std::size_t k = 0; k < count; ++k) {
     double beta[2] = {0, 0};
-    if (open_light != nullptr && k != columns_.mirror()) {
+    if (open_light != nullptr && k != columns.mirror()) {
       double free[2] = {0, 0}, hidden[2] = {0, 0};
       for (int which = 0; which < sequences; ++which)
         free[which % 2] += sums.free_squares[sums.at(which, k)],
@@ -403,7 +440,7 @@ LobeEstimate LobePoint::estimate(const color::Rgb* open_light, int sequences, in
       const std::size_t at = sums.at(which, k);
       const double b = beta[which % 2];
       color::Rgb light = (1 - b) * sums.free[at] - b * sums.hidden[at] + sums.emitted[at];
-      if (open_light != nullptr && k != columns_.mirror()) light += b * open_light[k];
+      if (open_light != nullptr && k != columns.mirror()) light += b * open_light[k];
       direct += (1.0 / sequences) * light, bounced += (1.0 / sequences) * sums.bounced[at];
       shown.add(light + sums.bounced[at]);
     }
@@ -489,21 +526,22 @@ LobePoint::Pairs LobePoint::pairs(int sequences, int directions, std::uint64_t s
   pairs.deeper.resize(pairs.once.size());
   if (open_ || options_.bounces == 0) return pairs;
   bool any_blocked = false;
-  const std::vector<Ray> rays = traced_rays(sequences, directions, seed, any_blocked);
   const double share = 1.0 / (static_cast<double>(sequences) * directions);
   float values[2 * kMostTracedLobes + 2];
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Ray& ray = rays[i];
-    if (!ray.above || !ray.blocked) continue;
-    const float kernels_pdf = kernels_.at(ray.direction, values);
-    const double light_pdf = transport_.environment_ ? transport_.environment_->at(ray.direction).pdf : 0;
-    const double pdf = light_chance_ * light_pdf + (1 - light_chance_) * kernels_pdf;
-    const Hit hit = pdf > 0 && kernels_pdf > 0 ? transport_.rays_->closest(spot_.start, ray.direction) : Hit{};
-    if (!hit.any()) continue;
-    const std::size_t which = i / static_cast<std::size_t>(directions),
-                      index = i % static_cast<std::size_t>(directions);
-    const Sequence sequence(mixed(seed, which), static_cast<std::uint32_t>(directions));
-    add_pairs(hit, ray.direction, values, share / pdf, sequence, static_cast<std::uint32_t>(index), pairs);
+  for (int which = 0; which < sequences; ++which) {
+    const std::uint64_t own = mixed(seed, static_cast<std::uint64_t>(which));
+    const Sequence sequence(own, static_cast<std::uint32_t>(directions));
+    const std::vector<Ray> rays = traced_rays(directions, own, any_blocked);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Ray& ray = rays[i];
+      if (!ray.above || !ray.blocked) continue;
+      const float kernels_pdf = kernels_.at(ray.direction, values);
+      const double light_pdf = transport_.environment_ ? transport_.environment_->at(ray.direction).pdf : 0;
+      const double pdf = light_chance_ * light_pdf + (1 - light_chance_) * kernels_pdf;
+      const Hit hit = pdf > 0 && kernels_pdf > 0 ? transport_.rays_->closest(spot_.start, ray.direction) : Hit{};
+      if (!hit.any()) continue;
+      add_pairs(hit, ray.direction, values, share / pdf, sequence, static_cast<std::uint32_t>(i), pairs);
+    }
   }
   if (!mirror_hit_.any()) return pairs;
   std::fill_n(values, columns_.count(), 0.0F);

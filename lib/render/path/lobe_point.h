@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "render/path/lobe_columns.h"
@@ -29,7 +30,7 @@ struct LobeEstimate {
   std::vector<color::Rgb> direct, bounced;
   std::vector<Covariance> covariance;  // of one sequence's mean of the sum of both
   std::vector<color::Rgb> classes;     // of bounced light, as the paint that the point wears shows them
-  int sequences = 0;                   // 0: the point sees its whole hemisphere, and all is exact
+  int sequences = 0;                   // 0: the points see their whole hemispheres, and all is exact
 };
 
 class LobePoint {
@@ -37,6 +38,8 @@ class LobePoint {
   // `bounces` as in PathOptions. The arguments must outlive the point.
   LobePoint(const Transport& transport, const LobeColumns& columns, const PaintGroups& groups, int bounces,
             const rays::Spot& spot, const rays::Float3& to_viewer);
+  LobePoint(const LobePoint&) = delete;  // its kernels are those of its own surface
+  LobePoint& operator=(const LobePoint&) = delete;
 
   // Whether nothing rises above its horizon.
   bool open() const { return open_; }
@@ -54,17 +57,27 @@ class LobePoint {
   };
   Pairs pairs(int sequences, int directions, std::uint64_t seed) const;
 
-  // The mean over so many sequences of `directions` each, a power of two. `open_light` has what each column
-  // gathers of the environment without any surface in the way: it is corrected by what rays find, without bias, so that
-  // a point whose rays are all free has no noise. Null: rays alone.
-  LobeEstimate estimate(const color::Rgb* open_light, int sequences, int directions, std::uint64_t seed) const;
+  // The mean over at most kMostPoints points of one part, and at least one, by so many sequences of `directions` each,
+  // a power of two: each sequence starts from one of them. `open_light` has what each column gathers there, in the
+  // mean, of the environment without any surface in the way: it is corrected by what rays find, without bias, so that
+  // points whose rays are all free have no noise. `open_mirrors` has what the mirror of each point sees of it. Both
+  // null: rays alone.
+  static LobeEstimate estimate(std::span<const LobePoint* const> points, const color::Rgb* open_light,
+                               const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed);
+  // Of this point alone.
+  LobeEstimate estimate(const color::Rgb* open_light, int sequences, int directions, std::uint64_t seed) const {
+    const color::Rgb* mirror = open_light != nullptr ? open_light + columns_.mirror() : nullptr;
+    const LobePoint* const alone = this;
+    return estimate({&alone, 1}, open_light, mirror, sequences, directions, seed);
+  }
+  static constexpr std::size_t kMostPoints = 16;
 
  private:
   struct Ray;
   struct Sent;
   struct Sums;
   Ray drawn_ray(const std::array<double, 4>& numbers) const;
-  std::vector<Ray> traced_rays(int sequences, int directions, std::uint64_t seed, bool& any_blocked) const;
+  std::vector<Ray> traced_rays(int directions, std::uint64_t seed, bool& any_blocked) const;
   Sent sent(const rays::Hit& hit, const rays::Float3& direction, const Sequence& sequence, std::uint32_t index) const;
   void add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t index, Sums& sums, int which) const;
   void add_emitter(const std::array<double, 4>& numbers, Sums& sums, int which) const;
@@ -73,8 +86,10 @@ class LobePoint {
   void add_pairs(const rays::Hit& hit, const rays::Float3& direction, const float* values, double scale,
                  const Sequence& sequence, std::uint32_t index, Pairs& pairs) const;
   bool lamp_values(std::size_t which, const Transport::SeenLamp& lamp, float* values) const;
-  void add_sure(const color::Rgb* open_light, LobeEstimate& result) const;
-  LobeEstimate floor_estimate(int sequences, int directions, std::uint64_t seed) const;
+  void add_sequence(const std::vector<Ray>& rays, std::uint64_t seed, Sums& sums, int which) const;
+  void add_sure(const color::Rgb* open_mirror, double share, std::vector<color::Rgb>& direct) const;
+  static LobeEstimate floor_estimate(std::span<const LobePoint* const> points, int sequences, int directions,
+                                     std::uint64_t seed);
   int group_of(const rays::Hit& hit) const {
     return groups_.of_part[static_cast<std::size_t>(transport_.rays().part(hit.triangle))];
   }

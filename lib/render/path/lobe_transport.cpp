@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "base/angles.h"
 #include "base/clock.h"
@@ -34,7 +35,13 @@ class Tracing {
     LobeTransport& t = result_.transport;
     const Gbuffer& g = surface.gbuffer;
     t.width = g.width, t.height = g.height, t.columns = columns, t.worn = worn;
-    t.white_luminance = request.white_luminance, t.bounces = request.bounces;
+    t.white_luminance = request.white_luminance, t.bounces = request.bounces, t.samples = request.pixel_samples;
+    for (const auto& [dx, dy] : sample_shifts(request.pixel_samples)) {
+      if (request.pixel_samples == 1) break;
+      Rays shifted = g.rays;
+      shifted.corner += dx * shifted.right + dy * shifted.down;
+      samples_.push_back(visible_surface(transport.rays(), shifted, g.width, g.height));
+    }
     number_.assign(surface.hits.size(), -1);
     for (std::size_t i = 0; i < surface.hits.size(); ++i) {
       if (!surface.hits[i].any()) continue;
@@ -88,6 +95,7 @@ class Tracing {
     ++round_;
   }
 
+  // What the center of a pixel shows.
   LobePoint point_at(std::size_t i) const {
     const LobeTransport& t = result_.transport;
     const int x = static_cast<int>(t.places[i]) % t.width, y = static_cast<int>(t.places[i]) / t.width;
@@ -97,6 +105,17 @@ class Tracing {
             request_.bounces,
             spot_at(transport_.rays(), surface_, x, y),
             rays::float3(surface_.gbuffer.to_viewer(x, y))};
+  }
+
+  // The samples of a pixel that a point is the mean of.
+  std::vector<const VisibleSurface*> samples_of(std::size_t i) const {
+    const std::uint32_t place = result_.transport.places[i];
+    const float part = surface_.gbuffer.data[4 * static_cast<std::size_t>(place) + 3];
+    std::vector<const VisibleSurface*> shown;
+    for (const VisibleSurface& sample : samples_)
+      if (sample.gbuffer.data[4 * static_cast<std::size_t>(place) + 3] == part) shown.push_back(&sample);
+    if (shown.empty()) shown.push_back(&surface_);
+    return shown;
   }
 
   void probe() {
@@ -132,28 +151,37 @@ class Tracing {
     LobeTransport& t = result_.transport;
     const std::uint32_t place = t.places[i];
     const int x = static_cast<int>(place) % t.width, y = static_cast<int>(place) / t.width;
-    const Gbuffer& g = surface_.gbuffer;
-    const rays::Spot spot = spot_at(transport_.rays(), surface_, x, y);
-    const LobePoint point = point_at(i);
-    // Looked up or summed in the first round, and kept for the others.
-    std::vector<color::Rgb> open(t.columns.count());
-    if (open_ != nullptr && !t.worn.is_laid(spot.part)) {
+    const int part = t.part[i];
+    std::deque<LobePoint> points;  // which stay where they are
+    std::vector<const LobePoint*> of_pixel;
+    std::vector<OpenView> views;
+    for (const VisibleSurface* sample : samples_of(i)) {
+      const rays::Spot spot = spot_at(transport_.rays(), *sample, x, y);
+      const Vec3 to_viewer = sample->gbuffer.to_viewer(x, y);
+      views.push_back({rays::vec3(spot.shading), to_viewer});
+      of_pixel.push_back(
+          &points.emplace_back(transport_, t.columns, t.worn.groups, request_.bounces, spot, rays::float3(to_viewer)));
+    }
+    // Looked up or summed in the first round, and kept for the others; what mirrors see is not.
+    std::vector<color::Rgb> open(t.columns.count()), mirrors(points.size());
+    if (open_ != nullptr && !t.worn.is_laid(part)) {
       float* kept = &open_light_[i * t.floats()];
       if (round_ == 0) {
-        open_->at(rays::vec3(spot.shading), g.to_viewer(x, y), spot.part, open.data());
+        open_->mean(views, part, open.data());
         for (const color::Rgb& light : open)
           for (int c = 0; c < 3; ++c) *kept++ = static_cast<float>(light[c]);
       } else {
         for (color::Rgb& light : open)
           for (int c = 0; c < 3; ++c) light[c] = *kept++;
       }
+      for (std::size_t k = 0; k < views.size(); ++k) mirrors[k] = open_->mirror(views[k], part);
     }
     const int sequences = std::min(batches, kSequences);
     int of_each = 1;  // batches
     while (of_each * sequences < batches) of_each *= 2;
     const LobeEstimate estimate =
-        point.estimate(open_ != nullptr ? open.data() : nullptr, sequences, of_each * kBatch,
-                       mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(batches_[i])));
+        LobePoint::estimate(of_pixel, open_ != nullptr ? open.data() : nullptr, mirrors.data(), sequences,
+                            of_each * kBatch, mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(batches_[i])));
     const double before = batches_[i], added = estimate.sequences * of_each;
     const double share = added > 0 ? added / (before + added) : 1;
     const auto mix = [share](float& into, double value) {
@@ -258,9 +286,10 @@ class Tracing {
   Deadline deadline_;
   Stopwatch clock_;
   TracedLobes result_;
-  std::vector<std::int32_t> number_;  // of the point of each pixel, or -1
-  std::vector<float> open_light_;     // point, column, channel
-  std::vector<float> variance_;       // of one batch: point, column; dE00^2
+  std::vector<VisibleSurface> samples_;  // of the pixels; none: their centers
+  std::vector<std::int32_t> number_;     // of the point of each pixel, or -1
+  std::vector<float> open_light_;        // point, column, channel
+  std::vector<float> variance_;          // of one batch: point, column; dE00^2
   std::vector<int> batches_, sequences_;
   std::vector<double> needed_, nominal_;
   int round_ = 0;

@@ -41,7 +41,8 @@ struct BounceProbe {
   std::vector<float> once, deeper;  // as LobePoint::Pairs, channels last
 };
 
-// Light by column and channel, of weight 1, for the visible points row by row.
+// Light by column and channel, of weight 1, for the visible points row by row: the mean over those samples of a pixel
+// that show the part that its center shows, from the same side.
 struct LobeTransport {
   int width = 0, height = 0;
   LobeColumns columns;
@@ -56,6 +57,7 @@ struct LobeTransport {
   double white_luminance = 1;       // of the scene's diffuse white, in the unit that the light is kept in
   double unit = 1;                  // that unit, as radiance
   int bounces = 0;
+  int samples = 1;  // of a pixel, as sample_shifts() has them
 
   std::size_t floats() const { return 3 * columns.count(); }  // of a point
   color::Rgb light(std::size_t point, std::size_t column, bool with_bounced = true) const {
@@ -75,7 +77,8 @@ struct LobeTransportRequest {
   double time_limit_s = 0;  // 0: none
   int most_batches = 1024;  // of a point
   double white_luminance = 1;
-  int probes = 256;  // at most
+  int probes = 256;       // at most, at pixel centers
+  int pixel_samples = 1;  // LobeTransport::samples
   std::uint64_t seed = 1;
   std::function<void(double noise_de00, double seconds)> progress = {};
 };

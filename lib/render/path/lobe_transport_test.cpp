@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "base/angles.h"
@@ -197,6 +198,55 @@ TEST(LobeTransport, ShowsTheWornPaintsWithBouncesAsTracingDoes) {
     EXPECT_GT(percentile_95(direct), 3);  // control
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean_ours[c] / mean_truth[c], 1, with_maps ? 0.01 : 0.006);
     EXPECT_LT(classes_off, 1e-3);  // floats
+  }
+}
+
+// The truth is a picture of as many samples, by paths; the paint is mostly mirror, whose image changes within a pixel.
+// Where other samples show another part, the picture mixes what a transport tells apart. The control: the light of the
+// centers.
+TEST(LobeTransport, APixelOfSeveralSamplesIsTheirMean) {
+  paint::LobeFit paint = matt({0.1, 0.1, 0.1});
+  paint.lobes = {{200, {}, {0.3, 0.3, 0.3}}, {paint::kMirrorExponent, {}, {1, 1, 1}}};
+  const Stage stage(paint, paint, 12, 9);
+  PathRequest path;
+  path.tolerance_de00 = 0.4, path.pixel_samples = 4;
+  const PathPicture truth = path_picture(*stage.path.transport, stage.surface, nullptr, path);
+  const Gbuffer& g = stage.surface.gbuffer;
+  const auto weights = weights_of(stage.columns, paint);
+  std::vector<VisibleSurface> samples;
+  for (const auto& [dx, dy] : sample_shifts(4)) {
+    Rays shifted = g.rays;
+    shifted.corner += dx * shifted.right + dy * shifted.down;
+    samples.push_back(visible_surface(stage.path.transport->rays(), shifted, g.width, g.height));
+  }
+  for (const bool with_maps : {true, false}) {
+    std::array<std::vector<double>, 2> off;  // of one sample and of four
+    std::array<color::Rgb, 2> mean_ours;
+    color::Rgb mean_truth;
+    for (const int of_four : {0, 1}) {
+      LobeTransportRequest request;
+      request.tolerance_de00 = 0.8, request.pixel_samples = of_four == 1 ? 4 : 1;
+      const TracedLobes traced = stage.traced(request, with_maps);
+      const LobeTransport& t = traced.transport;
+      EXPECT_EQ(t.samples, request.pixel_samples);
+      mean_truth = {};
+      for (const PathPoint& point : truth.points) {
+        const auto place = static_cast<std::uint32_t>(point.y * g.width + point.x);
+        const auto at = std::ranges::find(t.places, place);
+        const float part = g.data[4 * static_cast<std::size_t>(place) + 3];
+        const auto shows_it = [&](const VisibleSurface& s) { return s.gbuffer.data[4 * place + 3] == part; };
+        if (at == t.places.end() || !std::ranges::all_of(samples, shows_it)) continue;
+        const color::Rgb ours = shown(t, static_cast<std::size_t>(at - t.places.begin()), weights, true);
+        off[static_cast<std::size_t>(of_four)].push_back(seen_difference(ours, point.radiance, 1));
+        mean_ours[static_cast<std::size_t>(of_four)] += ours, mean_truth += point.radiance;
+      }
+    }
+    std::printf("p95 of four samples %.2f, of one %.2f\n", percentile_95(off[1]), percentile_95(off[0]));
+    EXPECT_GT(off[1].size(), 30U);
+    const double bound = 2.2 * std::hypot(0.8, 0.4) + (with_maps ? 0.5 : 0);
+    EXPECT_LT(percentile_95(off[1]), bound);
+    EXPECT_GT(percentile_95(off[0]), bound) << "the control must fail";
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean_ours[1][c] / mean_truth[c], 1, with_maps ? 0.01 : 0.006);
   }
 }
 

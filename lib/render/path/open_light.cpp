@@ -87,25 +87,53 @@ std::vector<LobeAxis> OpenLight::axes(const Vec3& n, const Vec3& to_viewer, std:
   return axes;
 }
 
-void OpenLight::at(const Vec3& n, const Vec3& to_viewer, int part, color::Rgb* light) const {
-  const double cos_o = std::clamp(dot(n, to_viewer), 0.0, 1.0);
+double OpenLight::coat_of(int part) const {
   const auto p = static_cast<std::size_t>(part);
-  const double coat_index = p < coats_.size() ? coats_[p] : paint::kNoCoat;
+  return p < coats_.size() ? coats_[p] : paint::kNoCoat;
+}
+
+// By the maps and the bright spots, whatever is summed.
+void OpenLight::look_up(const OpenView& view, int part, color::Rgb* light) const {
+  const auto& [n, to_viewer] = view;
+  const double cos_o = std::clamp(dot(n, to_viewer), 0.0, 1.0), coat_index = coat_of(part);
   const UnitWeights& weights = weights_.at(coat_index);
   std::fill_n(light, columns_.count(), color::Rgb{});
   const color::Rgb at_normal = envmap::bilinear(coat_index == paint::kNoCoat ? *diffuse_ : *coat_diffuse_, n);
   weights.add_diffuse(at_normal, cos_o, 1, light);
   for (const UnitWeights::Disc& spot : spots_) weights.add_diffuse(spot, n, cos_o, 1, light);
-  const std::vector<LobeAxis> about = axes(n, to_viewer, p);
-  for (const LobeAxis& axis : about) {
+  for (const LobeAxis& axis : axes(n, to_viewer, static_cast<std::size_t>(part))) {
     weights.add_lobes(maps_, at_normal, n, axis.direction, cos_o, axis.share, light);
     for (const UnitWeights::Disc& spot : spots_)
       weights.add_lobes(spot, n, to_viewer, axis.direction, axis.share, light);
   }
-  if (summed_) summed_->at(n, to_viewer, about, coat_index, light);
-  const std::size_t last = columns_.mirror();
-  light[last] = weights.at(last, weights.table().mirror_slot(), cos_o) *
-                envmap::bilinear(env_->mirror.map, 2 * dot(n, to_viewer) * n - to_viewer);
+  light[columns_.mirror()] = mirror(view, part);
+}
+
+color::Rgb OpenLight::mirror(const OpenView& view, int part) const {
+  const auto& [n, to_viewer] = view;
+  const UnitWeights& weights = weights_.at(coat_of(part));
+  return weights.at(columns_.mirror(), weights.table().mirror_slot(), std::clamp(dot(n, to_viewer), 0.0, 1.0)) *
+         envmap::bilinear(env_->mirror.map, 2 * dot(n, to_viewer) * n - to_viewer);
+}
+
+void OpenLight::at(const Vec3& n, const Vec3& to_viewer, int part, color::Rgb* light) const {
+  look_up({n, to_viewer}, part, light);
+  if (summed_) summed_->at(n, to_viewer, axes(n, to_viewer, static_cast<std::size_t>(part)), coat_of(part), light);
+}
+
+void OpenLight::mean(const std::vector<OpenView>& views, int part, color::Rgb* light) const {
+  std::fill_n(light, columns_.count(), color::Rgb{});
+  std::vector<color::Rgb> here(columns_.count()), summed;
+  for (const OpenView& view : views) {
+    look_up(view, part, here.data());
+    if (summed_ && summed.empty()) {
+      summed = here;
+      const auto& [n, to_viewer] = view;
+      summed_->at(n, to_viewer, axes(n, to_viewer, static_cast<std::size_t>(part)), coat_of(part), summed.data());
+      for (std::size_t k = 0; k < here.size(); ++k) light[k] += summed[k] - here[k];
+    }
+    for (std::size_t k = 0; k < here.size(); ++k) light[k] += (1.0 / static_cast<double>(views.size())) * here[k];
+  }
 }
 
 // Each column in the gray paint that its noise is judged by.

@@ -17,6 +17,11 @@
 
 namespace goniochrome::render {
 
+// A point of a surface as it is seen: both unit, on one side.
+struct OpenView {
+  Vec3 normal, to_viewer;
+};
+
 class OpenLight {
  public:
   // For columns whose exponents are among those of the environment. `tilts` of each part, as tilts_of() has them; none:
@@ -32,9 +37,18 @@ class OpenLight {
   // Writes the light of each column with weight 1 at a point seen from there; both vectors unit, on one side.
   void at(const Vec3& normal, const Vec3& to_viewer, int part, color::Rgb* light) const;
 
+  // Writes the mean of that over views of a part which lie close together. Wide lobes that are summed are so at the
+  // first view alone: at the others they differ from it as the maps do.
+  void mean(const std::vector<OpenView>& views, int part, color::Rgb* light) const;
+
+  // That of the mirror's column alone.
+  color::Rgb mirror(const OpenView& view, int part) const;
+
  private:
   OpenLight() = default;
   std::vector<LobeAxis> axes(const Vec3& normal, const Vec3& to_viewer, std::size_t part) const;
+  double coat_of(int part) const;
+  void look_up(const OpenView& view, int part, color::Rgb* light) const;
 
   const envmap::PrefilteredEnvironment* env_ = nullptr;
   LobeColumns columns_;

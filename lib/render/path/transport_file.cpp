@@ -67,6 +67,7 @@ std::string header_of(const LobeTransport& t) {
   Json header = {{"version", kVersion},
                  {"exponents", t.columns.exponents},
                  {"bounces", t.bounces},
+                 {"samples", t.samples},
                  {"white_luminance", t.white_luminance},
                  {"group_of_part", t.worn.groups.of_part},
                  {"probed", t.probed},
@@ -186,6 +187,7 @@ class Reader {
                                  kVersion));
       t_.columns.exponents = header.at("exponents").get<std::vector<double>>();
       t_.bounces = header.at("bounces").get<int>();
+      t_.samples = header.value("samples", 1);
       t_.unit = header.at("white_luminance").get<double>();
       t_.probed = header.at("probed").get<int>();
       t_.worn.groups.of_part = header.at("group_of_part").get<std::vector<int>>();
@@ -209,8 +211,9 @@ class Reader {
     }
     t_.worn.groups.count = static_cast<int>(t_.worn.weights.size());
     const std::vector<double>& exponents = t_.columns.exponents;
-    if (exponents.size() > kMostTracedLobes || !std::ranges::is_sorted(exponents) || t_.bounces < 0 || !(t_.unit > 0))
-      return wrong("its exponents, bounces or white are not what a transport has");
+    if (exponents.size() > kMostTracedLobes || !std::ranges::is_sorted(exponents) || t_.bounces < 0 || !(t_.unit > 0) ||
+        (t_.samples != 1 && t_.samples != 4 && t_.samples != 16))
+      return wrong("its exponents, bounces, samples or white are not what a transport has");
     if (t_.worn.groups.of_part.size() != t_.worn.brushed.size() + (t_.worn.has_floor ? 1 : 0) ||
         t_.worn.emission.size() != t_.worn.brushed.size() || t_.worn.coats.size() != t_.worn.groups.of_part.size())
       return wrong("its parts, their emission, their coats and their brushing differ in number");

@@ -33,6 +33,7 @@ const Kept& kept() {
     request.tolerance_de00 = 8;
     request.white_luminance = kWhite;
     request.probes = 16;
+    request.pixel_samples = 4;
     k.traced = stage.traced(request);
     TransportParts parts = transport_parts(k.traced.transport);
     const std::string path = ::testing::TempDir() + "transport_file_test.exr";
@@ -62,6 +63,7 @@ TEST(TransportFile, ComesBackToHalvesAndIsShadedAsItWasTraced) {
   EXPECT_EQ(t.probes.size(), before.probes.size());
   EXPECT_GT(t.probes.size(), 4U);
   EXPECT_EQ(t.unit, kWhite);
+  EXPECT_EQ(t.samples, 4);
   // A half has 11 bits, and 2^-25 at the least.
   for (std::size_t i = 0; i < t.places.size(); ++i)
     for (std::size_t c = 0; c < t.columns.count(); ++c)
@@ -150,6 +152,10 @@ TEST(TransportFile, DamagedIsRefusedByName) {
               file.image.data[std::ranges::find(file.image.data, 6.0F) - file.image.data.begin()] = 9;
             }).find("shows part 9, and the transport knows 6"),
             std::string::npos);
+  EXPECT_NE(refused([](auto& file) {
+              file.transport.replace(file.transport.find("\"samples\":4"), 11, "\"samples\":5");
+            }).find("its exponents, bounces, samples or white"),
+            std::string::npos);
   // Another basis.
   EXPECT_NE(refused([](auto& file) {
               const auto at = file.transport.find("200.0");
@@ -157,6 +163,16 @@ TEST(TransportFile, DamagedIsRefusedByName) {
             }).find("a paint has 8 weights for 10 columns"),
             std::string::npos);
   EXPECT_EQ(refused([](auto&) {}), "read");
+}
+
+// Files that were written before a transport told its samples hold the light of the pixel centers.
+TEST(TransportFile, WithoutASampleCountIsThatOfTheCenters) {
+  image::AovFile file = kept().file;
+  const std::string told = "\"samples\":4,";
+  file.transport.erase(file.transport.find(told), told.size());
+  const auto read = transport_of(file);
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ((*read)->samples, 1);
 }
 
 }  // namespace
