@@ -28,7 +28,7 @@ Effects united(const Effects& a, const Effects& b) {
   for (const auto flag : {&Effects::environment, &Effects::diffuse, &Effects::mirror, &Effects::fresnel, &Effects::coat,
                           &Effects::horizon, &Effects::views, &Effects::satin, &Effects::stretch, &Effects::maps,
                           &Effects::image_maps, &Effects::texture, &Effects::texture_filter, &Effects::anisotropy,
-                          &Effects::reflection, &Effects::extent, &Effects::panes})
+                          &Effects::reflection, &Effects::extent, &Effects::panes, &Effects::sums})
     all.*flag = a.*flag || b.*flag;
   for (const auto flag : {&RayEffects::shadow, &RayEffects::self, &RayEffects::bounce, &RayEffects::floor})
     all.rays.*flag = a.rays.*flag || b.rays.*flag;
@@ -55,7 +55,7 @@ bool covers(const Effects& all, const Effects& wanted) {
   for (const auto flag : {&Effects::environment, &Effects::diffuse, &Effects::mirror, &Effects::fresnel, &Effects::coat,
                           &Effects::horizon, &Effects::views, &Effects::satin, &Effects::stretch, &Effects::maps,
                           &Effects::image_maps, &Effects::texture, &Effects::texture_filter, &Effects::anisotropy,
-                          &Effects::reflection, &Effects::extent, &Effects::panes})
+                          &Effects::reflection, &Effects::extent, &Effects::panes, &Effects::sums})
     if (both.*flag != all.*flag) return false;
   return std::ranges::equal(both.lobes, all.lobes, same_use) && both.rays == all.rays && both.spots == all.spots &&
          both.tilt_level == all.tilt_level && both.lights == all.lights && both.background == all.background;

@@ -55,7 +55,8 @@ struct Effects {
   bool anisotropy = false;
   double tilt_tolerance = 0.005;  // of the lobes drawn about tilted normals, relative to their peak
   int most_tilts = 1024;
-  double tolerance_de00 = 0.3;  // of engines that sum light instead of looking it up: p95 over the visible pixels
+  double tolerance_de00 = 0.3;  // of light that is summed instead of looked up: p95 over the visible pixels
+  bool sums = false;  // the diffuse part and the wide lobes by sums over the environment, which plans alone turn on
   bool reflection = false;      // the scene's reflection operator in place of the component-wise product
   bool panes = false;           // what lies behind panes; else they mirror before black
   std::size_t lights = 0;

@@ -5,6 +5,7 @@
 
 #include "render/internal/seen.h"
 #include "render/plan/ray_plan.h"
+#include "render/plan/sum_choice.h"
 
 namespace goniochrome::render {
 
@@ -48,10 +49,11 @@ Result<LeftOut> left_out(Renderer& renderer, const Scene& scene, const Plan& pla
   LeftOut result;
   result.planned_ms = result.full_ms = std::numeric_limits<double>::infinity();
   Effects drawn = plan.effects, all = effects_of(scene);
-  drawn.rays = all.rays = {};
+  drawn.rays = all.rays = {}, drawn.sums = false;
   const auto& by_rays = ray_effect_names();
   const bool whole = std::none_of(plan.items.begin(), plan.items.end(), [&](const PlanItem& item) {
-    return item.needed && !item.on && std::ranges::find(by_rays, item.effect) == by_rays.end();
+    return item.needed && !item.on && item.effect != kSumsName &&
+           std::ranges::find(by_rays, item.effect) == by_rays.end();
   });
   Frame planned, full;
   for (int round = 0; round < kRounds; ++round) {

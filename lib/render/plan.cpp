@@ -20,6 +20,7 @@
 #include "render/plan/kept.h"
 #include "render/plan/prober.h"
 #include "render/plan/ray_plan.h"
+#include "render/plan/sum_choice.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -316,7 +317,7 @@ Plan plan_of_everything(const Scene& scene, const Effects& all, const std::vecto
 // Where prefiltered maps do not keep the tolerance and rays alone are faster, everything is drawn by these.
 void take_rays_alone(const Effects& all, const RayChoice& by_rays, double tolerance_de00, double most_in_all,
                      const Engine& tracer, Plan& plan) {
-  const double by_maps_ms = plan.predicted_ms() + plan.rays_ms;
+  const double by_maps_ms = plan.predicted_ms() + plan.sums_ms + plan.rays_ms;
   for (PlanItem& item : plan.items) {
     if (!item.needed) continue;
     item.on = true, item.decision = Decision::kDrawn;
@@ -329,7 +330,7 @@ void take_rays_alone(const Effects& all, const RayChoice& by_rays, double tolera
   plan.prices.push_back({plan.engine, by_rays.path_ms, 0});
   plan.effects = all;
   plan.effects.most_samples_in_all = most_in_all;
-  plan.de00_p95 = plan.rays_ms = plan.rays_noise_de00 = 0;
+  plan.de00_p95 = plan.sums_ms = plan.rays_ms = plan.rays_noise_de00 = 0;
   plan.open_de00_p95 = plan.whole_de00_p95 = tolerance_de00;
   plan.not_kept.clear();
 }
@@ -357,32 +358,9 @@ struct Probers {
 
 }  // namespace
 
-const char* spelled(Decision decision) {
-  switch (decision) {
-    case Decision::kNotInScene:
-      return "not in the scene";
-    case Decision::kDrawn:
-      return "drawn";
-    case Decision::kDropped:
-      return "dropped";
-    case Decision::kForcedOn:
-      return "forced on";
-    case Decision::kForcedOff:
-      return "forced off";
-    case Decision::kOverBudget:
-      break;
-  }
-  return "over budget";
-}
-
 double Plan::predicted_ms() const {
   const auto of = std::ranges::find(prices, engine, &EnginePrice::engine);
   return of == prices.end() ? 0 : of->frame_ms;
-}
-
-Result<void> check_effects(const std::string& effects) {
-  GONIO_ASSIGN(const Words words, words_of(effects));
-  return {};
 }
 
 std::vector<ProbePixel> probe_pixels(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count) {
@@ -494,7 +472,11 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   if (scene.env != nullptr && rays.texels != nullptr && !probe.empty() &&
       (asked == nullptr || asked->info().is_planned))
     open_truth.emplace(scene, all, probe, *rays.texels, request.white_luminance);
-  const double open_de00 = open_truth ? open_truth->error(prober.front_colors(everything)) : 0;
+  SumChoice sums = no_sums("no image light whose maps could be compared with it");
+  if (open_truth) {
+    GONIO_ASSIGN(sums, sum_choice(*open_truth, prober.front_colors(everything), scene, all, gbuffers, request, words,
+                                  *rays.residual));
+  }
   for (std::size_t i = 0; i < switches.size(); ++i) {
     if (!switches[i].beyond_maps || !switches[i].needed) continue;
     Effects without = all;
@@ -505,7 +487,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   }
   const Stopwatch ray_clock;
   const RayChoice by_rays =
-      planned_rays(scene, gbuffers, request, words, rays, work.points, open_de00, [&](const auto& points) {
+      planned_rays(scene, gbuffers, request, words, rays, work.points, sums.open_de00, [&](const auto& points) {
         const Compact probed = compacted(scene, points);
         return Prober(probed.scene, all, switches, probed.points, points, request.white_luminance, probers.all,
                       probers.component_wise(all))
@@ -540,7 +522,14 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   plan.effects.most_samples_in_all = by_rays.most_in_all;
   plan.rays_ms = by_rays.cost.ms, plan.rays_noise_de00 = by_rays.noise_de00;
   const bool has_maps = scene.env != nullptr && !engine.info().needs_texels;
-  if (open_truth) plan.open_de00_p95 = open_truth->error(prober.front_colors(choice.on));
+  if (sums.item.on) {
+    plan.effects.sums = true, plan.sums_ms = sums.item.cost_ms;
+    GONIO_TRY(rays.residual->load(scene, plan.effects));
+  }
+  if (open_truth)
+    plan.open_de00_p95 =
+        open_truth->error(prober.front_colors(choice.on), sums.item.on ? rays.residual->at(open_truth->points())
+                                                                       : std::vector<color::Rgb>());
   if (!has_maps)
     plan.open_de00_p95 = scene.env != nullptr ? request.tolerance_de00 : plan.de00_p95 - by_rays.left_out_de00_p95;
   if (rays.transport != nullptr && plan.open_de00_p95)
@@ -563,13 +552,14 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
       item.reason += "; prefiltered maps cannot show it, the engines integral and path do";
     }
   }
+  plan.items.push_back(sums.item);
   plan.items.insert(plan.items.end(), by_rays.items.begin(), by_rays.items.end());
   const auto tracer = std::ranges::find_if(engines, [](const Engine* of) { return of->info().traces_rays; });
   const bool may_take = asked == nullptr && words.start == Start::kAuto && words.forced.empty();
   plan.path_ms = by_rays.path_ms, plan.path_samples = by_rays.path_samples;
   const double most = request.most_ray_samples;  // 0: no limit
   if (may_take && tracer != engines.end() && !plan.not_kept.empty() && by_rays.path_ms > 0 &&
-      by_rays.path_ms < plan.predicted_ms() + plan.rays_ms && (most <= 0 || by_rays.path_in_all <= most))
+      by_rays.path_ms < plan.predicted_ms() + plan.sums_ms + plan.rays_ms && (most <= 0 || by_rays.path_in_all <= most))
     take_rays_alone(all, by_rays, request.tolerance_de00, request.most_ray_samples, **tracer, plan);
   plan.time_ms = 1000 * clock.elapsed_s();
   return plan;

@@ -26,6 +26,7 @@ class RayScene;
 namespace goniochrome::render {
 
 class Engine;
+class OpenResidual;
 class Transport;
 
 // What the effects of rays are priced by.
@@ -46,6 +47,7 @@ struct RayContext {
   const rays::RayScene* whole = nullptr;      // the mesh with its panes, of a scene that has any
   // Of the light that rays meet, to measure by how much maps miss the open light; null: that is not measured.
   const envmap::BlockTree* texels = nullptr;
+  OpenResidual* residual = nullptr;  // by which that is corrected; there where texels are
 };
 
 // What a picture may cost for which nobody asked how accurate it is to be, nor how long it may take: so many samples of
@@ -96,6 +98,7 @@ struct Plan {
   std::vector<EnginePrice> prices;  // of the engines that could be chosen, and of the one that was asked for
   double de00_p95 = 0;              // predicted for all that is left out together
   double time_ms = 0;               // that planning took
+  double sums_ms = 0;               // predicted for the sums of the first frame, if they are drawn
   double rays_ms = 0;               // predicted for the effects of rays of one frame that are on
   double ray_pricing_ms = 0;        // of the time that planning took: what the effects of rays are worth
   double path_ms = 0;               // predicted for a frame by rays alone within the tolerance; 0: not priced
@@ -118,8 +121,9 @@ Result<void> check_effects(const std::string& effects);
 
 // Whether such words leave no effect of rays on, so that no rays need be traced for them. The words are checked.
 bool leave_out_rays(const std::string& effects);
-// Whether they force the floor on or off; nothing where they do not name it.
+// Whether they force the floor, or the sums, on or off; nothing where they do not name it.
 std::optional<bool> floor_forced(const std::string& effects);
+std::optional<bool> sums_forced(const std::string& effects);
 
 // Up to `count` pixels of which each shows something, evenly spread over those of all G-buffers.
 struct ProbePixel {

@@ -12,6 +12,7 @@
 #include "render/internal/samples.h"
 #include "render/internal/seen_through.h"
 #include "render/internal/tilt_table.h"
+#include "render/path/open_residual.h"
 #include "render/path/path_engine.h"
 #include "render/path/visible_surface.h"
 #include "render/plan/ray_plan.h"
@@ -36,20 +37,6 @@ bool same_view(const View& a, const View& b) {
 
 std::optional<rays::Floor> floor_of(const std::optional<Ground>& ground) {
   return ground ? std::optional(rays::Floor{ground->height}) : std::nullopt;
-}
-
-// What the rays of the pixels meet of the mesh, as Rasterizer has it: the floor is no part of the mesh.
-void trace_gbuffer(const rays::RayScene& scene, const Rays& rays, int width, int height, Gbuffer& gbuffer) {
-  VisibleSurface surface = visible_surface(scene, rays, width, height);
-  gbuffer = std::move(surface.gbuffer);
-  gbuffer.triangles.assign(surface.hits.size(), kNoTriangle);
-  for (std::size_t i = 0; i < surface.hits.size(); ++i) {
-    if (surface.hits[i].triangle == rays::kFloor) {
-      std::fill_n(&gbuffer.data[4 * i], 4, 0.0F);
-    } else if (surface.hits[i].any()) {
-      gbuffer.triangles[i] = surface.hits[i].triangle;
-    }
-  }
 }
 
 }  // namespace
@@ -81,6 +68,7 @@ struct Renderer::State : Sight {
   std::optional<Transport> transport;
   bool rough_rays = false;  // whether its rough coats are facets, as those of the picture that it corrects
   std::optional<envmap::BlockTree> ray_texels;  // of the environment of ray_setup; none: not yet
+  std::unique_ptr<OpenResidual> residual;       // of these; null: not yet
   std::optional<Error> ray_failure;             // of load_paints(), which cannot tell it
   double white_luminance = 1, tolerance_de00 = 0.5;
   const mesh::Mesh* uploaded = nullptr;
@@ -124,6 +112,8 @@ struct Renderer::State : Sight {
   const std::vector<TexturePlace>& places(int sample) override;
   SeenPixels* seen_pixels(int sample) override;
   std::size_t number_kept(int sample);
+  // By which the picture is corrected; null where it is not.
+  OpenResidual* summed() const { return effects.sums && engine->info().is_planned ? residual.get() : nullptr; }
 };
 
 Engine& Renderer::State::engine_of(const EngineInfo& info) {
@@ -242,7 +232,7 @@ std::shared_ptr<const Gbuffer> Renderer::State::gbuffer(int sample) {
     const auto [x, y] = shift_of(sample, view->samples);
     Rays shifted = rays;
     shifted.corner += x * rays.right + y * rays.down;
-    trace_gbuffer(*traced, shifted, view->width, view->height, *g);
+    *g = mesh_gbuffer(*traced, shifted, view->width, view->height);
     rasterization_ms = 1000 * clock.elapsed_s();
   }
   return g;
@@ -286,6 +276,7 @@ std::size_t Renderer::State::number_kept(int sample) {
 Result<void> Renderer::State::take(int first, int count, image::Image& picture) {
   const float gain = 1.0F / static_cast<float>(count);
   GONIO_TRY(take_samples(*this, *engine, scene, effects, first, count, picture));
+  for (int i = first; summed() != nullptr && i < first + count; ++i) summed()->add(*gbuffer(i), gain, picture);
   for (int i = first; effects.panes && !engine->info().traces_rays && i < first + count; ++i)
     GONIO_TRY(add_seen_through(i, gain, picture));
   return {};
@@ -298,6 +289,7 @@ Result<void> Renderer::State::add_seen_through(int sample, float gain, image::Im
     image::Image shown;
     GONIO_TRY(engine->shade(sight, sample, 1, false, shown));
     engine->finish(shown);
+    if (summed() != nullptr) summed()->add(behind.gbuffer, 1, shown);
     if (effects.extent && effects.mirror) add_glints(scene, effects, behind.gbuffer, 1, shown);
     if (scene.layer != nullptr && !engine->shades_layer())
       scene.layer->add(behind.gbuffer, sight.places(sample), effects, 1, shown, !engine->shades_textures());
@@ -466,6 +458,7 @@ Result<void> Renderer::load(const Scene& scene, const Effects& effects, const st
   s.engine = &engine;
   GONIO_TRY(s.show(*scene.mesh));
   if (effects.panes && !info->traces_rays) GONIO_TRY(s.meet(scene));
+  if (s.summed() != nullptr) GONIO_TRY(s.summed()->load(scene, effects));
   // The floor lies before the background, and is drawn with it.
   Effects by_engine = effects;
   if (effects.rays.floor) by_engine.background = Background::kNone;
@@ -504,9 +497,10 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
     GONIO_ASSIGN(over_floor, s.transport_over_floor());
     rays.over_floor = over_floor ? &*over_floor : nullptr;
     rays.floor_forced = s.ray_setup->floor_forced, rays.environment = s.ray_setup->environment;
-    if (s.transport && s.ray_setup->environment != nullptr) {
+    if (s.ray_setup->environment != nullptr) {
       if (!s.ray_texels) s.ray_texels.emplace(*s.ray_setup->environment);
-      rays.texels = &*s.ray_texels;
+      if (!s.residual) s.residual = std::make_unique<OpenResidual>(*s.ray_texels);
+      rays.texels = &*s.ray_texels, rays.residual = s.residual.get();
     }
   }
   if (has_panes(scene) && !s.given) {
@@ -541,14 +535,14 @@ void Renderer::load_paints(const Scene& scene) {
   s.begin();
   s.scene = s.engine != nullptr && s.engine->info().traces_rays ? s.completed(scene) : scene;
   if (s.engine != nullptr) s.engine->load_paints(s.scene);
-  if (!s.effects.rays.any()) return;
-  const Result<void> traced = s.trace(scene, s.effects.stretch);
-  if (!traced.ok()) s.ray_failure = traced.error();
+  Result<void> taken = s.summed() != nullptr ? s.summed()->load_paints(scene) : Result<void>();
+  if (taken.ok() && s.effects.rays.any()) taken = s.trace(scene, s.effects.stretch);
+  if (!taken.ok()) s.ray_failure = taken.error();
 }
 
 void Renderer::set_rays(const RaySetup& setup) {
   state_->ray_setup = setup;
-  state_->ray_texels.reset(), state_->ray_table.reset(), state_->ray_sun.reset();
+  state_->residual.reset(), state_->ray_texels.reset(), state_->ray_table.reset(), state_->ray_sun.reset();
   if (setup.environment != nullptr && setup.absent.empty()) state_->ray_sun = envmap::sunlit_sky(*setup.environment);
 }
 

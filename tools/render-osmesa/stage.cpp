@@ -177,6 +177,10 @@ Result<void> set_gbuffer(const Options& options, const Request& request, Stage& 
   return check_samples(options, request, stage);
 }
 
+bool sums_are_asked_for(const Options& options) {
+  return render::sums_forced(options.effects).value_or(false);
+}
+
 // Whether a map of the environment is looked up by one picture of these paints, by its exponent; null where all may be.
 std::function<bool(double)> looked_up_maps(const Options& options, const Request& request, const Stage& stage) {
   const bool sums = request.engine != nullptr && (request.engine->needs_texels || request.engine->traces_rays);
@@ -185,7 +189,7 @@ std::function<bool(double)> looked_up_maps(const Options& options, const Request
   for (const DressedMesh& dress : stage.dresses) paints.insert(paints.end(), dress.paints.begin(), dress.paints.end());
   if (std::ranges::any_of(paints, [](const paint::LobeFit& paint) { return !paint.tilts.empty(); })) return {};
   const bool rays = options.gbuffer.empty() && !render::leave_out_rays(options.effects);
-  const bool mirror = rays || render::has_mirror(paints) || options.background == "env";
+  const bool mirror = rays || sums_are_asked_for(options) || render::has_mirror(paints) || options.background == "env";
   return [mirror, exponents = render::lobe_exponents(paints)](double exponent) {
     if (paint::is_mirror(exponent)) return mirror;
     // A file holds exponents as floats.
@@ -224,20 +228,22 @@ Result<void> take_path_below(const Options& options, const mesh::Mesh& mesh, Req
   return {};
 }
 
-// The light that rays meet. Prefiltered environments hold it in their mirror part, unless that was left out.
+// The light that rays meet, and that is summed. Prefiltered environments hold it in their mirror part, unless that was left out.
 Result<void> set_rays(const Options& options, const Request& request, Stage& stage) {
   if (request.engine != nullptr && request.engine->traces_rays) return {};
   render::RaySetup& rays = stage.rays.emplace();
+  const bool mirrored = !options.env.empty() && stage.env.mirror.map.size > 0;
   if (render::leave_out_rays(options.effects)) {
     rays.absent = "left out by --effects: what it is worth was not measured";
     rays.refused = true;
   } else if (!options.gbuffer.empty()) {
     rays.absent = "buffers without their mesh: what it blocks is not known, nor what that is worth";
-  } else if (!options.env.empty() && stage.env.mirror.map.size == 0) {
+  } else if (!options.env.empty() && !mirrored) {
     rays.absent =
         "the environment has no mirror part, which rays would meet: make it without --no-mirror. What the mesh does "
         "to light is not known, nor what that is worth";
-  } else if (!options.env.empty()) {
+  }
+  if (mirrored && (rays.absent.empty() || sums_are_asked_for(options))) {
     stage.sky.emplace(envmap::Environment::from_cube(stage.env.mirror.map, options.env));
     rays.environment = &*stage.sky;
   }

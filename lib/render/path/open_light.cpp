@@ -73,18 +73,9 @@ void OpenLight::sum(const envmap::BlockTree& tree, double tolerance_de00) {
   summed_.emplace(tree, tolerance_de00, columns_);
 }
 
-// A brushed surface gathers the mean over its tilted normals, as the engines have it.
-std::vector<LobeAxis> OpenLight::axes(const Vec3& n, const Vec3& to_viewer, std::size_t part) const {
-  if (part >= tilts_.size() || tilts_[part].size() <= 1) return {{2 * dot(n, to_viewer) * n - to_viewer, 1}};
-  const double level2 = n.x * n.x + n.z * n.z;
-  const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
-  std::vector<LobeAxis> axes;
-  for (const brdf::Tilt& tilt : tilts_[part]) {
-    const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
-    const Vec3 r = 2 * dot(m, to_viewer) * m - to_viewer;
-    if (dot(m, to_viewer) > 0 && dot(r, n) > 0) axes.push_back({r, tilt.weight});
-  }
-  return axes;
+std::vector<LobeAxis> OpenLight::axes(const OpenView& view, int part) const {
+  const auto p = static_cast<std::size_t>(part);
+  return lobe_axes(view.normal, view.to_viewer, p < tilts_.size() ? tilts_[p] : std::vector<brdf::Tilt>());
 }
 
 double OpenLight::coat_of(int part) const {
@@ -101,7 +92,7 @@ void OpenLight::look_up(const OpenView& view, int part, color::Rgb* light) const
   const color::Rgb at_normal = envmap::bilinear(coat_index == paint::kNoCoat ? *diffuse_ : *coat_diffuse_, n);
   weights.add_diffuse(at_normal, cos_o, 1, light);
   for (const UnitWeights::Disc& spot : spots_) weights.add_diffuse(spot, n, cos_o, 1, light);
-  for (const LobeAxis& axis : axes(n, to_viewer, static_cast<std::size_t>(part))) {
+  for (const LobeAxis& axis : axes(view, part)) {
     weights.add_lobes(maps_, at_normal, n, axis.direction, cos_o, axis.share, light);
     for (const UnitWeights::Disc& spot : spots_)
       weights.add_lobes(spot, n, to_viewer, axis.direction, axis.share, light);
@@ -118,7 +109,7 @@ color::Rgb OpenLight::mirror(const OpenView& view, int part) const {
 
 void OpenLight::at(const Vec3& n, const Vec3& to_viewer, int part, color::Rgb* light) const {
   look_up({n, to_viewer}, part, light);
-  if (summed_) summed_->at(n, to_viewer, axes(n, to_viewer, static_cast<std::size_t>(part)), coat_of(part), light);
+  if (summed_) summed_->at(n, to_viewer, axes({n, to_viewer}, part), coat_of(part), light);
 }
 
 void OpenLight::mean(const std::vector<OpenView>& views, int part, color::Rgb* light) const {
@@ -128,8 +119,7 @@ void OpenLight::mean(const std::vector<OpenView>& views, int part, color::Rgb* l
     look_up(view, part, here.data());
     if (summed_ && summed.empty()) {
       summed = here;
-      const auto& [n, to_viewer] = view;
-      summed_->at(n, to_viewer, axes(n, to_viewer, static_cast<std::size_t>(part)), coat_of(part), summed.data());
+      summed_->at(view.normal, view.to_viewer, axes(view, part), coat_of(part), summed.data());
       for (std::size_t k = 0; k < here.size(); ++k) light[k] += summed[k] - here[k];
     }
     for (std::size_t k = 0; k < here.size(); ++k) light[k] += (1.0 / static_cast<double>(views.size())) * here[k];

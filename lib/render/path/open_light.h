@@ -46,7 +46,7 @@ class OpenLight {
 
  private:
   OpenLight() = default;
-  std::vector<LobeAxis> axes(const Vec3& normal, const Vec3& to_viewer, std::size_t part) const;
+  std::vector<LobeAxis> axes(const OpenView& view, int part) const;
   double coat_of(int part) const;
   void look_up(const OpenView& view, int part, color::Rgb* light) const;
 

@@ -49,6 +49,20 @@ VisibleSurface visible_surface(const rays::RayScene& scene, const Rays& rays, in
   return surface;
 }
 
+Gbuffer mesh_gbuffer(const rays::RayScene& scene, const Rays& rays, int width, int height) {
+  VisibleSurface surface = visible_surface(scene, rays, width, height);
+  Gbuffer gbuffer = std::move(surface.gbuffer);
+  gbuffer.triangles.assign(surface.hits.size(), kNoTriangle);
+  for (std::size_t i = 0; i < surface.hits.size(); ++i) {
+    if (surface.hits[i].triangle == rays::kFloor) {
+      std::fill_n(&gbuffer.data[4 * i], 4, 0.0F);
+    } else if (surface.hits[i].any()) {
+      gbuffer.triangles[i] = surface.hits[i].triangle;
+    }
+  }
+  return gbuffer;
+}
+
 Coverage coverage(const rays::RayScene& scene, const Rays& rays, int width, int height,
                   const std::vector<std::array<double, 2>>& shifts) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);

@@ -18,6 +18,9 @@ struct VisibleSurface {
 // The points of all pixels that `rays` names. Bit-identical for any number of threads.
 VisibleSurface visible_surface(const rays::RayScene& scene, const Rays& rays, int width, int height);
 
+// The G-buffer of the mesh alone, with triangles, as Rasterizer has it: the floor is no part of the mesh.
+Gbuffer mesh_gbuffer(const rays::RayScene& scene, const Rays& rays, int width, int height);
+
 // Which of the samples of each pixel meet the scene, or its floor: bit i stands for the sample that is shifted by
 // shifts[i] (pixels) from the center. At most 16 shifts.
 struct Coverage {

@@ -9,6 +9,7 @@
 #include "render/internal/worn_lobes.h"
 #include "render/panes.h"
 #include "render/plan/ray_plan.h"
+#include "render/plan/sum_choice.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -188,6 +189,7 @@ const std::vector<std::string>& effect_groups() {
   static const std::vector<std::string> groups = [] {
     std::vector<std::string> names;
     for (const EffectSwitch& effect : effect_switches({}, {}, {})) names.push_back(effect.group);
+    names.emplace_back(kSumsName);
     names.emplace_back("rays");  // all of the following together
     names.insert(names.end(), ray_effect_names().begin(), ray_effect_names().end());
     return names;

@@ -36,6 +36,29 @@ Result<Words> words_of(const std::string& text) {
   return words;
 }
 
+const char* spelled(Decision decision) {
+  switch (decision) {
+    case Decision::kNotInScene:
+      return "not in the scene";
+    case Decision::kDrawn:
+      return "drawn";
+    case Decision::kDropped:
+      return "dropped";
+    case Decision::kForcedOn:
+      return "forced on";
+    case Decision::kForcedOff:
+      return "forced off";
+    case Decision::kOverBudget:
+      break;
+  }
+  return "over budget";
+}
+
+Result<void> check_effects(const std::string& effects) {
+  GONIO_ASSIGN(const Words words, words_of(effects));
+  return {};
+}
+
 bool leave_out_rays(const std::string& effects) {
   const auto words = words_of(effects);
   if (!words.ok()) return false;
@@ -47,13 +70,25 @@ bool leave_out_rays(const std::string& effects) {
   return !shadow;
 }
 
-std::optional<bool> floor_forced(const std::string& effects) {
+namespace {
+
+std::optional<bool> forced(const std::string& effects, const char* effect) {
   std::optional<bool> forced;
   const auto words = words_of(effects);
   if (!words.ok()) return forced;
   for (const auto& [name, on] : words->forced)
-    if (name == "floor") forced = on;
+    if (name == effect) forced = on;
   return forced;
+}
+
+}  // namespace
+
+std::optional<bool> floor_forced(const std::string& effects) {
+  return forced(effects, "floor");
+}
+
+std::optional<bool> sums_forced(const std::string& effects) {
+  return forced(effects, "sums");
 }
 
 }  // namespace goniochrome::render

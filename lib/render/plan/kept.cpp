@@ -15,16 +15,25 @@ OpenTruth::OpenTruth(const Scene& scene, const Effects& all, const std::vector<V
                      const envmap::BlockTree& texels, double white)
     : white_(white > 0 ? white : 1) {
   constexpr std::size_t kExact = 128;
+  // Coarser sums would err by as much as the maps do.
+  constexpr double kOfTolerance = 0.2;
   step_ = std::max<std::size_t>(1, points.size() / kExact);
-  std::vector<VisiblePoint> some;
-  for (std::size_t i = 0; i < points.size(); i += step_) some.push_back(points[i]);
-  exact_ = exact_radiance(some, scene, all, Surroundings(texels, spread_for(all.tolerance_de00)));
+  for (std::size_t i = 0; i < points.size(); i += step_) points_.push_back(points[i]);
+  exact_ = exact_radiance(points_, scene, all, Surroundings(texels, spread_for(kOfTolerance * all.tolerance_de00)));
 }
 
-double OpenTruth::error(const std::vector<color::Rgb>& planned) const {
+double OpenTruth::error(const std::vector<color::Rgb>& planned, const std::vector<color::Rgb>& more) const {
   std::vector<double> de00;
   for (std::size_t i = 0; i < exact_.size(); ++i)
-    de00.push_back(seen_difference(planned[i * step_], exact_[i], white_));
+    de00.push_back(
+        seen_difference(more.empty() ? planned[i * step_] : planned[i * step_] + more[i], exact_[i], white_));
+  return percentile_95(std::move(de00));
+}
+
+double OpenTruth::change(const std::vector<color::Rgb>& planned, const std::vector<color::Rgb>& more) const {
+  std::vector<double> de00;
+  for (std::size_t i = 0; i < exact_.size(); ++i)
+    de00.push_back(seen_difference(planned[i * step_], planned[i * step_] + more[i], white_));
   return percentile_95(std::move(de00));
 }
 

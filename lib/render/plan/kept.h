@@ -18,14 +18,20 @@ class OpenTruth {
   // Of some of the points, with all effects of the scene.
   OpenTruth(const Scene& scene, const Effects& all, const std::vector<VisiblePoint>& points,
             const envmap::BlockTree& texels, double white);
-  // The 95th percentile of what they miss of it; `planned` has one radiance for each of all points.
-  double error(const std::vector<color::Rgb>& planned) const;
+  // Those at which it was summed.
+  const std::vector<VisiblePoint>& points() const { return points_; }
+  // The 95th percentile of what they miss of it; `planned` has one radiance for each of all points. `more` has what is
+  // added to it at points(); empty: nothing.
+  double error(const std::vector<color::Rgb>& planned, const std::vector<color::Rgb>& more = {}) const;
+  // The same of what is changed by adding that.
+  double change(const std::vector<color::Rgb>& planned, const std::vector<color::Rgb>& more) const;
   // The same of the difference to another truth of the same points.
   double difference(const OpenTruth& other) const;
 
  private:
   std::size_t step_;
   double white_;
+  std::vector<VisiblePoint> points_;
   std::vector<color::Rgb> exact_;
 };
 

@@ -1,0 +1,306 @@
+#include "render/path/open_residual.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angles.h"
+#include "base/parallel.h"
+#include "brdf/lobe_model.h"
+#include "render/internal/coat_stretch.h"
+#include "render/surface_layer.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+// Between nodes the residual is off by the square of their distance: so many cells at a tolerance of kUsual, by the
+// figures of goniochrome-theory(7), RENDERING, Sums.
+constexpr double kUsual_de00 = 0.5;
+constexpr int kViews = 9, kNormals = 16;
+// Of the tolerance, what the blocks of a sum take.
+constexpr double kOfSums = 0.2;
+// Beyond so many sums those of other views are forgotten, and beyond so many surfaces those of other paints.
+constexpr std::size_t kMostSums = std::size_t{1} << 19, kMostSurfaces = 64;
+
+constexpr std::size_t kRowsAtOnce = 8, kSumsAtOnce = 16;
+
+int finer(int cells, double tolerance_de00) {
+  const double scale = std::clamp(std::sqrt(kUsual_de00 / tolerance_de00), 0.5, 8.0);
+  return static_cast<int>(std::lround(cells * scale));
+}
+
+bool is_wide(const paint::Lobe& lobe) {
+  return lobe.exponent <= kWidestShared;
+}
+bool is_narrow(const paint::Lobe& lobe) {
+  return !is_wide(lobe);
+}
+
+// Calls visit(diffuse, lobes) for the weights of a paint, and for those at each of its views.
+template <class Visit>
+void for_weights(paint::LobeFit& paint, const Visit& visit) {
+  visit(paint.diffuse, paint.lobes);
+  for (paint::ViewLobes& view : paint.views) visit(view.diffuse, view.lobes);
+}
+
+// Without what is not summed at all, and is no part of the difference either.
+paint::LobeFit compared(const Scene& scene, const Effects& effects, std::size_t part, bool stretched) {
+  const bool covered = scene.layer != nullptr && (scene.layer->surface(static_cast<int>(part)).texture != nullptr ||
+                                                  is_mapped(scene, part));
+  if (covered || !scene.paints[part].tilts.empty()) return {};
+  paint::LobeFit paint = with_effects(scene.paints[part], effects);
+  if (stretched)
+    for_weights(paint, [](color::Rgb&, std::vector<paint::Lobe>& lobes) {
+      for (paint::Lobe& lobe : lobes) lobe.gloss = {};
+    });
+  return paint;
+}
+
+template <class Value>
+void keep_once(std::vector<Value>& values) {
+  std::ranges::sort(values);
+  values.erase(std::ranges::unique(values).begin(), values.end());
+}
+
+bool same_tilts(const std::vector<brdf::Tilt>& a, const std::vector<brdf::Tilt>& b) {
+  return std::ranges::equal(a, b, [](const brdf::Tilt& x, const brdf::Tilt& y) {
+    return x.normal == y.normal && x.weight == y.weight;
+  });
+}
+
+}  // namespace
+
+std::int32_t& OpenResidual::Surface::slot_to_fill(const ViewGrid::Node& node, std::size_t normals) {
+  auto& of_view = slots[node.view];
+  if (of_view == nullptr) of_view = std::make_unique<std::vector<std::int32_t>>(normals, kNone);
+  return (*of_view)[node.normal];
+}
+
+const OpenResidual::Wear* OpenResidual::wear_of(int part) const {
+  const std::int32_t wear = part < 0 ? kNone : wear_of_part_[static_cast<std::size_t>(part)];
+  return wear == kNone ? nullptr : &wears_[static_cast<std::size_t>(wear)];
+}
+
+std::size_t OpenResidual::surface_of(double coat_index, const std::vector<brdf::Tilt>& tilts) {
+  const auto found = std::ranges::find_if(
+      surfaces_, [&](const Surface& s) { return s.coat_index == coat_index && same_tilts(s.tilts, tilts); });
+  if (found != surfaces_.end()) return static_cast<std::size_t>(found - surfaces_.begin());
+  surfaces_.emplace_back().coat_index = coat_index;
+  surfaces_.back().tilts = tilts;
+  surfaces_.back().slots.resize(grid_.view_count());
+  return surfaces_.size() - 1;
+}
+
+Result<void> OpenResidual::load(const Scene& scene, const Effects& effects) {
+  LobeColumns columns;
+  for (const envmap::PrefilteredLobe& lobe : scene.env->lobes)
+    if (lobe.exponent <= kWidestShared) columns.exponents.push_back(lobe.exponent);
+  if (effects.tolerance_de00 != tolerance_de00_ || columns != columns_ || surfaces_.size() > kMostSurfaces) {
+    tolerance_de00_ = effects.tolerance_de00, columns_ = columns;
+    grid_ = ViewGrid(finer(kViews, tolerance_de00_), finer(kNormals, tolerance_de00_));
+    light_ = std::make_unique<SummedLight>(*tree_, kOfSums * tolerance_de00_, columns_);
+    surfaces_.clear();
+  }
+  loaded_ = effects_ = effects;
+  effects_.mirror = effects_.satin = effects_.stretch = effects_.extent = effects_.placed = effects_.panes = false;
+  effects_.texture = effects_.texture_filter = effects_.maps = effects_.image_maps = false;
+  effects_.tilt_level = 0, effects_.lights = 0, effects_.background = Background::kNone, effects_.rays = {};
+  GONIO_TRY(set_paints(scene));
+  GONIO_TRY(engine_.load(scene_, effects_));
+  return {};
+}
+
+Result<void> OpenResidual::load_paints(const Scene& scene) {
+  return set_paints(scene);
+}
+
+Result<void> OpenResidual::set_paints(const Scene& scene) {
+  const std::vector<bool> stretched = stretched_parts(scene, loaded_);
+  scene_ = scene;
+  scene_.lights.clear(), scene_.layer = nullptr, scene_.panes.clear();
+  for (std::size_t part = 0; part < scene.paints.size(); ++part)
+    scene_.paints[part] = compared(scene, effects_, part, stretched[part]);
+  narrow_ = scene_;
+  Scene wide = scene_;
+  for (paint::LobeFit& paint : narrow_.paints)
+    for_weights(paint, [](color::Rgb& diffuse, std::vector<paint::Lobe>& lobes) {
+      diffuse = {};
+      std::erase_if(lobes, is_wide);
+    });
+  for (paint::LobeFit& paint : wide.paints)
+    for_weights(paint, [](color::Rgb&, std::vector<paint::Lobe>& lobes) { std::erase_if(lobes, is_narrow); });
+  const auto tilts = effects_.anisotropy ? tilts_of(wide, effects_)
+                                         : std::vector<std::vector<brdf::Tilt>>(scene.paints.size());
+  wears_.clear(), wear_of_part_.clear();
+  for (std::size_t part = 0; part < scene.paints.size(); ++part) {
+    const paint::LobeFit& paint = scene_.paints[part];
+    wear_of_part_.push_back(kNone);
+    if (paint.diffuse == color::Rgb{} && paint.lobes.empty() && paint.views.empty()) continue;
+    const auto same = std::ranges::find_if(
+        wears_, [&](const Wear& wear) { return same_wear(scene_, static_cast<std::size_t>(wear.part), part); });
+    wear_of_part_.back() = static_cast<std::int32_t>(same - wears_.begin());
+    if (same != wears_.end()) continue;
+    const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : brdf::kGlossIncidence_deg;
+    GONIO_ASSIGN(TransportPaint weights, transport_paint(columns_, wide.paints[part], gloss_deg));
+    wears_.push_back({surface_of(paint.coat_index, tilts[part]), static_cast<int>(part), std::move(weights), {}});
+  }
+  return {};
+}
+
+std::size_t OpenResidual::count() const {
+  std::size_t count = 0;
+  for (const Surface& surface : surfaces_) count += surface.nodes.size();
+  return count;
+}
+
+// Each cell that a pixel lies in, once, in ascending order.
+std::vector<OpenResidual::Cell> OpenResidual::cells_of(const Gbuffer& seen) const {
+  const auto rows = static_cast<std::size_t>(seen.height);
+  std::vector<std::vector<Cell>> parts((rows + kRowsAtOnce - 1) / kRowsAtOnce);
+  parallel_for(rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<Cell>& cells = parts[begin / kRowsAtOnce];
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < seen.width; ++x) {
+        const Wear* wear = wear_of(seen.part(x, y));
+        if (wear == nullptr) continue;
+        const Cell cell{static_cast<std::int32_t>(wear->surface), grid_.place(seen.normal(x, y), seen.to_viewer(x, y)).node};
+        if (cells.empty() || cells.back() != cell) cells.push_back(cell);
+      }
+    }
+    keep_once(cells);
+  });
+  std::vector<Cell> all;
+  for (const std::vector<Cell>& cells : parts) all.insert(all.end(), cells.begin(), cells.end());
+  keep_once(all);
+  return all;
+}
+
+std::size_t OpenResidual::missing(const Gbuffer& seen) const {
+  std::vector<Cell> nodes;
+  for (const Cell& cell : cells_of(seen))
+    for (const ViewGrid::Node& node : grid_.corners(cell.node))
+      if (surfaces_[static_cast<std::size_t>(cell.surface)].slot(node) == kNone) nodes.push_back({cell.surface, node});
+  keep_once(nodes);
+  return nodes.size();
+}
+
+void OpenResidual::fill(const std::vector<Cell>& cells) {
+  if (count() > kMostSums) {
+    for (Surface& surface : surfaces_) surface = {surface.coat_index, surface.tilts, {}, {}, {}};
+    for (Surface& surface : surfaces_) surface.slots.resize(grid_.view_count());
+    for (Wear& wear : wears_) wear.residual.clear();
+  }
+  for (const Cell& cell : cells) {
+    Surface& surface = surfaces_[static_cast<std::size_t>(cell.surface)];
+    for (const ViewGrid::Node& node : grid_.corners(cell.node)) {
+      std::int32_t& slot = surface.slot_to_fill(node, grid_.normal_count());
+      if (slot != kNone) continue;
+      slot = static_cast<std::int32_t>(surface.nodes.size());
+      surface.nodes.push_back(node);
+    }
+  }
+  for (Surface& surface : surfaces_) sum(surface);
+  complete();
+}
+
+void OpenResidual::sum(Surface& surface) const {
+  const std::size_t first = surface.sums.size() / floats();
+  surface.sums.resize(surface.nodes.size() * floats());
+  parallel_for(surface.nodes.size() - first, kSumsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<color::Rgb> light(columns_.count());
+    for (std::size_t slot = first + begin; slot < first + end; ++slot) {
+      const auto [normal, to_viewer] = grid_.facing(surface.nodes[slot]);
+      light_->at(normal, to_viewer, lobe_axes(normal, to_viewer, surface.tilts), surface.coat_index, light.data());
+      float* to = &surface.sums[slot * floats()];
+      for (std::size_t k = 0; k < floats(); ++k) to[k] = static_cast<float>(light[k / 3][static_cast<int>(k % 3)]);
+    }
+  });
+}
+
+// The engine's share is what it shows less what it shows of the narrow lobes alone: normals of brushed surfaces are
+// tilted for the sharpest lobe that is there.
+void OpenResidual::complete() {
+  std::vector<VisiblePoint> points;
+  for (const Wear& wear : wears_) {
+    const Surface& surface = surfaces_[wear.surface];
+    for (std::size_t slot = wear.residual.size() / 3; slot < surface.nodes.size(); ++slot) {
+      const auto [normal, to_viewer] = grid_.facing(surface.nodes[slot]);
+      points.push_back({.normal = normal, .to_viewer = to_viewer, .part = wear.part});
+    }
+  }
+  if (points.empty()) return;
+  engine_.load_paints(scene_, effects_);
+  const std::vector<color::Rgb> whole = engine_.colors(points);
+  engine_.load_paints(narrow_, effects_);
+  const std::vector<color::Rgb> narrow = engine_.colors(points);
+  std::size_t point = 0;
+  for (Wear& wear : wears_) {
+    const Surface& surface = surfaces_[wear.surface];
+    for (std::size_t slot = wear.residual.size() / 3; slot < surface.nodes.size(); ++slot, ++point) {
+      const double cos_o = dot(points[point].normal, points[point].to_viewer);
+      const color::Rgb residual =
+          shown(wear.paint, &surface.sums[slot * floats()], cos_o) - (whole[point] - narrow[point]);
+      for (int c = 0; c < 3; ++c) wear.residual.push_back(static_cast<float>(residual[c]));
+    }
+  }
+}
+
+// Of sums, in the weights that the paint has at this view.
+color::Rgb OpenResidual::shown(const TransportPaint& paint, const float* sums, double cos_o) const {
+  const double view_deg = std::acos(std::clamp(cos_o, 0.0, 1.0)) / kDegree;
+  const auto above = std::ranges::upper_bound(paint.view_deg, view_deg) - paint.view_deg.begin();
+  const auto high = std::min(static_cast<std::size_t>(above), paint.weights.size() - 1);
+  const std::size_t low = high > 0 && above > 0 ? static_cast<std::size_t>(above) - 1 : 0;
+  const double from = paint.view_deg[low], to = paint.view_deg[high];
+  const double share = to > from ? (view_deg - from) / (to - from) : 0;
+  color::Rgb radiance;
+  for (std::size_t k = 0; k < floats() / 3; ++k) {
+    const color::Rgb weight = paint.weights[low][k] + share * (paint.weights[high][k] - paint.weights[low][k]);
+    const color::Rgb light{sums[3 * k], sums[3 * k + 1], sums[3 * k + 2]};
+    radiance += effects_.reflection ? color::reflected(scene_.reflection, weight, light) : weight * light;
+  }
+  return radiance;
+}
+
+color::Rgb OpenResidual::told(const Wear& wear, const ViewGrid::Place& place) const {
+  const Surface& surface = surfaces_[wear.surface];
+  const std::array<ViewGrid::Node, ViewGrid::kCorners> corners = grid_.corners(place.node);
+  const std::array<float, ViewGrid::kCorners> weights = ViewGrid::weights(place);
+  color::Rgb told;
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const float* of = &wear.residual[3 * static_cast<std::size_t>(surface.slot(corners[c]))];
+    told += static_cast<double>(weights[c]) * color::Rgb{of[0], of[1], of[2]};
+  }
+  return told;
+}
+
+void OpenResidual::add(const Gbuffer& seen, float gain, image::Image& picture) {
+  fill(cells_of(seen));
+  parallel_for(static_cast<std::size_t>(seen.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < seen.width; ++x) {
+        const Wear* wear = wear_of(seen.part(x, y));
+        if (wear == nullptr) continue;
+        const color::Rgb more = told(*wear, grid_.place(seen.normal(x, y), seen.to_viewer(x, y)));
+        for (int c = 0; c < 3; ++c) picture.pixel(x, y)[c] += gain * static_cast<float>(more[c]);
+      }
+    }
+  });
+}
+
+std::vector<color::Rgb> OpenResidual::at(const std::vector<VisiblePoint>& points) {
+  std::vector<Cell> cells;
+  for (const VisiblePoint& point : points)
+    if (const Wear* wear = wear_of(point.part); wear != nullptr)
+      cells.push_back(
+          {static_cast<std::int32_t>(wear->surface), grid_.place(point.normal, point.to_viewer).node});
+  keep_once(cells);
+  fill(cells);
+  std::vector<color::Rgb> residual(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (const Wear* wear = wear_of(points[i].part); wear != nullptr)
+      residual[i] = told(*wear, grid_.place(points[i].normal, points[i].to_viewer));
+  return residual;
+}
+
+}  // namespace goniochrome::render

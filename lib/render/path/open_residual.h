@@ -1,0 +1,97 @@
+// What prefiltered maps miss of the light that the diffuse part and the wide lobes of paints gather where no surface is
+// in the way: the sum over the environment itself, less what the engines of maps show. It changes slowly with normal
+// and view, so that it is told at the nodes of a grid that a picture meets, and is linear between them.
+// goniochrome-theory(7), RENDERING, Sums.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "image/image.h"
+#include "render/cpu/cpu_engine.h"
+#include "render/path/summed_light.h"
+#include "render/path/transport_shading.h"
+#include "render/path/view_grid.h"
+
+namespace goniochrome::render {
+
+class OpenResidual {
+ public:
+  // The tree is that of the environment which the maps of the scenes were made from, and must outlive it.
+  explicit OpenResidual(const envmap::BlockTree& tree) : tree_(&tree) {}
+
+  // Whether there is anything to correct: image light, and effects of which the sums have all that the engines draw.
+  static bool applies(const Effects& effects) { return effects.environment && effects.horizon; }
+
+  // Takes a scene as engines draw it with these effects, whose tolerance decides how close the nodes are. Sums that
+  // were made before are kept as far as they hold. Parts with textures or color maps, and the gloss of rough coats, are
+  // left as the maps have them. Error: as the engine cpu loads it, and as column_weights().
+  Result<void> load(const Scene& scene, const Effects& effects);
+  // Takes other paints for the scene and the effects that were loaded. Error: as column_weights().
+  Result<void> load_paints(const Scene& scene);
+
+  // Adds `gain` times it at every pixel that shows the mesh; the sums that it takes are made and kept. Bit-identical
+  // for any number of threads.
+  void add(const Gbuffer& seen, float gain, image::Image& picture);
+  std::vector<color::Rgb> at(const std::vector<VisiblePoint>& points);
+
+  // How many sums there are by now, and how many more a picture of these pixels takes.
+  std::size_t count() const;
+  std::size_t missing(const Gbuffer& seen) const;
+
+ private:
+  static constexpr std::int32_t kNone = -1;
+  // What light passes and where lobes look: sums are the same for all paints of such a surface.
+  struct Surface {
+    double coat_index = 1;
+    std::vector<brdf::Tilt> tilts;
+    std::vector<std::unique_ptr<std::vector<std::int32_t>>> slots;  // of a view's normals; null: none yet
+    std::vector<ViewGrid::Node> nodes;                              // of each slot
+    std::vector<float> sums;                                        // of each slot, three for each column
+
+    std::int32_t slot(const ViewGrid::Node& node) const {
+      return slots[node.view] != nullptr ? (*slots[node.view])[node.normal] : kNone;
+    }
+    std::int32_t& slot_to_fill(const ViewGrid::Node& node, std::size_t normals);
+  };
+  // What several parts wear.
+  struct Wear {
+    std::size_t surface = 0;
+    int part = 0;  // one of them
+    TransportPaint paint;
+    std::vector<float> residual;  // three for each of the first slots of the surface
+  };
+  struct Cell {
+    std::int32_t surface = 0;
+    ViewGrid::Node node;
+    auto operator<=>(const Cell&) const = default;
+  };
+
+  Result<void> set_paints(const Scene& scene);
+  std::size_t surface_of(double coat_index, const std::vector<brdf::Tilt>& tilts);
+  // Null where nothing is corrected.
+  const Wear* wear_of(int part) const;
+  std::size_t floats() const { return 3 * (1 + 2 * columns_.exponents.size()); }
+  std::vector<Cell> cells_of(const Gbuffer& seen) const;
+  // Makes sums and residuals at the corners of these cells.
+  void fill(const std::vector<Cell>& cells);
+  void sum(Surface& surface) const;
+  void complete();
+  color::Rgb shown(const TransportPaint& paint, const float* sums, double cos_o) const;
+  color::Rgb told(const Wear& wear, const ViewGrid::Place& place) const;
+
+  const envmap::BlockTree* tree_;
+  double tolerance_de00_ = 0;
+  ViewGrid grid_{1, 1};
+  LobeColumns columns_;  // wide lobes alone
+  std::unique_ptr<SummedLight> light_;
+  std::vector<Surface> surfaces_;
+  std::vector<Wear> wears_;
+  std::vector<std::int32_t> wear_of_part_;  // or kNone
+  Scene scene_, narrow_;                    // as the engines draw it, and without what is summed
+  Effects loaded_, effects_;                // and without what has no part in the difference
+  CpuEngine engine_;
+};
+
+}  // namespace goniochrome::render

@@ -1,0 +1,82 @@
+#include "render/path/view_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "base/angles.h"
+#include "base/random_for_test.h"
+
+namespace goniochrome::render {
+namespace {
+
+// A normal and a viewer on one side, evenly drawn.
+ViewGrid::Facing drawn(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> in(-1, 1);
+  const auto direction = [&] {
+    for (;;) {
+      const Vec3 v{in(random), in(random), in(random)};
+      if (dot(v, v) <= 1 && dot(v, v) > 1e-3) return normalized(v);
+    }
+  };
+  const Vec3 normal = direction(), to_viewer = direction();
+  return {dot(normal, to_viewer) < 0 ? -normal : normal, to_viewer};
+}
+
+// As smooth as what a lobe of exponent 4 gathers.
+double smooth(const ViewGrid::Facing& at) {
+  const Vec3 mirrored = 2 * dot(at.normal, at.to_viewer) * at.normal - at.to_viewer;
+  return std::exp(2 * dot(mirrored, normalized({1, 2, -1}))) + dot(at.normal, {0.3, 1, 0.2});
+}
+
+// The largest error between the nodes, where the viewer is not at a right angle to the normal.
+double largest_error(const ViewGrid& grid) {
+  std::mt19937_64 random(7);
+  double largest = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const ViewGrid::Facing at = drawn(random);
+    const ViewGrid::Place place = grid.place(at.normal, at.to_viewer);
+    const auto corners = grid.corners(place.node);
+    const auto weights = ViewGrid::weights(place);
+    EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 1, 1e-6);
+    double told = 0;
+    for (std::size_t c = 0; c < corners.size(); ++c) told += weights[c] * smooth(grid.facing(corners[c]));
+    largest = std::max(largest, std::abs(told - smooth(at)));
+  }
+  return largest;
+}
+
+TEST(ViewGrid, FindsItsNodes) {
+  const ViewGrid grid(3, 4);
+  int found = 0;
+  for (std::uint32_t view = 0; view < grid.view_count(); ++view)
+    for (std::uint32_t normal = 0; normal < grid.normal_count(); ++normal) {
+      const ViewGrid::Facing at = grid.facing({view, normal});
+      EXPECT_NEAR(dot(at.normal, at.normal), 1, 1e-12);
+      EXPECT_NEAR(dot(at.to_viewer, at.to_viewer), 1, 1e-12);
+      EXPECT_GT(dot(at.normal, at.to_viewer), 0);
+      // On an edge of the cube the viewer may be found on the other face.
+      const ViewGrid::Place place = grid.place(at.normal, at.to_viewer);
+      const auto corners = grid.corners(place.node);
+      const auto weights = ViewGrid::weights(place);
+      const std::size_t nearest = static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin());
+      const ViewGrid::Facing there = grid.facing(corners[nearest]);
+      EXPECT_NEAR(length(there.to_viewer - at.to_viewer), 0, 1e-6);
+      found += corners[nearest] == ViewGrid::Node{view, normal} ? 1 : 0;
+    }
+  // All but those on the edges, of which there are 12 of 4 views each for 96 views.
+  EXPECT_GE(found, static_cast<int>(grid.view_count() * grid.normal_count() / 2));
+}
+
+// Between nodes, lines err by an eighth of the second derivative times the square of the spacing: four times less with
+// twice as many cells, in the limit. The control: one cell for each face tells hardly anything.
+TEST(ViewGrid, ErrsByTheSquareOfItsSpacing) {
+  const double coarse = largest_error({6, 12}), fine = largest_error({12, 24});
+  EXPECT_LT(fine, coarse / 2.5);
+  EXPECT_LT(fine, 0.1);
+  EXPECT_GT(largest_error({1, 2}), 1);
+}
+
+}  // namespace
+}  // namespace goniochrome::render

@@ -1,0 +1,74 @@
+#include "render/plan/sum_choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "base/clock.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+// The same allowance for the choice of points as for other effects.
+constexpr double kSafety = 0.8;
+
+// The sums have what these effects draw, so that a picture without one of them would show it nevertheless.
+bool lacks_what_sums_have(const Words& words) {
+  return std::ranges::any_of(words.forced, [](const auto& word) {
+    return !word.second && (word.first == "horizon" || word.first == "fresnel");
+  });
+}
+
+// Of a frame: the sums that its cells lack.
+double missing_sums(const OpenResidual& residual, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers) {
+  double missing = 0;
+  for (const auto& gbuffer : gbuffers) missing += static_cast<double>(residual.missing(*gbuffer));
+  return missing / static_cast<double>(gbuffers.size());
+}
+
+}  // namespace
+
+SumChoice no_sums(const std::string& reason) {
+  SumChoice choice;
+  choice.item.effect = kSumsName, choice.item.reason = reason;
+  return choice;
+}
+
+Result<SumChoice> sum_choice(const OpenTruth& truth, const std::vector<color::Rgb>& planned, const Scene& scene,
+                             const Effects& effects, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
+                             const PlanRequest& request, const Words& words, OpenResidual& residual) {
+  const double by_maps = truth.error(planned);
+  const std::optional<bool> forced = sums_forced(request.effects);
+  SumChoice choice = no_sums(fmt::format("prefiltered maps miss the open light by dE00 {:.2g} (p95)", by_maps));
+  choice.open_de00 = by_maps;
+  PlanItem& item = choice.item;
+  item.needed = true, item.de00_p95 = by_maps, item.cost_ms = std::numeric_limits<double>::quiet_NaN();
+  const bool off = forced == std::optional(false) || (words.start == Start::kNone && !forced);
+  item.decision = off ? Decision::kForcedOff : Decision::kDropped;
+  const double most = kSafety * request.tolerance_de00;
+  if (off || (!forced && by_maps <= most)) return Result(std::move(choice));
+  if (!OpenResidual::applies(effects) || lacks_what_sums_have(words)) {
+    item.reason += "; sums have the horizon and Fresnel's reflectance, which are left out";
+    return Result(std::move(choice));
+  }
+  GONIO_TRY(residual.load(scene, effects));
+  const std::size_t before = residual.count();
+  const Stopwatch clock;
+  const std::vector<color::Rgb> more = residual.at(truth.points());
+  const auto made = static_cast<double>(std::max<std::size_t>(1, residual.count() - before));
+  const double sum_ms = 1000 * clock.elapsed_s() / made;
+  const double sums = missing_sums(residual, gbuffers) + made;
+  item.cost_ms = sum_ms * sums;
+  item.de00_p95 = truth.change(planned, more);
+  item.reason += fmt::format(", and by {:.2g} with {:.0f} sums over the environment", truth.error(planned, more), sums);
+  item.on = forced || item.de00_p95 > most;
+  item.decision = forced ? Decision::kForcedOn : item.on ? Decision::kDrawn : Decision::kDropped;
+  if (item.on && !forced && request.budget_ms > 0 && item.cost_ms > request.budget_ms)
+    item.on = false, item.decision = Decision::kOverBudget;
+  if (item.on) choice.open_de00 = truth.error(planned, more);
+  return Result(std::move(choice));
+}
+
+}  // namespace goniochrome::render
