@@ -332,6 +332,36 @@ std::size_t start_of(int sequence, std::size_t points, std::uint64_t seed) {
 
 }  // namespace
 
+namespace {
+
+// The estimates of sequences that start from several points. Where each point has at least two they scatter about the
+// means of their points, since what points differ by is no random error of a mean that all of them are part of.
+class Scatter {
+ public:
+  explicit Scatter(std::size_t points) : of_point_(points) {}
+
+  void add(std::size_t point, const color::Rgb& value) { of_point_[point].add(value), all_.add(value); }
+  int freedom() const { return all_.count() - (stratified() ? static_cast<int>(of_point_.size()) : 1); }
+  Covariance covariance() const {
+    if (!stratified()) return all_.covariance();
+    Covariance sum{};
+    for (const Estimates& point : of_point_) {
+      const Covariance own = point.covariance();
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += (point.count() - 1.0) / freedom() * own[i];
+    }
+    return sum;
+  }
+
+ private:
+  bool stratified() const {
+    return std::ranges::all_of(of_point_, [](const Estimates& point) { return point.count() >= 2; });
+  }
+  std::vector<Estimates> of_point_;
+  Estimates all_;
+};
+
+}  // namespace
+
 // All that a floor shows is light of its one column; what the mesh sends to it came through other surfaces.
 LobeEstimate LobePoint::floor_estimate(std::span<const LobePoint* const> points, int sequences, int directions,
                                        std::uint64_t seed) {
@@ -350,16 +380,18 @@ LobeEstimate LobePoint::floor_estimate(std::span<const LobePoint* const> points,
   result.sequences = sequences;
   const int batches = std::max(1, directions / kBatch);
   LightShares mean;
-  Estimates shown;
+  Scatter shown(points.size());
   for (int which = 0; which < sequences; ++which) {
-    const PointTransport& point = floors[start_of(which, floors.size(), seed)];
+    const std::size_t start = start_of(which, floors.size(), seed);
+    const PointTransport& point = floors[start];
     LightShares of_sequence;
     for (int i = 0; i < batches; ++i)
       of_sequence += (1.0 / batches) * point.batch_shares(mixed(mixed(seed, static_cast<std::uint64_t>(which)),
                                                                 static_cast<std::uint64_t>(i)));
     mean += (1.0 / sequences) * of_sequence;
-    shown.add(of_sequence.sum());
+    shown.add(start, of_sequence.sum());
   }
+  result.freedom = shown.freedom();
   result.direct[LobeColumns::diffuse()] += mean.direct;
   result.bounced[LobeColumns::diffuse()] = mean.into_lobes + mean.into_diffuse;
   result.covariance[LobeColumns::diffuse()] = shown.covariance();
@@ -409,18 +441,22 @@ LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const
   bool any_blocked = summed;
   std::vector<std::vector<Ray>> rays;
   const auto seed_of = [seed](int which) { return mixed(seed, static_cast<std::uint64_t>(which)); };
-  const auto start = [&](int which) -> const LobePoint& { return *points[start_of(which, points.size(), seed)]; };
+  std::vector<std::size_t> starts;
   for (int which = 0; which < sequences; ++which) {
-    rays.push_back(start(which).traced_rays(directions, seed_of(which), any_blocked));
-    any_blocked = any_blocked || start(which).mirror_hit_.any();
+    const LobePoint& start = *points[starts.emplace_back(start_of(which, points.size(), seed))];
+    rays.push_back(start.traced_rays(directions, seed_of(which), any_blocked));
+    any_blocked = any_blocked || start.mirror_hit_.any();
   }
   if (!any_blocked) {
     add_open();
+    result.freedom = sequences - 1;
     return result;
   }
   Sums sums(static_cast<std::size_t>(sequences), directions, count, any.groups_.classes());
-  for (int which = 0; which < sequences; ++which)
-    start(which).add_sequence(rays[static_cast<std::size_t>(which)], seed_of(which), sums, which);
+  for (int which = 0; which < sequences; ++which) {
+    const auto w = static_cast<std::size_t>(which);
+    points[starts[w]]->add_sequence(rays[w], seed_of(which), sums, which);
+  }
   for (std::size_t c = 0; c < sums.classes.size(); ++c) result.classes[c] = (1.0 / sequences) * sums.classes[c];
   for (std::size_t k = 0; k < count; ++k) {
     double beta[2] = {0, 0};
@@ -435,17 +471,17 @@ LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const
       }
     }
     color::Rgb direct, bounced;
-    Estimates shown;
+    Scatter shown(points.size());
     for (int which = 0; which < sequences; ++which) {
       const std::size_t at = sums.at(which, k);
       const double b = beta[which % 2];
       color::Rgb light = (1 - b) * sums.free[at] - b * sums.hidden[at] + sums.emitted[at];
       if (open_light != nullptr && k != columns.mirror()) light += b * open_light[k];
       direct += (1.0 / sequences) * light, bounced += (1.0 / sequences) * sums.bounced[at];
-      shown.add(light + sums.bounced[at]);
+      shown.add(starts[static_cast<std::size_t>(which)], light + sums.bounced[at]);
     }
     result.direct[k] += direct, result.bounced[k] += bounced;
-    result.covariance[k] = shown.covariance();
+    result.covariance[k] = shown.covariance(), result.freedom = shown.freedom();
   }
   return result;
 }

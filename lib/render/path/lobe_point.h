@@ -28,9 +28,10 @@ struct PaintGroups {
 // environment and emitters; bounced light has met a surface before.
 struct LobeEstimate {
   std::vector<color::Rgb> direct, bounced;
-  std::vector<Covariance> covariance;  // of one sequence's mean of the sum of both
+  std::vector<Covariance> covariance;  // of one sequence's mean of the sum of both, about that of its point
   std::vector<color::Rgb> classes;     // of bounced light, as the paint that the point wears shows them
   int sequences = 0;                   // 0: the points see their whole hemispheres, and all is exact
+  int freedom = 0;                     // of the covariance
 };
 
 class LobePoint {

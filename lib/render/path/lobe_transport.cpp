@@ -55,12 +55,13 @@ class Tracing {
     t.noise_de00.assign(points, 0);
     if (open != nullptr) open_light_.assign(points * t.floats(), 0);
     variance_.assign(points * columns.count(), 0);
-    batches_.assign(points, 0), sequences_.assign(points, 0), needed_.assign(points, 0);
+    batches_.assign(points, 0), freedom_.assign(points, 0), needed_.assign(points, 0);
     for (std::size_t k = 0; k < columns.count(); ++k) nominal_.push_back(nominal_weight(columns, k));
+    fewest_ = request.pixel_samples > 1 ? 2 * request.pixel_samples : kFirstBatches;
   }
 
   TracedLobes trace() {
-    std::vector<int> more(batches_.size(), kFirstBatches);
+    std::vector<int> more(batches_.size(), fewest_);
     while (true) {
       sample(more);
       result_.noise_p95_de00 = judge();
@@ -176,7 +177,7 @@ class Tracing {
       }
       for (std::size_t k = 0; k < views.size(); ++k) mirrors[k] = open_->mirror(views[k], part);
     }
-    const int sequences = std::min(batches, kSequences);
+    const int sequences = std::min(batches, std::max(kSequences, fewest_));
     int of_each = 1;  // batches
     while (of_each * sequences < batches) of_each *= 2;
     const LobeEstimate estimate =
@@ -197,7 +198,7 @@ class Tracing {
       for (std::size_t c = 0; c < 3; ++c)
         mix(t.classes[(i * estimate.classes.size() + k) * 3 + c], estimate.classes[k][static_cast<int>(c)]);
     batches_[i] += estimate.sequences * of_each;
-    sequences_[i] += estimate.sequences;
+    freedom_[i] += estimate.freedom + (before > 0 ? 1 : 0);
     // The variance of the mean of both rounds, kept as that of one batch.
     for (std::size_t k = 0; added > 0 && k < t.columns.count(); ++k) {
       float& variance = variance_[i * t.columns.count() + k];
@@ -247,7 +248,7 @@ class Tracing {
         for (std::size_t k = 0; k < columns; ++k) around[k] += variance_[other * columns + k];
       }
     }
-    const double freedom = sequences_[i] - 1;
+    const double freedom = freedom_[i];
     double worst = 0, needed = 0;
     for (std::size_t k = 0; k < columns; ++k) {
       const double own = variance_[i * columns + k];
@@ -270,7 +271,7 @@ class Tracing {
       for (std::size_t i = 0; i < batches_.size(); ++i) {
         const double n = batches_[i], wanted = std::min(std::ceil(scale * needed_[i]), most) - n;
         more[i] = static_cast<int>(std::clamp(wanted, 0.0, std::min<double>(3 * n, kMostAtOnce)));
-        if (more[i] % 2 != 0) ++more[i];
+        more[i] = (more[i] + fewest_ - 1) / fewest_ * fewest_;
         any = any || more[i] > 0;
         limited = limited && (n == 0 || needed_[i] == 0 || n >= request_.most_batches);
       }
@@ -290,7 +291,8 @@ class Tracing {
   std::vector<std::int32_t> number_;     // of the point of each pixel, or -1
   std::vector<float> open_light_;        // point, column, channel
   std::vector<float> variance_;          // of one batch: point, column; dE00^2
-  std::vector<int> batches_, sequences_;
+  std::vector<int> batches_, freedom_;
+  int fewest_ = kFirstBatches;  // of a round; of several samples each gets two sequences
   std::vector<double> needed_, nominal_;
   int round_ = 0;
 };
