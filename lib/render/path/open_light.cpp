@@ -73,6 +73,20 @@ void OpenLight::sum(const envmap::BlockTree& tree, double tolerance_de00) {
   summed_.emplace(tree, tolerance_de00, columns_);
 }
 
+// A brushed surface gathers the mean over its tilted normals, as the engines have it.
+std::vector<LobeAxis> OpenLight::axes(const Vec3& n, const Vec3& to_viewer, std::size_t part) const {
+  if (part >= tilts_.size() || tilts_[part].size() <= 1) return {{2 * dot(n, to_viewer) * n - to_viewer, 1}};
+  const double level2 = n.x * n.x + n.z * n.z;
+  const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
+  std::vector<LobeAxis> axes;
+  for (const brdf::Tilt& tilt : tilts_[part]) {
+    const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
+    const Vec3 r = 2 * dot(m, to_viewer) * m - to_viewer;
+    if (dot(m, to_viewer) > 0 && dot(r, n) > 0) axes.push_back({r, tilt.weight});
+  }
+  return axes;
+}
+
 void OpenLight::at(const Vec3& n, const Vec3& to_viewer, int part, color::Rgb* light) const {
   const double cos_o = std::clamp(dot(n, to_viewer), 0.0, 1.0);
   const auto p = static_cast<std::size_t>(part);
@@ -82,8 +96,7 @@ void OpenLight::at(const Vec3& n, const Vec3& to_viewer, int part, color::Rgb* l
   const color::Rgb at_normal = envmap::bilinear(coat_index == paint::kNoCoat ? *diffuse_ : *coat_diffuse_, n);
   weights.add_diffuse(at_normal, cos_o, 1, light);
   for (const UnitWeights::Disc& spot : spots_) weights.add_diffuse(spot, n, cos_o, 1, light);
-  const std::vector<LobeAxis> about =
-      lobe_axes(n, to_viewer, p < tilts_.size() ? tilts_[p] : std::vector<brdf::Tilt>());
+  const std::vector<LobeAxis> about = axes(n, to_viewer, p);
   for (const LobeAxis& axis : about) {
     weights.add_lobes(maps_, at_normal, n, axis.direction, cos_o, axis.share, light);
     for (const UnitWeights::Disc& spot : spots_)

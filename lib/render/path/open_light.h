@@ -34,6 +34,7 @@ class OpenLight {
 
  private:
   OpenLight() = default;
+  std::vector<LobeAxis> axes(const Vec3& normal, const Vec3& to_viewer, std::size_t part) const;
 
   const envmap::PrefilteredEnvironment* env_ = nullptr;
   LobeColumns columns_;

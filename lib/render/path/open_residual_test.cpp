@@ -118,9 +118,6 @@ TEST(OpenResidual, TellsSurfacesOfEveryKind) {
   World coated(flakes());
   coated.scene.paints[0].coat_index = 1.6;
   expect_better(coated, "under a coat");
-  World brushed(flakes());
-  brushed.scene.anisotropy = {{0.1, 0.3}};
-  expect_better(brushed, "brushed");
   World colored(flakes());
   colored.scene.reflection = color::working_space_operator();
   expect_better(colored, "by an operator");
@@ -130,6 +127,20 @@ TEST(OpenResidual, TellsSurfacesOfEveryKind) {
   for (paint::Lobe& lobe : paint.views[1].lobes)
     lobe.directional_diffuse = color::Rgb{0.9, 0.8, 1} * lobe.directional_diffuse;
   expect_better(traveling, "with weights of two views");
+}
+
+// Their tilted normals are dear to sum. The control: the same paint that is not brushed.
+TEST(OpenResidual, LeavesBrushedPartsAsMapsHaveThem) {
+  World world(flakes());
+  const std::vector<VisiblePoint> points = probe_points({world.seen()}, 50);
+  const std::vector<color::Rgb> nothing(points.size());
+  for (const bool brushed : {false, true}) {
+    if (brushed) world.scene.anisotropy = {{0.1, 0.3}};
+    OpenResidual residual(world.tree);
+    ASSERT_TRUE(residual.load(world.scene, world.effects()).ok());
+    EXPECT_EQ(residual.at(points) == nothing, brushed);
+    EXPECT_EQ(residual.count() == 0, brushed);
+  }
 }
 
 TEST(OpenResidual, IsFinerForASmallerTolerance) {
