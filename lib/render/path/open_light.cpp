@@ -73,9 +73,20 @@ void OpenLight::sum(const envmap::BlockTree& tree, double tolerance_de00) {
   summed_.emplace(tree, tolerance_de00, columns_);
 }
 
+// A brushed surface gathers the mean over its tilted normals, as the engines have it.
 std::vector<LobeAxis> OpenLight::axes(const OpenView& view, int part) const {
+  const auto& [n, to_viewer] = view;
   const auto p = static_cast<std::size_t>(part);
-  return lobe_axes(view.normal, view.to_viewer, p < tilts_.size() ? tilts_[p] : std::vector<brdf::Tilt>());
+  if (p >= tilts_.size() || tilts_[p].size() <= 1) return {{2 * dot(n, to_viewer) * n - to_viewer, 1}};
+  const double level2 = n.x * n.x + n.z * n.z;
+  const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
+  std::vector<LobeAxis> axes;
+  for (const brdf::Tilt& tilt : tilts_[p]) {
+    const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
+    const Vec3 r = 2 * dot(m, to_viewer) * m - to_viewer;
+    if (dot(m, to_viewer) > 0 && dot(r, n) > 0) axes.push_back({r, tilt.weight});
+  }
+  return axes;
 }
 
 double OpenLight::coat_of(int part) const {

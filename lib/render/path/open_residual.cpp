@@ -29,11 +29,8 @@ int finer(int cells, double tolerance_de00) {
   return static_cast<int>(std::lround(cells * scale));
 }
 
-bool is_wide(const paint::Lobe& lobe) {
-  return lobe.exponent <= kWidestShared;
-}
 bool is_narrow(const paint::Lobe& lobe) {
-  return !is_wide(lobe);
+  return !(lobe.exponent <= kWidestShared);
 }
 
 // Calls visit(diffuse, lobes) for the weights of a paint, and for those at each of its views.
@@ -43,16 +40,19 @@ void for_weights(paint::LobeFit& paint, const Visit& visit) {
   for (paint::ViewLobes& view : paint.views) visit(view.diffuse, view.lobes);
 }
 
-// Without what is not summed at all, and is no part of the difference either.
-paint::LobeFit compared(const Scene& scene, const Effects& effects, std::size_t part, bool stretched) {
+// What is summed of a paint.
+paint::LobeFit summed(const Scene& scene, const Effects& effects, std::size_t part, bool brushed, bool stretched) {
   const bool covered = scene.layer != nullptr && (scene.layer->surface(static_cast<int>(part)).texture != nullptr ||
                                                   is_mapped(scene, part));
-  if (covered || !scene.paints[part].tilts.empty()) return {};
+  if (brushed || covered || !scene.paints[part].tilts.empty()) return {};
   paint::LobeFit paint = with_effects(scene.paints[part], effects);
-  if (stretched)
-    for_weights(paint, [](color::Rgb&, std::vector<paint::Lobe>& lobes) {
-      for (paint::Lobe& lobe : lobes) lobe.gloss = {};
-    });
+  const auto strip = [&](std::vector<paint::Lobe>& lobes) {
+    std::erase_if(lobes, is_narrow);
+    for (paint::Lobe& lobe : lobes)
+      if (stretched) lobe.gloss = {};
+  };
+  strip(paint.lobes);
+  for (paint::ViewLobes& view : paint.views) strip(view.lobes);
   return paint;
 }
 
@@ -60,12 +60,6 @@ template <class Value>
 void keep_once(std::vector<Value>& values) {
   std::ranges::sort(values);
   values.erase(std::ranges::unique(values).begin(), values.end());
-}
-
-bool same_tilts(const std::vector<brdf::Tilt>& a, const std::vector<brdf::Tilt>& b) {
-  return std::ranges::equal(a, b, [](const brdf::Tilt& x, const brdf::Tilt& y) {
-    return x.normal == y.normal && x.weight == y.weight;
-  });
 }
 
 }  // namespace
@@ -81,13 +75,10 @@ const OpenResidual::Wear* OpenResidual::wear_of(int part) const {
   return wear == kNone ? nullptr : &wears_[static_cast<std::size_t>(wear)];
 }
 
-std::size_t OpenResidual::surface_of(double coat_index, const std::vector<brdf::Tilt>& tilts) {
-  const auto found = std::ranges::find_if(
-      surfaces_, [&](const Surface& s) { return s.coat_index == coat_index && same_tilts(s.tilts, tilts); });
+std::size_t OpenResidual::surface_of(double coat_index) {
+  const auto found = std::ranges::find(surfaces_, coat_index, &Surface::coat_index);
   if (found != surfaces_.end()) return static_cast<std::size_t>(found - surfaces_.begin());
-  surfaces_.emplace_back().coat_index = coat_index;
-  surfaces_.back().tilts = tilts;
-  surfaces_.back().slots.resize(grid_.view_count());
+  surfaces_.emplace_back(coat_index).slots.resize(grid_.view_count());
   return surfaces_.size() - 1;
 }
 
@@ -111,26 +102,19 @@ Result<void> OpenResidual::load(const Scene& scene, const Effects& effects) {
 }
 
 Result<void> OpenResidual::load_paints(const Scene& scene) {
-  return set_paints(scene);
+  GONIO_TRY(set_paints(scene));
+  engine_.load_paints(scene_, effects_);
+  return {};
 }
 
 Result<void> OpenResidual::set_paints(const Scene& scene) {
   const std::vector<bool> stretched = stretched_parts(scene, loaded_);
+  const auto tilts = tilts_of(scene, loaded_);
   scene_ = scene;
   scene_.lights.clear(), scene_.layer = nullptr, scene_.panes.clear();
   for (std::size_t part = 0; part < scene.paints.size(); ++part)
-    scene_.paints[part] = compared(scene, effects_, part, stretched[part]);
-  narrow_ = scene_;
-  Scene wide = scene_;
-  for (paint::LobeFit& paint : narrow_.paints)
-    for_weights(paint, [](color::Rgb& diffuse, std::vector<paint::Lobe>& lobes) {
-      diffuse = {};
-      std::erase_if(lobes, is_wide);
-    });
-  for (paint::LobeFit& paint : wide.paints)
-    for_weights(paint, [](color::Rgb&, std::vector<paint::Lobe>& lobes) { std::erase_if(lobes, is_narrow); });
-  const auto tilts = effects_.anisotropy ? tilts_of(wide, effects_)
-                                         : std::vector<std::vector<brdf::Tilt>>(scene.paints.size());
+    scene_.paints[part] =
+        summed(scene, effects_, part, effects_.anisotropy && tilts[part].size() > 1, stretched[part]);
   wears_.clear(), wear_of_part_.clear();
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
     const paint::LobeFit& paint = scene_.paints[part];
@@ -141,8 +125,8 @@ Result<void> OpenResidual::set_paints(const Scene& scene) {
     wear_of_part_.back() = static_cast<std::int32_t>(same - wears_.begin());
     if (same != wears_.end()) continue;
     const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : brdf::kGlossIncidence_deg;
-    GONIO_ASSIGN(TransportPaint weights, transport_paint(columns_, wide.paints[part], gloss_deg));
-    wears_.push_back({surface_of(paint.coat_index, tilts[part]), static_cast<int>(part), std::move(weights), {}});
+    GONIO_ASSIGN(TransportPaint weights, transport_paint(columns_, paint, gloss_deg));
+    wears_.push_back({surface_of(paint.coat_index), static_cast<int>(part), std::move(weights), {}});
   }
   return {};
 }
@@ -186,8 +170,10 @@ std::size_t OpenResidual::missing(const Gbuffer& seen) const {
 
 void OpenResidual::fill(const std::vector<Cell>& cells) {
   if (count() > kMostSums) {
-    for (Surface& surface : surfaces_) surface = {surface.coat_index, surface.tilts, {}, {}, {}};
-    for (Surface& surface : surfaces_) surface.slots.resize(grid_.view_count());
+    for (Surface& surface : surfaces_) {
+      surface = Surface(surface.coat_index);
+      surface.slots.resize(grid_.view_count());
+    }
     for (Wear& wear : wears_) wear.residual.clear();
   }
   for (const Cell& cell : cells) {
@@ -210,15 +196,14 @@ void OpenResidual::sum(Surface& surface) const {
     std::vector<color::Rgb> light(columns_.count());
     for (std::size_t slot = first + begin; slot < first + end; ++slot) {
       const auto [normal, to_viewer] = grid_.facing(surface.nodes[slot]);
-      light_->at(normal, to_viewer, lobe_axes(normal, to_viewer, surface.tilts), surface.coat_index, light.data());
+      const LobeAxis mirrored{2 * dot(normal, to_viewer) * normal - to_viewer, 1};
+      light_->at(normal, to_viewer, {mirrored}, surface.coat_index, light.data());
       float* to = &surface.sums[slot * floats()];
       for (std::size_t k = 0; k < floats(); ++k) to[k] = static_cast<float>(light[k / 3][static_cast<int>(k % 3)]);
     }
   });
 }
 
-// The engine's share is what it shows less what it shows of the narrow lobes alone: normals of brushed surfaces are
-// tilted for the sharpest lobe that is there.
 void OpenResidual::complete() {
   std::vector<VisiblePoint> points;
   for (const Wear& wear : wears_) {
@@ -229,17 +214,14 @@ void OpenResidual::complete() {
     }
   }
   if (points.empty()) return;
-  engine_.load_paints(scene_, effects_);
-  const std::vector<color::Rgb> whole = engine_.colors(points);
-  engine_.load_paints(narrow_, effects_);
-  const std::vector<color::Rgb> narrow = engine_.colors(points);
+  const std::vector<color::Rgb> by_maps = engine_.colors(points);
   std::size_t point = 0;
   for (Wear& wear : wears_) {
     const Surface& surface = surfaces_[wear.surface];
     for (std::size_t slot = wear.residual.size() / 3; slot < surface.nodes.size(); ++slot, ++point) {
       const double cos_o = dot(points[point].normal, points[point].to_viewer);
       const color::Rgb residual =
-          shown(wear.paint, &surface.sums[slot * floats()], cos_o) - (whole[point] - narrow[point]);
+          shown(wear.paint, &surface.sums[slot * floats()], cos_o) - by_maps[point];
       for (int c = 0; c < 3; ++c) wear.residual.push_back(static_cast<float>(residual[c]));
     }
   }

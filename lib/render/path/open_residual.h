@@ -25,8 +25,8 @@ class OpenResidual {
   static bool applies(const Effects& effects) { return effects.environment && effects.horizon; }
 
   // Takes a scene as engines draw it with these effects, whose tolerance decides how close the nodes are. Sums that
-  // were made before are kept as far as they hold. Parts with textures or color maps, and the gloss of rough coats, are
-  // left as the maps have them. Error: as the engine cpu loads it, and as column_weights().
+  // were made before are kept as far as they hold. Brushed parts, those with textures or color maps, and the gloss of
+  // rough coats are left as the maps have them. Error: as the engine cpu loads it, and as column_weights().
   Result<void> load(const Scene& scene, const Effects& effects);
   // Takes other paints for the scene and the effects that were loaded. Error: as column_weights().
   Result<void> load_paints(const Scene& scene);
@@ -42,10 +42,11 @@ class OpenResidual {
 
  private:
   static constexpr std::int32_t kNone = -1;
-  // What light passes and where lobes look: sums are the same for all paints of such a surface.
+  // Sums are the same for all paints under such a coat.
   struct Surface {
-    double coat_index = 1;
-    std::vector<brdf::Tilt> tilts;
+    explicit Surface(double index) : coat_index(index) {}
+
+    double coat_index;
     std::vector<std::unique_ptr<std::vector<std::int32_t>>> slots;  // of a view's normals; null: none yet
     std::vector<ViewGrid::Node> nodes;                              // of each slot
     std::vector<float> sums;                                        // of each slot, three for each column
@@ -69,7 +70,7 @@ class OpenResidual {
   };
 
   Result<void> set_paints(const Scene& scene);
-  std::size_t surface_of(double coat_index, const std::vector<brdf::Tilt>& tilts);
+  std::size_t surface_of(double coat_index);
   // Null where nothing is corrected.
   const Wear* wear_of(int part) const;
   std::size_t floats() const { return 3 * (1 + 2 * columns_.exponents.size()); }
@@ -89,8 +90,8 @@ class OpenResidual {
   std::vector<Surface> surfaces_;
   std::vector<Wear> wears_;
   std::vector<std::int32_t> wear_of_part_;  // or kNone
-  Scene scene_, narrow_;                    // as the engines draw it, and without what is summed
-  Effects loaded_, effects_;                // and without what has no part in the difference
+  Scene scene_;                // what is summed of it
+  Effects loaded_, effects_;   // those of the picture, and those of what is summed
   CpuEngine engine_;
 };
 

@@ -63,19 +63,6 @@ class ColumnGatherer {
 
 }  // namespace
 
-std::vector<LobeAxis> lobe_axes(const Vec3& n, const Vec3& to_viewer, const std::vector<brdf::Tilt>& tilts) {
-  if (tilts.size() <= 1) return {{2 * dot(n, to_viewer) * n - to_viewer, 1}};
-  const double level2 = n.x * n.x + n.z * n.z;
-  const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
-  std::vector<LobeAxis> axes;
-  for (const brdf::Tilt& tilt : tilts) {
-    const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
-    const Vec3 r = 2 * dot(m, to_viewer) * m - to_viewer;
-    if (dot(m, to_viewer) > 0 && dot(r, n) > 0) axes.push_back({r, tilt.weight});
-  }
-  return axes;
-}
-
 SummedLight::SummedLight(const envmap::BlockTree& tree, double tolerance_de00, const LobeColumns& columns)
     : tree_(&tree), spread_(spread_for(tolerance_de00)) {
   std::ranges::copy_if(columns.exponents, std::back_inserter(exponents_),

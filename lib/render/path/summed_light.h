@@ -5,7 +5,6 @@
 
 #include <vector>
 
-#include "brdf/ward.h"
 #include "envmap/block_tree.h"
 #include "render/path/lobe_columns.h"
 
@@ -16,10 +15,6 @@ struct LobeAxis {
   Vec3 direction;
   double share = 1;
 };
-
-// The mirror direction; of a brushed surface those about its tilted normals, as far as they are above the horizon. The
-// tangent runs level around +Y, on a level surface along +X.
-std::vector<LobeAxis> lobe_axes(const Vec3& normal, const Vec3& to_viewer, const std::vector<brdf::Tilt>& tilts);
 
 class SummedLight {
  public:

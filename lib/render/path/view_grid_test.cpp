@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <random>
 
 #include "base/angles.h"
 #include "base/random_for_test.h"
@@ -65,16 +67,18 @@ TEST(ViewGrid, FindsItsNodes) {
       EXPECT_NEAR(length(there.to_viewer - at.to_viewer), 0, 1e-6);
       found += corners[nearest] == ViewGrid::Node{view, normal} ? 1 : 0;
     }
-  // All but those on the edges, of which there are 12 of 4 views each for 96 views.
+  // All but those that lie on a second face or beyond the horizon, where corners of the square are one normal.
   EXPECT_GE(found, static_cast<int>(grid.view_count() * grid.normal_count() / 2));
 }
 
 // Between nodes, lines err by an eighth of the second derivative times the square of the spacing: four times less with
-// twice as many cells, in the limit. The control: one cell for each face tells hardly anything.
+// twice as many cells, in the limit. The exponential bends by at most 15, and the mirror direction turns twice as far as
+// the normal: with 24 cells, of up to .15, normals err by .17 along each axis, and views of up to .17 by .05. The
+// control: cells that are too few tell hardly anything.
 TEST(ViewGrid, ErrsByTheSquareOfItsSpacing) {
   const double coarse = largest_error({6, 12}), fine = largest_error({12, 24});
   EXPECT_LT(fine, coarse / 2.5);
-  EXPECT_LT(fine, 0.1);
+  EXPECT_LT(fine, 2 * (0.17 + 0.05));
   EXPECT_GT(largest_error({1, 2}), 1);
 }
 

@@ -1,0 +1,276 @@
+#include "render/path/open_residual.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "base/parallel.h"
+#include "prefilter/prefilter.h"
+#include "render/exact.h"
+#include "render/integral/integral_engine.h"
+#include "render/internal/seen.h"
+#include "render/path/scenes_for_paths_for_test.h"
+#include "render/plan.h"
+#include "render/renderer.h"
+
+namespace goniochrome::render {
+namespace {
+
+const std::vector<double> kExponents = {1.3, 6, 20, 70, 900};
+
+// A low red sun over dark ground, with a bright window, which lobes meet that the horizon cuts.
+const envmap::Environment& dusk() {
+  static const envmap::Environment made = environment_of(128, 64, [](int x, int y) {
+    const double dx = (x - 40) / 6.0, dy = (y - 29) / 4.0, sun = 60 * std::exp(-dx * dx - dy * dy);
+    const double sky = y < 32 ? 0.3 + 0.02 * y : 0.05, window = x > 90 && x < 100 && y > 20 && y < 30 ? 10 : 0;
+    return color::Rgb{sky + sun + window, sky + 0.5 * sun + window, sky + 0.2 * sun + window};
+  });
+  return made;
+}
+const envmap::PrefilteredEnvironment& maps() {
+  static const envmap::PrefilteredEnvironment made = [] {
+    prefilter::PrefilterRequest request;
+    request.exponents = kExponents;
+    return prefilter::prefiltered(dusk(), request, prefilter::prefilter_plan(dusk(), request),
+                                  [](const envmap::PrefilteredLobe&, double) {});
+  }();
+  return made;
+}
+
+// Flakes in all of the lobes, and gloss.
+paint::LobeFit flakes() {
+  paint::LobeFit paint = matt({0.1, 0.12, 0.2});
+  for (const double exponent : kExponents) {
+    const double weight = 0.04 * (exponent + 2), gloss = 0.002 * (exponent + 1);
+    paint.lobes.push_back({exponent, weight * color::Rgb{0.9, 1, 0.8}, {gloss, gloss, gloss}});
+  }
+  return paint;
+}
+
+struct World {
+  mesh::Mesh mesh = sphere_mesh(64);
+  Scene scene;
+  View view;
+  envmap::BlockTree tree{dusk()};
+
+  explicit World(paint::LobeFit paint) {
+    scene.mesh = &mesh;
+    scene.paints = {std::move(paint)};
+    scene.env = &maps();
+    view = {Camera::orbit(mesh, 60, 5, 1, 30, 1), 96, 96, 1, false};
+  }
+  World(const World&) = delete;
+
+  Effects effects(double tolerance_de00 = 0.5) const {
+    Effects effects = effects_of(scene);
+    effects.tolerance_de00 = tolerance_de00;
+    return effects;
+  }
+  std::shared_ptr<const Gbuffer> seen() const { return *Renderer::tracing().look(mesh, view); }
+};
+
+// How far the engine cpu is from the exact sum at some points of a world, at 95 of 100 of them, by maps alone and by
+// maps and the residual.
+struct Errors {
+  double maps = 0, summed = 0;
+};
+Errors errors_of(const World& world, double tolerance_de00 = 0.5) {
+  const Effects effects = world.effects(tolerance_de00);
+  const std::vector<VisiblePoint> points = probe_points({world.seen()}, 200);
+  CpuEngine engine;
+  EXPECT_TRUE(engine.load(world.scene, effects).ok());
+  const std::vector<color::Rgb> drawn = engine.colors(points);
+  OpenResidual residual(world.tree);
+  const Result<void> loaded = residual.load(world.scene, effects);
+  EXPECT_TRUE(loaded.ok()) << loaded.error().message;
+  const std::vector<color::Rgb> more = residual.at(points);
+  // By blocks that are ten times finer than those of the residual, relative to what they err by.
+  const Surroundings around(world.tree, spread_for(0.02 * tolerance_de00));
+  const std::vector<color::Rgb> exact = exact_radiance(points, world.scene, effects, around);
+  const double white = diffuse_white(&maps(), {}).luminance;
+  std::vector<double> by_maps, summed;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    by_maps.push_back(seen_difference(drawn[i], exact[i], white));
+    summed.push_back(seen_difference(drawn[i] + more[i], exact[i], white));
+  }
+  return {percentile_95(std::move(by_maps)), percentile_95(std::move(summed))};
+}
+
+// Nodes and blocks are chosen for the tolerance of the whole picture, of which the open light may take this part as
+// plans have it. The maps alone are the control.
+constexpr double kTolerance_de00 = 0.5, kOfOpenLight = 0.8;
+
+void expect_better(const World& world, const char* what) {
+  const Errors errors = errors_of(world, kTolerance_de00);
+  EXPECT_LT(errors.summed, kOfOpenLight * kTolerance_de00) << what;
+  EXPECT_GT(errors.maps, 1.5 * errors.summed) << what;
+}
+
+TEST(OpenResidual, BringsWideLobesWithinTheTolerance) {
+  const World world(flakes());
+  EXPECT_GT(errors_of(world).maps, kTolerance_de00);
+  expect_better(world, "flakes");
+}
+
+TEST(OpenResidual, TellsSurfacesOfEveryKind) {
+  World coated(flakes());
+  coated.scene.paints[0].coat_index = 1.6;
+  expect_better(coated, "under a coat");
+  World colored(flakes());
+  colored.scene.reflection = color::working_space_operator();
+  expect_better(colored, "by an operator");
+  World traveling(flakes());
+  paint::LobeFit& paint = traveling.scene.paints[0];
+  paint.views = {{0, paint.diffuse, paint.lobes}, {60, 1.3 * paint.diffuse, paint.lobes}};
+  for (paint::Lobe& lobe : paint.views[1].lobes)
+    lobe.directional_diffuse = color::Rgb{0.9, 0.8, 1} * lobe.directional_diffuse;
+  expect_better(traveling, "with weights of two views");
+}
+
+// Their tilted normals are dear to sum. The control: the same paint that is not brushed.
+TEST(OpenResidual, LeavesBrushedPartsAsMapsHaveThem) {
+  World world(flakes());
+  const std::vector<VisiblePoint> points = probe_points({world.seen()}, 50);
+  const std::vector<color::Rgb> nothing(points.size());
+  for (const bool brushed : {false, true}) {
+    if (brushed) world.scene.anisotropy = {{0.1, 0.3}};
+    OpenResidual residual(world.tree);
+    ASSERT_TRUE(residual.load(world.scene, world.effects()).ok());
+    EXPECT_EQ(residual.at(points) == nothing, brushed);
+    EXPECT_EQ(residual.count() == 0, brushed);
+  }
+}
+
+TEST(OpenResidual, IsFinerForASmallerTolerance) {
+  const World world(flakes());
+  const double coarse = errors_of(world, 2).summed, fine = errors_of(world, 0.125).summed;
+  EXPECT_LT(fine, coarse / 2);
+  EXPECT_LT(fine, 0.125);
+}
+
+TEST(OpenResidual, IsTheSameByAnyNumberOfThreadsAndOfOtherPicturesBefore) {
+  const World world(flakes());
+  const auto seen = world.seen();
+  const auto picture_of = [&](int count, bool after_another) {
+    set_threads(count);
+    OpenResidual residual(world.tree);
+    EXPECT_TRUE(residual.load(world.scene, world.effects()).ok());
+    if (after_another) residual.at(probe_points({seen}, 40));
+    image::Image picture{seen->width, seen->height, 4, std::vector<float>(seen->data.size(), 0.0F), {}};
+    residual.add(*seen, 1, picture);
+    EXPECT_EQ(residual.missing(*seen), 0U);
+    set_threads(0);
+    return picture.data;
+  };
+  const std::vector<float> one = picture_of(1, false);
+  EXPECT_GT(*std::ranges::max_element(one), 0.01);
+  EXPECT_EQ(picture_of(7, false), one);
+  EXPECT_EQ(picture_of(2, true), one);
+}
+
+TEST(OpenResidual, KeepsSumsForOtherPaintsOfTheSameSurface) {
+  World world(flakes());
+  const std::vector<VisiblePoint> points = probe_points({world.seen()}, 100);
+  OpenResidual residual(world.tree);
+  ASSERT_TRUE(residual.load(world.scene, world.effects()).ok());
+  const std::vector<color::Rgb> first = residual.at(points);
+  const std::size_t count = residual.count();
+  world.scene.paints[0].diffuse = {0.3, 0, 0};
+  ASSERT_TRUE(residual.load_paints(world.scene).ok());
+  const std::vector<color::Rgb> second = residual.at(points);
+  EXPECT_EQ(residual.count(), count);
+  EXPECT_NE(first, second);
+  OpenResidual anew(world.tree);
+  ASSERT_TRUE(anew.load(world.scene, world.effects()).ok());
+  EXPECT_EQ(anew.at(points), second);
+  world.scene.paints[0].coat_index = 1.5;
+  ASSERT_TRUE(residual.load(world.scene, world.effects()).ok());
+  residual.at(points);
+  EXPECT_EQ(residual.count(), 2 * count);
+}
+
+struct Drawn {
+  Plan plan;
+  std::vector<float> picture;
+};
+
+class Draws {
+ public:
+  explicit Draws(const World& world) : world_(world), renderer_(Renderer::tracing()) {
+    RaySetup setup;
+    setup.environment = &dusk();
+    setup.absent = "left out", setup.refused = true;
+    renderer_.set_rays(setup);
+  }
+  Drawn planned(const Scene& scene, const std::string& effects) {
+    PlanRequest request;
+    request.effects = effects;
+    request.white_luminance = diffuse_white(&maps(), {}).luminance;
+    auto plan = renderer_.load(scene, {*renderer_.look(world_.mesh, world_.view)}, request);
+    EXPECT_TRUE(plan.ok()) << plan.error().message;
+    return {*std::move(plan), again()};
+  }
+  std::vector<float> edited(const Scene& scene) {
+    renderer_.load_paints(scene);
+    return again();
+  }
+
+ private:
+  std::vector<float> again() {
+    Frame frame;
+    EXPECT_TRUE(renderer_.draw(world_.view, frame).ok());
+    return frame.picture.data;
+  }
+
+  const World& world_;
+  Renderer renderer_;
+};
+
+const PlanItem& sums_of(const Drawn& drawn) {
+  return *std::ranges::find(drawn.plan.items, "sums", &PlanItem::effect);
+}
+
+TEST(OpenResidual, IsDrawnWhereMapsMissTheTolerance) {
+  const World world(flakes());
+  const Drawn with = Draws(world).planned(world.scene, "auto"), without = Draws(world).planned(world.scene, "auto,-sums");
+  EXPECT_EQ(sums_of(with).decision, Decision::kDrawn);
+  EXPECT_GT(sums_of(with).de00_p95, kOfOpenLight * kTolerance_de00);
+  EXPECT_GT(sums_of(with).cost_ms, 0);
+  EXPECT_EQ(sums_of(without).decision, Decision::kForcedOff);
+  ASSERT_TRUE(with.plan.open_de00_p95 && without.plan.open_de00_p95);
+  EXPECT_LT(*with.plan.open_de00_p95, 0.5 * *without.plan.open_de00_p95);
+  EXPECT_NE(with.picture, without.picture);
+  // The sums have Fresnel's reflectance, which such a picture is to lack.
+  EXPECT_FALSE(sums_of(Draws(world).planned(world.scene, "auto,-fresnel")).on);
+}
+
+TEST(OpenResidual, CostsNothingWhereMapsTellTheLight) {
+  World solid(matt({0.5, 0.4, 0.3}));
+  const Drawn by_maps = Draws(solid).planned(solid.scene, "auto");
+  EXPECT_EQ(sums_of(by_maps).decision, Decision::kDropped);
+  EXPECT_LE(sums_of(by_maps).de00_p95, kOfOpenLight * kTolerance_de00);
+  EXPECT_EQ(by_maps.plan.sums_ms, 0);
+  EXPECT_EQ(by_maps.picture, Draws(solid).planned(solid.scene, "auto,-sums").picture);
+  solid.scene.env = nullptr;
+  solid.scene.lights = {Light{}};
+  EXPECT_FALSE(sums_of(Draws(solid).planned(solid.scene, "auto")).needed);
+}
+
+TEST(OpenResidual, FollowsEditsOfPaints) {
+  const World world(flakes());
+  Scene edited = world.scene;
+  edited.paints[0].diffuse = {0.3, 0.05, 0.02};
+  edited.paints[0].lobes[2].directional_diffuse = {2, 0.5, 0.5};
+  Draws draws(world);
+  const Drawn first = draws.planned(world.scene, "all,+sums");
+  ASSERT_TRUE(sums_of(first).on);
+  const std::vector<float> second = draws.edited(edited);
+  EXPECT_EQ(second, Draws(world).planned(edited, "all,+sums").picture);
+  EXPECT_EQ(draws.edited(world.scene), first.picture);
+  EXPECT_NE(second, first.picture);
+}
+
+}  // namespace
+}  // namespace goniochrome::render
