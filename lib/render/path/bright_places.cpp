@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "base/angles.h"
 #include "base/parallel.h"
@@ -21,13 +22,21 @@ constexpr std::size_t kGroups = 512;  // a power of 2
 constexpr float kTurned = 0.25F;
 // Of the weight of a piece in the choice of groups, the part that goes by its area.
 constexpr double kByArea = 0.75;
-// Of each piece one path is followed, and so many of each group; pairs of points are joined for each pair of groups.
-constexpr std::uint32_t kMostPieces = 1U << 14, kPathsOfGroup = 64, kPairs = 2;
+// Of each piece one path is followed, and so many of each group.
+constexpr std::uint32_t kMostPieces = 1U << 14, kPathsOfGroup = 64;
+// About so many rays of a receiver are shared out among the places, of which each gets no less and no more than this.
+constexpr double kRays = 2048;
+constexpr std::uint32_t kLeastPairs = 2, kMostPairs = 64;
 // Where light is spread this evenly, places are not worth while: the mean square of what the surface sends over the
 // square of its mean; and what they have to gain.
 constexpr double kEven = 10, kLeastGain = 2;
 // Of more directions toward places the others would be so few that what they carry grows from surface to surface.
 constexpr std::array<double, 3> kChances{0, 0.25, 0.5};
+
+// The number of a pair of points of a receiver and a place, of which there are kMostPairs.
+constexpr std::uint32_t pair(std::size_t place, std::uint32_t k) {
+  return static_cast<std::uint32_t>(place * kMostPairs) + k;
+}
 
 // Groups of pieces that are near each other and face alike, each of about the same weight: halves of halves, by planes
 // across the direction in which the weight is spread most.
@@ -111,9 +120,20 @@ class Grouping {
 
 // A point of a receiver and one of a place: of the integral over the place of what a matt point of the receiver gets,
 // cos_i dw for light of 1, by area; and the density by solid angle that 1 by area is. Both are 0 where the points do
-// not see each other.
+// not face each other, and where a ray is asked for, also where something stands between them.
 struct BrightPlaces::Link {
   double cos = 0, toward = 0;
+  // Of the integral of light^2 cos_i^2 over the density within the place, for light of 1 and an area of 1.
+  double moment() const { return toward > 0 ? cos * cos / (toward * toward) : 0; }
+};
+
+// Of a receiver, in the order of the places.
+struct BrightPlaces::Links {
+  std::vector<Link> all;
+  std::vector<std::uint32_t> first;  // of each place, and where the last one ends
+  std::span<const Link> of(std::size_t place) const {
+    return std::span(all).subspan(first[place], first[place + 1] - first[place]);
+  }
 };
 
 BrightPlaces::BrightPlaces(const rays::RayScene& scene, const Emitters& emitters) : scene_(scene), pieces_(scene) {
@@ -239,20 +259,43 @@ std::vector<double> BrightPlaces::group_squares(const Sent& sent, std::uint64_t 
 
 // Points that are nearer to each other than the place is wide count as if they were as far apart.
 BrightPlaces::Link BrightPlaces::link(std::size_t receiver, std::size_t place, const Sequence& sequence,
-                                      std::uint32_t index) const {
+                                      std::uint32_t index, bool by_ray) const {
   const std::array<double, 4> here = sequence.point(index, 0), there = sequence.point(index, 1);
   const Hit from = pieces_.drawn(drawn_piece(receiver, here[2]), here[0], here[1]),
             to = pieces_.drawn(drawn_piece(place, there[2]), there[0], there[1]);
   const Float3 target = pieces_.position(to), way = target - pieces_.position(from);
   if (!(rays::length(way) > 0)) return {};
   const rays::Spot spot = scene_.spot(from, target, -rays::normalized(way));
-  const Float3 direction = rays::normalized(target - spot.start);
+  const Float3 apart = target - spot.start, direction = rays::normalized(apart);
   const double cos = rays::dot(spot.shading, direction);
-  if (!(cos > 0)) return {};
-  const Hit met = scene_.closest(spot.start, direction);
-  if (met.triangle != to.triangle) return {};
-  const double toward = scene_.by_solid_angle(to.triangle, direction, met.distance);
+  if (!(cos > 0) || (by_ray && scene_.closest(spot.start, direction).triangle != to.triangle)) return {};
+  const double toward = scene_.by_solid_angle(to.triangle, direction, rays::length(apart));
   return {cos, std::max(toward, cos * area_[place] / kPi)};
+}
+
+// A few pairs of points tell how much light each place would send with nothing in the way; rays go where that is much.
+// With as many to all places, small bright ones that are seen from a part of the receiver alone would often be missed.
+BrightPlaces::Links BrightPlaces::links(std::size_t receiver, const std::vector<double>& squares,
+                                        const Sequence& sequence) const {
+  std::vector<double> open(kGroups);
+  for (std::size_t place = 0; place < kGroups; ++place) {
+    if (!(area_[place] * squares[place] > 0)) continue;
+    for (std::uint32_t k = 0; k < kLeastPairs; ++k)
+      open[place] += link(receiver, place, sequence, pair(place, k), false).moment();
+    open[place] = area_[place] * std::sqrt(squares[place] * open[place]);
+  }
+  const double sum = std::accumulate(open.begin(), open.end(), 0.0);
+  Links links;
+  for (std::size_t place = 0; place < kGroups; ++place) {
+    links.first.push_back(static_cast<std::uint32_t>(links.all.size()));
+    if (!(open[place] > 0)) continue;
+    const std::uint32_t pairs =
+        std::clamp(static_cast<std::uint32_t>(kRays * open[place] / sum), kLeastPairs, kMostPairs);
+    for (std::uint32_t k = 0; k < pairs; ++k)
+      links.all.push_back(link(receiver, place, sequence, pair(place, k), true));
+  }
+  links.first.push_back(static_cast<std::uint32_t>(links.all.size()));
+  return links;
 }
 
 // With shares s over places, in each of which points are drawn evenly by area, what a direction brings has the second
@@ -261,18 +304,16 @@ BrightPlaces::Link BrightPlaces::link(std::size_t receiver, std::size_t place, c
 // least; returns that of the cosine over it.
 double BrightPlaces::weigh(std::size_t receiver, const std::vector<double>& squares, std::uint64_t seed) {
   if (!(area_[receiver] > 0)) return 1;
-  const Sequence sequence(mixed(mixed(seed, 0xB3), receiver), kGroups * kPairs);
-  std::vector<Link> links(kGroups * kPairs);
+  const Sequence sequence(mixed(mixed(seed, 0xB3), receiver), kGroups * kMostPairs);
+  const Links links = this->links(receiver, squares, sequence);
   std::vector<double> shares(kGroups);
   double sum = 0;
   for (std::size_t place = 0; place < kGroups; ++place) {
-    if (!(area_[place] * squares[place] > 0)) continue;
     double moment = 0;
-    for (std::size_t k = place * kPairs; k < (place + 1) * kPairs; ++k) {
-      links[k] = link(receiver, place, sequence, static_cast<std::uint32_t>(k));
-      if (links[k].toward > 0) moment += std::pow(links[k].cos / links[k].toward, 2);
-    }
-    sum += shares[place] = area_[place] * std::sqrt(squares[place] * moment);
+    for (const Link& link : links.of(place)) moment += link.moment();
+    if (moment > 0)
+      sum += shares[place] =
+          area_[place] * std::sqrt(squares[place] * moment / static_cast<double>(links.of(place).size()));
   }
   if (!(sum > 0)) return 1;
   double up_to = 0;
@@ -282,12 +323,12 @@ double BrightPlaces::weigh(std::size_t receiver, const std::vector<double>& squa
     up_to += share;
     cumulative_[receiver * kGroups + place] = static_cast<float>(up_to);
     density_[receiver * kGroups + place] = static_cast<float>(density);
-    for (std::size_t k = place * kPairs; k < (place + 1) * kPairs; ++k) {
-      const auto& [cos, toward] = links[k];
+    const double pairs = static_cast<double>(links.of(place).size());
+    for (const auto& [cos, toward] : links.of(place)) {
       if (!(toward > 0)) continue;
       for (std::size_t c = 0; c < kChances.size(); ++c)
         moments[c] += squares[place] * area_[place] * cos * cos / toward /
-                      ((1 - kChances[c]) * cos / kPi + kChances[c] * density * toward);
+                      (pairs * ((1 - kChances[c]) * cos / kPi + kChances[c] * density * toward));
     }
   }
   const auto least = static_cast<std::size_t>(std::ranges::min_element(moments) - moments.begin());

@@ -64,13 +64,15 @@ class BrightPlaces {
  private:
   BrightPlaces(const rays::RayScene& scene, const Emitters& emitters);
   struct Link;
+  struct Links;
   std::vector<double> sent_squares(const Sent& sent, std::uint64_t seed) const;
   bool is_uneven(const std::vector<double>& squares) const;
   void group(const std::vector<double>& squares);
   std::vector<double> group_squares(const Sent& sent, std::uint64_t seed) const;
   double sent_square(const Sent& sent, std::uint32_t piece, const Sequence& sequence, std::uint32_t index) const;
   std::uint32_t drawn_piece(std::size_t group, double choice) const;
-  Link link(std::size_t receiver, std::size_t place, const Sequence& sequence, std::uint32_t index) const;
+  Link link(std::size_t receiver, std::size_t place, const Sequence& sequence, std::uint32_t index, bool by_ray) const;
+  Links links(std::size_t receiver, const std::vector<double>& squares, const Sequence& sequence) const;
   double weigh(std::size_t receiver, const std::vector<double>& squares, std::uint64_t seed);
 
   const rays::RayScene& scene_;

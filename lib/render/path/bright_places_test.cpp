@@ -143,8 +143,8 @@ Moments moments(const PathStage& stage, const Rays& through, int batches) {
   return moments;
 }
 
-// Mean and relative variance, by places and by lobes alone. The ratio of variances is 1.7 in the lounge and 3
-// behind the shade.
+// Mean and relative variance, by places and by lobes alone. The ratio of variances is 3.9 in the lounge and 13
+// behind the shade; with two rays from each group to each other it is 1.7 and 3.9.
 void expect_same_with_less_noise(PathStage& stage, const Rays& through, double times) {
   stage.build();
   const Moments by_lobes = moments(stage, through, 1500);
@@ -157,9 +157,49 @@ void expect_same_with_less_noise(PathStage& stage, const Rays& through, double t
 
 TEST(BrightPlaces, TheSameLightHasLessNoise) {
   Lounge lounge;
-  expect_same_with_less_noise(lounge, lounge.through, 1.2);
+  expect_same_with_less_noise(lounge, lounge.through, 2.5);
   ShadedLamp shaded;
-  expect_same_with_less_noise(shaded, shaded.through, 2);
+  expect_same_with_less_noise(shaded, shaded.through, 6);
+}
+
+// The bowls of the lounge's lamps are bright within, and the walls see that past their rims, from a part of each group
+// alone. Nearly all directions from walls and ceiling to lit points of the bowls are drawn toward places as well: along
+// the others light is met by luck only, as specks. They are 0.7 % here, and 8.5 % with two rays from each group to each
+// other, however bright it is.
+TEST(BrightPlaces, AreKnownWhereTheyAreSeenFromAPartOfAGroup) {
+  Lounge lounge;
+  const Transport& transport = lounge.build();
+  const rays::RayScene& scene = transport.rays();
+  const auto places = transport.find_bright_places(12, 1);
+  ASSERT_NE(places, nullptr);
+  const auto part = [&](std::uint32_t triangle) {
+    return lounge.mesh.parts[static_cast<std::size_t>(scene.part(triangle))].name;
+  };
+  TestNumbers next(6);
+  int seen = 0, known = 0;
+  for (std::uint32_t triangle = 0; triangle < scene.triangles(); ++triangle) {
+    if (part(triangle) != "Lamp_Bowls") continue;
+    for (int k = 0; k < 40; ++k) {
+      const double a = next(), b = next(), choice = next(), c = next(), d = next();
+      const auto u = static_cast<float>(next()), v = static_cast<float>(next());
+      const rays::Hit bowl{triangle, static_cast<float>(std::sqrt(a) * (1 - b)), static_cast<float>(std::sqrt(a) * b),
+                           0};
+      const rays::Spot from = scene.spot(bowl, {}, {0, -1, 0});
+      const EmitterSample light = transport.emitters().drawn(lit_point(from), choice, c, d);
+      if (!(light.pdf > 0) || scene.blocked(from.start, light.direction, 0.999F * light.distance)) continue;
+      const Float3 away = PaintedPoint::drawn_about(from.shading, 1, u, v);
+      const rays::Hit wall = scene.closest(from.start, away);
+      if (!wall.any() || part(wall.triangle) == "Lamp_Bowls" || part(wall.triangle) == "Lamps") continue;
+      const rays::Spot at = scene.spot(wall, from.start, away);
+      const rays::Hit back = scene.closest(at.start, -away);
+      if (back.triangle != triangle) continue;
+      const BrightPlaces::Receiver receiver = places->receiver(at.triangle, at.u, at.v, 1);
+      ++seen;
+      if (receiver.chance() > 0 && places->pdf(receiver, back, -away) > 0) ++known;
+    }
+  }
+  ASSERT_GT(seen, 1000);
+  EXPECT_LT(seen - known, 0.025 * seen);
 }
 
 // Two of the box's walls that shine evenly light all of it evenly.
