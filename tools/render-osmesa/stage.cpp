@@ -228,7 +228,8 @@ Result<void> take_path_below(const Options& options, const mesh::Mesh& mesh, Req
   return {};
 }
 
-// The light that rays meet, and that is summed. Prefiltered environments hold it in their mirror part, unless that was left out.
+// The light that rays meet, and that is summed. Prefiltered environments hold it in their mirror part, unless that was
+// left out.
 Result<void> set_rays(const Options& options, const Request& request, Stage& stage) {
   if (request.engine != nullptr && request.engine->traces_rays) return {};
   render::RaySetup& rays = stage.rays.emplace();

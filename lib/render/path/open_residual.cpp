@@ -25,7 +25,7 @@ constexpr std::size_t kMostSums = std::size_t{1} << 19, kMostSurfaces = 64;
 constexpr std::size_t kRowsAtOnce = 8, kSumsAtOnce = 16;
 
 int finer(int cells, double tolerance_de00) {
-  const double scale = std::clamp(std::sqrt(kUsual_de00 / tolerance_de00), 0.5, 8.0);
+  const double scale = std::clamp(std::sqrt(kUsual_de00 / tolerance_de00), 0.5, 2.0);
   return static_cast<int>(std::lround(cells * scale));
 }
 
@@ -86,7 +86,7 @@ Result<void> OpenResidual::load(const Scene& scene, const Effects& effects) {
   LobeColumns columns;
   for (const envmap::PrefilteredLobe& lobe : scene.env->lobes)
     if (lobe.exponent <= kWidestShared) columns.exponents.push_back(lobe.exponent);
-  if (effects.tolerance_de00 != tolerance_de00_ || columns != columns_ || surfaces_.size() > kMostSurfaces) {
+  if (effects.tolerance_de00 != tolerance_de00_ || columns != columns_) {
     tolerance_de00_ = effects.tolerance_de00, columns_ = columns;
     grid_ = ViewGrid(finer(kViews, tolerance_de00_), finer(kNormals, tolerance_de00_));
     light_ = std::make_unique<SummedLight>(*tree_, kOfSums * tolerance_de00_, columns_);
@@ -116,6 +116,7 @@ Result<void> OpenResidual::set_paints(const Scene& scene) {
     scene_.paints[part] =
         summed(scene, effects_, part, effects_.anisotropy && tilts[part].size() > 1, stretched[part]);
   wears_.clear(), wear_of_part_.clear();
+  if (surfaces_.size() > kMostSurfaces) surfaces_.clear();
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
     const paint::LobeFit& paint = scene_.paints[part];
     wear_of_part_.push_back(kNone);
@@ -147,7 +148,8 @@ std::vector<OpenResidual::Cell> OpenResidual::cells_of(const Gbuffer& seen) cons
       for (int x = 0; x < seen.width; ++x) {
         const Wear* wear = wear_of(seen.part(x, y));
         if (wear == nullptr) continue;
-        const Cell cell{static_cast<std::int32_t>(wear->surface), grid_.place(seen.normal(x, y), seen.to_viewer(x, y)).node};
+        const Cell cell{static_cast<std::int32_t>(wear->surface),
+                        grid_.place(seen.normal(x, y), seen.to_viewer(x, y)).node};
         if (cells.empty() || cells.back() != cell) cells.push_back(cell);
       }
     }

@@ -234,7 +234,8 @@ const PlanItem& sums_of(const Drawn& drawn) {
 
 TEST(OpenResidual, IsDrawnWhereMapsMissTheTolerance) {
   const World world(flakes());
-  const Drawn with = Draws(world).planned(world.scene, "auto"), without = Draws(world).planned(world.scene, "auto,-sums");
+  const Drawn with = Draws(world).planned(world.scene, "auto"),
+              without = Draws(world).planned(world.scene, "auto,-sums");
   EXPECT_EQ(sums_of(with).decision, Decision::kDrawn);
   EXPECT_GT(sums_of(with).de00_p95, kOfOpenLight * kTolerance_de00);
   EXPECT_GT(sums_of(with).cost_ms, 0);

@@ -74,7 +74,8 @@ ViewGrid::Place ViewGrid::place(const Vec3& normal, const Vec3& to_viewer) const
 }
 
 std::array<ViewGrid::Node, ViewGrid::kCorners> ViewGrid::corners(const Node& cell) const {
-  const auto row = static_cast<std::uint32_t>(nodes(views_)), row_of_normals = static_cast<std::uint32_t>(nodes(normals_));
+  const auto row = static_cast<std::uint32_t>(nodes(views_)),
+             row_of_normals = static_cast<std::uint32_t>(nodes(normals_));
   std::array<Node, kCorners> corners;
   for (std::uint32_t c = 0; c < kCorners; ++c)
     corners[c] = {cell.view + (c & 1U) + ((c >> 1) & 1U) * row,

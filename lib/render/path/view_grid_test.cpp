@@ -72,8 +72,8 @@ TEST(ViewGrid, FindsItsNodes) {
 }
 
 // Between nodes, lines err by an eighth of the second derivative times the square of the spacing: four times less with
-// twice as many cells, in the limit. The exponential bends by at most 15, and the mirror direction turns twice as far as
-// the normal: with 24 cells, of up to .15, normals err by .17 along each axis, and views of up to .17 by .05. The
+// twice as many cells, in the limit. The exponential bends by at most 15, and the mirror direction turns twice as far
+// as the normal: with 24 cells, of up to .15, normals err by .17 along each axis, and views of up to .17 by .05. The
 // control: cells that are too few tell hardly anything.
 TEST(ViewGrid, ErrsByTheSquareOfItsSpacing) {
   const double coarse = largest_error({6, 12}), fine = largest_error({12, 24});

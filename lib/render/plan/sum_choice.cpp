@@ -46,11 +46,11 @@ Result<SumChoice> sum_choice(const OpenTruth& truth, const std::vector<color::Rg
   PlanItem& item = choice.item;
   item.needed = true, item.de00_p95 = by_maps, item.cost_ms = std::numeric_limits<double>::quiet_NaN();
   const bool off = forced == std::optional(false) || (words.start == Start::kNone && !forced);
-  item.decision = off ? Decision::kForcedOff : Decision::kDropped;
+  item.decision = forced == std::optional(false) ? Decision::kForcedOff : Decision::kDropped;
   const double most = kSafety * request.tolerance_de00;
   if (off || (!forced && by_maps <= most)) return Result(std::move(choice));
   if (!OpenResidual::applies(effects) || lacks_what_sums_have(words)) {
-    item.reason += "; sums have the horizon and Fresnel's reflectance, which are left out";
+    item.reason += "; sums have the effects horizon and fresnel, which are not drawn";
     return Result(std::move(choice));
   }
   GONIO_TRY(residual.load(scene, effects));
