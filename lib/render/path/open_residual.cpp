@@ -42,8 +42,8 @@ void for_weights(paint::LobeFit& paint, const Visit& visit) {
 
 // What is summed of a paint.
 paint::LobeFit summed(const Scene& scene, const Effects& effects, std::size_t part, bool brushed, bool stretched) {
-  const bool covered = scene.layer != nullptr && (scene.layer->surface(static_cast<int>(part)).texture != nullptr ||
-                                                  is_mapped(scene, part));
+  const bool covered = scene.layer != nullptr &&
+                       (scene.layer->surface(static_cast<int>(part)).texture != nullptr || is_mapped(scene, part));
   if (brushed || covered || !scene.paints[part].tilts.empty()) return {};
   paint::LobeFit paint = with_effects(scene.paints[part], effects);
   const auto strip = [&](std::vector<paint::Lobe>& lobes) {
@@ -113,8 +113,7 @@ Result<void> OpenResidual::set_paints(const Scene& scene) {
   scene_ = scene;
   scene_.lights.clear(), scene_.layer = nullptr, scene_.panes.clear();
   for (std::size_t part = 0; part < scene.paints.size(); ++part)
-    scene_.paints[part] =
-        summed(scene, effects_, part, effects_.anisotropy && tilts[part].size() > 1, stretched[part]);
+    scene_.paints[part] = summed(scene, effects_, part, effects_.anisotropy && tilts[part].size() > 1, stretched[part]);
   wears_.clear(), wear_of_part_.clear();
   if (surfaces_.size() > kMostSurfaces) surfaces_.clear();
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
@@ -222,8 +221,7 @@ void OpenResidual::complete() {
     const Surface& surface = surfaces_[wear.surface];
     for (std::size_t slot = wear.residual.size() / 3; slot < surface.nodes.size(); ++slot, ++point) {
       const double cos_o = dot(points[point].normal, points[point].to_viewer);
-      const color::Rgb residual =
-          shown(wear.paint, &surface.sums[slot * floats()], cos_o) - by_maps[point];
+      const color::Rgb residual = shown(wear.paint, &surface.sums[slot * floats()], cos_o) - by_maps[point];
       for (int c = 0; c < 3; ++c) wear.residual.push_back(static_cast<float>(residual[c]));
     }
   }
@@ -276,8 +274,7 @@ std::vector<color::Rgb> OpenResidual::at(const std::vector<VisiblePoint>& points
   std::vector<Cell> cells;
   for (const VisiblePoint& point : points)
     if (const Wear* wear = wear_of(point.part); wear != nullptr)
-      cells.push_back(
-          {static_cast<std::int32_t>(wear->surface), grid_.place(point.normal, point.to_viewer).node});
+      cells.push_back({static_cast<std::int32_t>(wear->surface), grid_.place(point.normal, point.to_viewer).node});
   keep_once(cells);
   fill(cells);
   std::vector<color::Rgb> residual(points.size());

@@ -90,8 +90,8 @@ class OpenResidual {
   std::vector<Surface> surfaces_;
   std::vector<Wear> wears_;
   std::vector<std::int32_t> wear_of_part_;  // or kNone
-  Scene scene_;                // what is summed of it
-  Effects loaded_, effects_;   // those of the picture, and those of what is summed
+  Scene scene_;                             // what is summed of it
+  Effects loaded_, effects_;                // those of the picture, and those of what is summed
   CpuEngine engine_;
 };
 

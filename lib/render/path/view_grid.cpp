@@ -66,8 +66,8 @@ ViewGrid::Place ViewGrid::place(const Vec3& normal, const Vec3& to_viewer) const
   const double scale = longer > 0 ? radius / longer : 0;
   const int s = cell_of(scale * x, normals_, place.along[2]), t = cell_of(scale * y, normals_, place.along[3]);
   const std::size_t row = nodes(views_), row_of_normals = nodes(normals_);
-  place.node.view = static_cast<std::uint32_t>((number * row + static_cast<std::size_t>(b)) * row +
-                                               static_cast<std::size_t>(a));
+  place.node.view =
+      static_cast<std::uint32_t>((number * row + static_cast<std::size_t>(b)) * row + static_cast<std::size_t>(a));
   place.node.normal =
       static_cast<std::uint32_t>(static_cast<std::size_t>(t) * row_of_normals + static_cast<std::size_t>(s));
   return place;
