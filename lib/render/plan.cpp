@@ -472,7 +472,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   if (scene.env != nullptr && rays.texels != nullptr && !probe.empty() &&
       (asked == nullptr || asked->info().is_planned))
     open_truth.emplace(scene, all, probe, *rays.texels, request.white_luminance);
-  SumChoice sums = no_sums("no image light whose maps could be compared with it");
+  SumChoice sums = scene.env == nullptr ? no_sums("no image light") : unmeasured_sums(request);
   if (open_truth) {
     GONIO_ASSIGN(sums, sum_choice(*open_truth, prober.front_colors(everything), scene, all, gbuffers, request, words,
                                   *rays.residual));

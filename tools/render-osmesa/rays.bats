@@ -45,6 +45,25 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
   oiiotool before.png after.png --diff
 }
 
+@test "sums are drawn by name where no rays are traced, and a misspelled name is refused" {
+  shape="--mesh $TESTDATA/speed-shape.obj -p fitted.xml#silver_fine --env small.env.exr --size 64x40 --samples 1"
+  render-osmesa -q $shape --effects auto,-rays -o unnamed.png --report r.json
+  [ "$(of needed sums)" = false ]
+  [[ "$(of reason sums)" =~ "where sums are named" ]]
+  render-osmesa -q $shape --effects auto,-rays,-sums -o off.png --report r.json
+  [ "$(of decision sums)" = "forced off" ]
+  oiiotool unnamed.png off.png --diff
+  render-osmesa -q $shape --effects auto,-rays,+sums -o on.png --report r.json
+  [ "$(of decision sums)" = "forced on" ]
+  [[ "$(of reason sums)" =~ "sums over the environment" ]]
+  run oiiotool off.png on.png --diff
+  [ "$status" -ne 0 ]
+  run render-osmesa -q $shape --effects auto,+sum -o wrong.png
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ 'names "sum"' && "$output" =~ ", sums," ]]
+  [ ! -e wrong.png ]
+}
+
 @test "what is named is drawn until the noise is within half of the tolerance, whatever the maps err by" {
   render-osmesa -q $scene --effects auto,+rays --tolerance 6 -o out.exr --report r.json
   [ "$(of decision shadow)" = "forced on" ]

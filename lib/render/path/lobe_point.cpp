@@ -330,10 +330,6 @@ std::size_t start_of(int sequence, std::size_t points, std::uint64_t seed) {
   return order[step];
 }
 
-}  // namespace
-
-namespace {
-
 // The estimates of sequences that start from several points. Where each point has at least two they scatter about the
 // means of their points, since what points differ by is no random error of a mean that all of them are part of.
 class Scatter {

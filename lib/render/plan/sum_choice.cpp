@@ -36,6 +36,14 @@ SumChoice no_sums(const std::string& reason) {
   return choice;
 }
 
+SumChoice unmeasured_sums(const PlanRequest& request) {
+  SumChoice choice = no_sums("what maps miss is measured where rays are traced, or where sums are named with a plus");
+  PlanItem& item = choice.item;
+  item.de00_p95 = item.cost_ms = std::numeric_limits<double>::quiet_NaN();
+  if (sums_forced(request.effects) == std::optional(false)) item.needed = true, item.decision = Decision::kForcedOff;
+  return choice;
+}
+
 Result<SumChoice> sum_choice(const OpenTruth& truth, const std::vector<color::Rgb>& planned, const Scene& scene,
                              const Effects& effects, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
                              const PlanRequest& request, const Words& words, OpenResidual& residual) {

@@ -21,8 +21,10 @@ struct SumChoice {
   double open_de00 = 0;  // what the picture then misses of the open light, at 95 of 100 points
 };
 
-// Where there is nothing to sum, or nothing to sum by.
+// Where there is nothing to sum.
 SumChoice no_sums(const std::string& reason);
+// Where the light is not at hand that maps would be compared with.
+SumChoice unmeasured_sums(const PlanRequest& request);
 
 // Tries the sums at the points of the truth. `planned` has one radiance for each of all points, drawn with these
 // effects; `residual` sums the same environment as the truth.
