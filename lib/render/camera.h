@@ -31,6 +31,8 @@ struct Rays {
   Vec3 corner, right, down;
   Vec3 eye = {};  // where they begin
   Vec3 direction(double x, double y) const { return normalized(corner + x * right + y * down); }
+  // These rays with the sampled point of every pixel moved by dx, dy (pixels).
+  Rays shifted(double dx, double dy) const { return {corner + dx * right + dy * down, right, down, eye}; }
 };
 // Error (usage): the eye is the target, or the fov is outside (0,180). An up vector along the line of sight is
 // replaced.

@@ -230,9 +230,7 @@ std::shared_ptr<const Gbuffer> Renderer::State::gbuffer(int sample) {
     drawn.read(*g, with_triangles);
   } else {
     const auto [x, y] = shift_of(sample, view->samples);
-    Rays shifted = rays;
-    shifted.corner += x * rays.right + y * rays.down;
-    *g = mesh_gbuffer(*traced, shifted, view->width, view->height);
+    *g = mesh_gbuffer(*traced, rays.shifted(x, y), view->width, view->height);
     rasterization_ms = 1000 * clock.elapsed_s();
   }
   return g;

@@ -38,9 +38,7 @@ class Tracing {
     t.white_luminance = request.white_luminance, t.bounces = request.bounces, t.samples = request.pixel_samples;
     for (const auto& [dx, dy] : sample_shifts(request.pixel_samples)) {
       if (request.pixel_samples == 1) break;
-      Rays shifted = g.rays;
-      shifted.corner += dx * shifted.right + dy * shifted.down;
-      samples_.push_back(visible_surface(transport.rays(), shifted, g.width, g.height));
+      samples_.push_back(visible_surface(transport.rays(), g.rays.shifted(dx, dy), g.width, g.height));
     }
     number_.assign(surface.hits.size(), -1);
     for (std::size_t i = 0; i < surface.hits.size(); ++i) {

@@ -214,11 +214,8 @@ TEST(LobeTransport, APixelOfSeveralSamplesIsTheirMean) {
   const Gbuffer& g = stage.surface.gbuffer;
   const auto weights = weights_of(stage.columns, paint);
   std::vector<VisibleSurface> samples;
-  for (const auto& [dx, dy] : sample_shifts(4)) {
-    Rays shifted = g.rays;
-    shifted.corner += dx * shifted.right + dy * shifted.down;
-    samples.push_back(visible_surface(stage.path.transport->rays(), shifted, g.width, g.height));
-  }
+  for (const auto& [dx, dy] : sample_shifts(4))
+    samples.push_back(visible_surface(stage.path.transport->rays(), g.rays.shifted(dx, dy), g.width, g.height));
   for (const bool with_maps : {true, false}) {
     std::array<std::vector<double>, 2> off;  // of one sample and of four
     std::array<color::Rgb, 2> mean_ours;

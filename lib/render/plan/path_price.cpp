@@ -58,8 +58,7 @@ VisibleSurface window_about(const Transport& transport, const ProbePixel& at, in
   const int width = std::min(kSide, g.width), height = std::min(kSide, g.height);
   const int left = std::clamp(at.x - width / 2, 0, g.width - width),
             top = std::clamp(at.y - height / 2, 0, g.height - height);
-  Rays rays = g.rays;
-  rays.corner += left * rays.right + top * rays.down;
+  const Rays rays = g.rays.shifted(left, top);
   if (pixel_samples == 1) return visible_surface(transport.eye(), rays, width, height);
   VisibleSurface surface;
   surface.gbuffer.width = width, surface.gbuffer.height = height, surface.gbuffer.rays = rays;

@@ -13,6 +13,8 @@ namespace {
 
 // The same allowance for the choice of points as for other effects.
 constexpr double kSafety = 0.8;
+// Sums that leave more than this part of what maps miss are not worth their time: it is sharp lobes that miss it.
+constexpr double kMostLeft = 0.8;
 
 // The sums have what these effects draw, so that a picture without one of them would show it nevertheless.
 bool lacks_what_sums_have(const Words& words) {
@@ -70,12 +72,13 @@ Result<SumChoice> sum_choice(const OpenTruth& truth, const std::vector<color::Rg
   const double sums = missing_sums(residual, gbuffers) + made;
   item.cost_ms = sum_ms * sums;
   item.de00_p95 = truth.change(planned, more);
-  item.reason += fmt::format(", and by {:.2g} with {:.0f} sums over the environment", truth.error(planned, more), sums);
-  item.on = forced || item.de00_p95 > most;
+  const double by_sums = truth.error(planned, more);
+  item.reason += fmt::format(", and by {:.2g} with {:.0f} sums over the environment", by_sums, sums);
+  item.on = forced || by_sums <= kMostLeft * by_maps;
   item.decision = forced ? Decision::kForcedOn : item.on ? Decision::kDrawn : Decision::kDropped;
   if (item.on && !forced && request.budget_ms > 0 && item.cost_ms > request.budget_ms)
     item.on = false, item.decision = Decision::kOverBudget;
-  if (item.on) choice.open_de00 = truth.error(planned, more);
+  if (item.on) choice.open_de00 = by_sums;
   return Result(std::move(choice));
 }
 
