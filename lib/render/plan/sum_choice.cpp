@@ -13,8 +13,8 @@ namespace {
 
 // The same allowance for the choice of points as for other effects.
 constexpr double kSafety = 0.8;
-// Sums that leave more than this part of what maps miss are not worth their time: it is sharp lobes that miss it. Most of
-// their gain lies below the 95th percentile, so that this is near 1.
+// Sums that leave more than this part of what maps miss are not worth their time: it is sharp lobes that miss it. Most
+// of their gain lies below the 95th percentile, so that this is near 1.
 constexpr double kMostLeft = 0.95;
 
 // The sums have what these effects draw, so that a picture without one of them would show it nevertheless.
