@@ -526,10 +526,11 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
     plan.effects.sums = true, plan.sums_ms = sums.item.cost_ms;
     GONIO_TRY(rays.residual->load(scene, plan.effects));
   }
-  if (open_truth)
-    plan.open_de00_p95 =
-        open_truth->error(prober.front_colors(choice.on), sums.item.on ? rays.residual->at(open_truth->points())
-                                                                       : std::vector<color::Rgb>());
+  if (open_truth) {
+    const std::vector<color::Rgb> more =
+        sums.item.on ? rays.residual->at(open_truth->points()) : std::vector<color::Rgb>();
+    plan.open_de00_p95 = open_truth->error(prober.front_colors(choice.on), more).p95;
+  }
   if (!has_maps)
     plan.open_de00_p95 = scene.env != nullptr ? request.tolerance_de00 : plan.de00_p95 - by_rays.left_out_de00_p95;
   if (rays.transport != nullptr && plan.open_de00_p95)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "render/exact.h"
 #include "render/integral/integral_engine.h"
@@ -22,12 +23,14 @@ OpenTruth::OpenTruth(const Scene& scene, const Effects& all, const std::vector<V
   exact_ = exact_radiance(points_, scene, all, Surroundings(texels, spread_for(kOfTolerance * all.tolerance_de00)));
 }
 
-double OpenTruth::error(const std::vector<color::Rgb>& planned, const std::vector<color::Rgb>& more) const {
+Missed OpenTruth::error(const std::vector<color::Rgb>& planned, const std::vector<color::Rgb>& more) const {
   std::vector<double> de00;
   for (std::size_t i = 0; i < exact_.size(); ++i)
     de00.push_back(
         seen_difference(more.empty() ? planned[i * step_] : planned[i * step_] + more[i], exact_[i], white_));
-  return percentile_95(std::move(de00));
+  const double mean =
+      std::reduce(de00.begin(), de00.end()) / static_cast<double>(std::max<std::size_t>(1, de00.size()));
+  return {mean, percentile_95(std::move(de00))};
 }
 
 double OpenTruth::change(const std::vector<color::Rgb>& planned, const std::vector<color::Rgb>& more) const {

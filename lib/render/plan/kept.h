@@ -12,6 +12,11 @@
 
 namespace goniochrome::render {
 
+// Color differences at some points, in units of CIEDE2000.
+struct Missed {
+  double mean = 0, p95 = 0;
+};
+
 // The exact sum of the open light at some points.
 class OpenTruth {
  public:
@@ -20,10 +25,10 @@ class OpenTruth {
             const envmap::BlockTree& texels, double white);
   // Those at which it was summed.
   const std::vector<VisiblePoint>& points() const { return points_; }
-  // The 95th percentile of what they miss of it; `planned` has one radiance for each of all points. `more` has what is
-  // added to it at points(); empty: nothing.
-  double error(const std::vector<color::Rgb>& planned, const std::vector<color::Rgb>& more = {}) const;
-  // The same of what is changed by adding that.
+  // What they miss of it; `planned` has one radiance for each of all points. `more` has what is added to it at
+  // points(); empty: nothing.
+  Missed error(const std::vector<color::Rgb>& planned, const std::vector<color::Rgb>& more = {}) const;
+  // The 95th percentile of what is changed by adding that.
   double change(const std::vector<color::Rgb>& planned, const std::vector<color::Rgb>& more) const;
   // The same of the difference to another truth of the same points.
   double difference(const OpenTruth& other) const;

@@ -13,9 +13,15 @@ namespace {
 
 // The same allowance for the choice of points as for other effects.
 constexpr double kSafety = 0.8;
-// Sums that leave more than this part of what maps miss are not worth their time: it is sharp lobes that miss it. Most
-// of their gain lies below the 95th percentile, so that this is near 1.
+// Sums that leave more than this part of what maps miss in the mean are not worth their time: it is sharp lobes that
+// miss it.
 constexpr double kMostLeft = 0.95;
+
+// Sharp lobes alone may decide the 95th percentile, so that the mean tells what sums are worth. The tolerance is of the
+// 95th percentile, which may not grow by more than the choice of points may make it.
+bool worth_it(const Missed& by_maps, const Missed& by_sums) {
+  return by_sums.mean <= kMostLeft * by_maps.mean && kMostLeft * by_sums.p95 <= by_maps.p95;
+}
 
 // The sums have what these effects draw, so that a picture without one of them would show it nevertheless.
 bool lacks_what_sums_have(const Words& words) {
@@ -50,16 +56,17 @@ SumChoice unmeasured_sums(const PlanRequest& request) {
 Result<SumChoice> sum_choice(const OpenTruth& truth, const std::vector<color::Rgb>& planned, const Scene& scene,
                              const Effects& effects, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
                              const PlanRequest& request, const Words& words, OpenResidual& residual) {
-  const double by_maps = truth.error(planned);
+  const Missed by_maps = truth.error(planned);
   const std::optional<bool> forced = sums_forced(request.effects);
-  SumChoice choice = no_sums(fmt::format("prefiltered maps miss the open light by dE00 {:.2g} (p95)", by_maps));
-  choice.open_de00 = by_maps;
+  SumChoice choice = no_sums(
+      fmt::format("prefiltered maps miss the open light by dE00 {:.2g} (p95; mean {:.2g})", by_maps.p95, by_maps.mean));
+  choice.open_de00 = by_maps.p95;
   PlanItem& item = choice.item;
-  item.needed = true, item.de00_p95 = by_maps, item.cost_ms = std::numeric_limits<double>::quiet_NaN();
+  item.needed = true, item.de00_p95 = by_maps.p95, item.cost_ms = std::numeric_limits<double>::quiet_NaN();
   const bool off = forced == std::optional(false) || (words.start == Start::kNone && !forced);
   item.decision = forced == std::optional(false) ? Decision::kForcedOff : Decision::kDropped;
   const double most = kSafety * request.tolerance_de00;
-  if (off || (!forced && by_maps <= most)) return Result(std::move(choice));
+  if (off || (!forced && by_maps.p95 <= most)) return Result(std::move(choice));
   if (!OpenResidual::applies(effects) || lacks_what_sums_have(words)) {
     item.reason += "; sums have the effects horizon and fresnel, which are not drawn";
     return Result(std::move(choice));
@@ -73,13 +80,14 @@ Result<SumChoice> sum_choice(const OpenTruth& truth, const std::vector<color::Rg
   const double sums = missing_sums(residual, gbuffers) + made;
   item.cost_ms = sum_ms * sums;
   item.de00_p95 = truth.change(planned, more);
-  const double by_sums = truth.error(planned, more);
-  item.reason += fmt::format(", and by {:.2g} with {:.0f} sums over the environment", by_sums, sums);
-  item.on = forced || by_sums <= kMostLeft * by_maps;
+  const Missed by_sums = truth.error(planned, more);
+  item.reason +=
+      fmt::format(", and by {:.2g} ({:.2g}) with {:.0f} sums over the environment", by_sums.p95, by_sums.mean, sums);
+  item.on = forced || worth_it(by_maps, by_sums);
   item.decision = forced ? Decision::kForcedOn : item.on ? Decision::kDrawn : Decision::kDropped;
   if (item.on && !forced && request.budget_ms > 0 && item.cost_ms > request.budget_ms)
     item.on = false, item.decision = Decision::kOverBudget;
-  if (item.on) choice.open_de00 = by_sums;
+  if (item.on) choice.open_de00 = by_sums.p95;
   return Result(std::move(choice));
 }
 
