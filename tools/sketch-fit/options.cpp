@@ -93,9 +93,9 @@ void add_report(cli::ToolSpec& spec) {
       {"extrapolated_deg[]", "those of the angles that no pixel shows"},
       {"regions_de00[]",
        "by how much the colors at the export angles may be off where the picture has shadows or light that the body "
-       "sends to itself and the buffers have no transport: four standard errors, told by how far regions of the "
-       "picture "
-       "disagree, CIEDE2000; else empty"},
+       "sends to itself and the buffers have no transport, CIEDE2000: four standard errors, told by how far regions of "
+       "the picture disagree, or two by how far what faces up and what faces down does, whichever is more; else "
+       "empty"},
       {"unsure[]: angle_deg, de00, reason",
        "other angles whose color the picture leaves open, with the CIEDE2000 difference by which it may be off, or "
        "null"},

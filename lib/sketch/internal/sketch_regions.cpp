@@ -11,12 +11,18 @@ namespace goniochrome::sketch {
 
 namespace {
 
-// The numbers of the pixels in eight parts of the picture that have equally many: halves by their column, each of which
-// is quartered by its rows.
-std::vector<std::vector<std::size_t>> regions_of(const std::vector<std::uint32_t>& places, int width) {
-  constexpr std::size_t kColumns = 2, kRows = 4;
-  std::vector<std::size_t> order(places.size());
+std::vector<std::size_t> all_of(std::size_t count) {
+  std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+
+}  // namespace
+
+// Halves by their column, each of which is quartered by its rows.
+Regions regions_of_places(const std::vector<std::uint32_t>& places, int width) {
+  constexpr std::size_t kColumns = 2, kRows = 4;
+  std::vector<std::size_t> order = all_of(places.size());
   const auto part = [&](std::size_t from, std::size_t to) {
     return std::ranges::subrange(order.begin() + static_cast<std::ptrdiff_t>(from),
                                  order.begin() + static_cast<std::ptrdiff_t>(to));
@@ -24,7 +30,7 @@ std::vector<std::vector<std::size_t>> regions_of(const std::vector<std::uint32_t
   const auto column = [&](std::size_t i) { return static_cast<int>(places[i]) % width; };
   const auto row = [&](std::size_t i) { return static_cast<int>(places[i]) / width; };
   std::ranges::stable_sort(order, {}, column);
-  std::vector<std::vector<std::size_t>> regions;
+  Regions regions;
   for (std::size_t c = 0; c < kColumns; ++c) {
     const std::size_t first = c * order.size() / kColumns, count = (c + 1) * order.size() / kColumns - first;
     std::ranges::stable_sort(part(first, first + count), {}, row);
@@ -36,11 +42,15 @@ std::vector<std::vector<std::size_t>> regions_of(const std::vector<std::uint32_t
   return regions;
 }
 
-}  // namespace
+Regions halves_by_height(const std::vector<double>& up) {
+  std::vector<std::size_t> order = all_of(up.size());
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return up[i]; });
+  const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+  return {{order.begin(), middle}, {middle, order.end()}};
+}
 
-std::vector<PaintWeights> without_each_region(const LobeSearch& search, const FoundPaint& found,
-                                              const std::vector<std::uint32_t>& places, int width) {
-  const auto regions = regions_of(places, width);
+std::vector<PaintWeights> without_each_region(const LobeSearch& search, const FoundPaint& found, const Regions& regions,
+                                              LobeSearch::Gloss gloss) {
   std::vector<PaintWeights> without(regions.size());
   parallel_for(without.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t left_out = begin; left_out < end; ++left_out) {
@@ -48,7 +58,7 @@ std::vector<PaintWeights> without_each_region(const LobeSearch& search, const Fo
       for (std::size_t r = 0; r < regions.size(); ++r)
         if (r != left_out) rest.insert(rest.end(), regions[r].begin(), regions[r].end());
       std::ranges::sort(rest);
-      without[left_out] = search.in_part(found, rest).weights;
+      without[left_out] = search.in_part(found, rest, gloss).weights;
     }
   });
   return without;

@@ -9,10 +9,19 @@
 
 namespace goniochrome::sketch {
 
-// The paints that are found without one of eight regions each, from one that was found in all of them. The samples of
-// the search are the pixels at `places` of a picture of that width.
-std::vector<PaintWeights> without_each_region(const LobeSearch& search, const FoundPaint& found,
-                                              const std::vector<std::uint32_t>& places, int width);
+// The numbers of the samples in each region.
+using Regions = std::vector<std::vector<std::size_t>>;
+
+// Eight regions of equally many samples, which are the pixels at `places` of a picture of that width.
+Regions regions_of_places(const std::vector<std::uint32_t>& places, int width);
+
+// Two: the samples that face down more, or up less, than the others, and the others. `up` is the vertical component of
+// the normal of each.
+Regions halves_by_height(const std::vector<double>& up);
+
+// The paints that are found without one region each, from one that was found in all of them.
+std::vector<PaintWeights> without_each_region(const LobeSearch& search, const FoundPaint& found, const Regions& regions,
+                                              LobeSearch::Gloss gloss);
 
 // The standard error of a paint found at each export angle, CIEDE2000, by the jackknife [Miller1974] of the paints that
 // are found without one region each.

@@ -38,8 +38,15 @@ TEST(SketchRegions, TheJackknifeIsThatByHand) {
   EXPECT_EQ(apart_by_regions(one_lobe(), found, {found, found}, paint::kNoCoat)[0], 0);
 }
 
-// A picture whose lower half gets this part of the light that the search knows. Every pixel sees its own light.
-double told(double lit) {
+struct Told {
+  double places = 0, halves = 0;  // standard errors at 45 deg
+  double off = 0;                 // by how much the paint found is
+};
+
+// A picture of which a half gets this part of the light that the search knows: its lower half, or what faces down,
+// which is spread evenly over it. Every pixel sees its own light.
+enum class Half { kLower, kFacesDown };
+Told told(double lit, Half half = Half::kLower) {
   constexpr int kSide = 32;
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -49,6 +56,7 @@ double told(double lit) {
   SearchSamples samples;
   samples.columns = search_columns(sketch_scene::basis());
   std::vector<std::uint32_t> places;
+  std::vector<double> up;
   for (int i = 0; i < kSide * kSide; ++i) {
     for (std::size_t k = 0; k < samples.columns; ++k) {
       const bool is_mirror = k + 1 == samples.columns;
@@ -58,28 +66,40 @@ double told(double lit) {
       samples.light.push_back((0.3 + 0.7 * unit(random)) * whole * Vec3{1, 1, 1});
     }
     const color::Rgb all = shown_light(samples.columns_of(samples.size()), paint.all, {});
-    samples.seen.push_back((i < kSide * kSide / 2 ? 1 : lit) * all);
+    up.push_back(2 * unit(random) - 1);
+    samples.seen.push_back(((half == Half::kLower ? i < kSide * kSide / 2 : up.back() > 0) ? 1 : lit) * all);
     samples.importance.push_back(1);
     places.push_back(static_cast<std::uint32_t>(i));
   }
   const LobeSearch search(fitters, samples);
   const FoundPaint found = search.find(search);
-  const auto apart = apart_by_regions(sketch_scene::basis(), found.weights,
-                                      without_each_region(search, found, places, kSide), paint::kNoCoat);
+  const auto apart = [&](const Regions& regions, LobeSearch::Gloss gloss) {
+    const auto without = without_each_region(search, found, regions, gloss);
+    return apart_by_regions(sketch_scene::basis(), found.weights, without, paint::kNoCoat)[2];
+  };
   const color::Lab at_45 = instrument_lab(sketch_scene::basis(), found.weights, paint::kNoCoat, 45);
-  EXPECT_LE(color::delta_e_2000(at_45, instrument_lab(sketch_scene::basis(), paint, paint::kNoCoat, 45)),
-            4 * apart[2] + 0.02)
-      << lit;
-  return apart[2];
+  return {apart(regions_of_places(places, kSide), LobeSearch::Gloss::kFound),
+          apart(halves_by_height(up), LobeSearch::Gloss::kAnew),
+          color::delta_e_2000(at_45, instrument_lab(sketch_scene::basis(), paint, paint::kNoCoat, 45))};
 }
 
 // What is found in a picture with a shadow is off by no more than four standard errors, which grow with the shadow. The
 // control is the picture without one, whose regions agree.
 TEST(SketchRegions, AShadowOnOneHalfIsTold) {
-  const double none = told(1), light = told(0.9), deep = told(0.6);
-  EXPECT_LT(none, 0.02);
-  EXPECT_GT(light, 0.1);
-  EXPECT_GT(deep, light);
+  const Told none = told(1), light = told(0.9), deep = told(0.6);
+  EXPECT_LT(none.places, 0.02);
+  EXPECT_GT(light.places, 0.1);
+  EXPECT_GT(deep.places, light.places);
+  for (const Told& one : {none, light, deep}) EXPECT_LE(one.off, 4 * one.places + 0.02);
+}
+
+// A floor darkens what faces down, of which every region of the picture has as much. The control is the regions, four
+// of whose standard errors are less than what the paint is off by where little light is taken away.
+TEST(SketchRegions, WhatAllRegionsShareIsToldByTheWayTheyFace) {
+  const Told none = told(1, Half::kFacesDown), light = told(0.9, Half::kFacesDown), deep = told(0.6, Half::kFacesDown);
+  EXPECT_LT(none.halves, 0.02);
+  for (const Told& one : {light, deep}) EXPECT_LE(one.off, 2 * one.halves);
+  EXPECT_GT(light.off, 4 * light.places);
 }
 
 }  // namespace

@@ -255,14 +255,17 @@ FoundPaint LobeSearch::find(const LobeSearch& first) const {
   return {{numbers_of(lobes, paint::kExportAngles_deg, free.gloss_60_gu), free.cost, 0, 0, apart}, {free.weights}};
 }
 
-FoundPaint LobeSearch::in_part(const FoundPaint& found, const std::vector<std::size_t>& samples) const {
+FoundPaint LobeSearch::in_part(const FoundPaint& found, const std::vector<std::size_t>& samples, Gloss gloss) const {
   const LobeSearch part(fitters_, samples_.part(samples));
   FoundPaint other = found;
   if (found.fitter != nullptr) {
     other.search = part.run(*found.fitter, parameters_of(found.search.values));
     other.weights = part.weights(*found.fitter, other.search.values);
   } else {
-    other.weights = {part.free_lobes().refined({found.weights.all, found.search.values.back(), 0}).weights};
+    const FreeLobeFit free = part.free_lobes();
+    const FreeLobes least =
+        gloss == Gloss::kAnew ? free.find() : free.refined({found.weights.all, found.search.values.back(), 0});
+    other.weights = {least.weights};
   }
   return other;
 }

@@ -53,8 +53,10 @@ class LobeSearch {
   FoundPaint find_plain(const LobeSearch& first) const;
 
   // What a part of the samples, by their numbers, shows of a paint that was found in all of them: the nearest paint of
-  // as many numbers that explains these.
-  FoundPaint in_part(const FoundPaint& found, const std::vector<std::size_t>& samples) const;
+  // as many numbers that explains these. Free lobes have the gloss found, or that which these samples show, which may
+  // be another one altogether.
+  enum class Gloss { kFound, kAnew };
+  FoundPaint in_part(const FoundPaint& found, const std::vector<std::size_t>& samples, Gloss gloss) const;
 
   // Lobes with the gloss of a paint found, and with others whose cost is at most a part more: free flake weights that
   // are refined from those found. The first one has the gloss found.
