@@ -15,8 +15,8 @@ using Regions = std::vector<std::vector<std::size_t>>;
 // Eight regions of equally many samples, which are the pixels at `places` of a picture of that width.
 Regions regions_of_places(const std::vector<std::uint32_t>& places, int width);
 
-// Two: the samples that face down more, or up less, than the others, and the others. `up` is the vertical component of
-// the normal of each.
+// Two: the half of the samples whose normals point down most, or up least, and the other half. `up` has the vertical
+// component of each normal.
 Regions halves_by_height(const std::vector<double>& up);
 
 // The paints that are found without one region each, from one that was found in all of them.
