@@ -35,8 +35,6 @@ constexpr std::size_t kMostPixels = 6000;    // of an environment's picture, loo
                                              // less than 0.05 dE
 constexpr std::size_t kFirstPixels = 1000;   // and on the way to it
 constexpr std::size_t kRegionPixels = 2000;  // where the paints of regions are compared
-constexpr double kRegionErrors = 4;          // standard errors; what regions share counts as much as what they do not
-constexpr double kHalfErrors = 2;            // of halves by height, which share less
 constexpr std::size_t kFewestPixels = 30;
 
 // How well a paint explains the pixels: RMS and median of the differences, and all of them where asked for.
@@ -488,28 +486,20 @@ double gloss_of_index(const SketchInput& input, const SketchPixels& pixels, cons
   return std::min(100.0, base + *brdf::smooth_gloss(60, brdf::coat_index_of_mirror(brighter, cosine)));
 }
 
-// How far light that the search does not know may have led: no two regions of a picture have as much of it, so that
-// they disagree about the paint. Those that lie beside each other may share the light of a floor, of which what faces
-// up has little.
+// How far light that the search does not know may have led.
 void take_regions(const SketchInput& input, const std::vector<std::uint32_t>& used, const SketchLight& light,
                   const SearchFitters& fitters, const FoundPaint& found, SketchFit& fit) {
   const std::size_t step = std::max<std::size_t>(1, used.size() / kRegionPixels);
   std::vector<std::uint32_t> places;
   for (std::size_t i = 0; i < used.size(); i += step) places.push_back(used[i]);
   const LobeSearch search(fitters, samples_of(input, places, light, places.size()));
-  const auto apart = [&](const Regions& regions, LobeSearch::Gloss gloss) {
-    return apart_by_regions(light.basis, found.weights, without_each_region(search, found, regions, gloss),
-                            light.coat_index);
-  };
   const image::AovFile& buffers = *input.buffers;
   const int normal_y = *buffers.channel("normal.Y");
   std::vector<double> up;
   for (const std::uint32_t place : places)
     up.push_back(buffers.image.data[static_cast<std::size_t>(place) * buffers.image.channels + normal_y]);
-  fit.regions_de00 = apart(regions_of_places(places, buffers.image.width), LobeSearch::Gloss::kFound);
-  const std::vector<double> halves = apart(halves_by_height(up), LobeSearch::Gloss::kAnew);
-  for (std::size_t i = 0; i < halves.size(); ++i)
-    fit.regions_de00[i] = std::max(kRegionErrors * fit.regions_de00[i], kHalfErrors * halves[i]);
+  fit.regions_de00 = told_by_regions(search, found, light.basis, light.coat_index,
+                                     regions_of_places(places, buffers.image.width), halves_by_height(up));
 }
 
 SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,

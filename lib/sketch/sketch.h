@@ -51,7 +51,7 @@ struct SketchFit {
   double rms_de76 = 0, median_de76 = 0;  // edited picture against the paint found, relative to white
   double seen_from_deg = 0, seen_to_deg = 0;
   // By how much the paints differ that regions of the picture show, where it was drawn in light that the search does
-  // not know: at the export angles, four standard errors, CIEDE2000.
+  // not know: at the export angles, CIEDE2000, as told_by_regions() has it.
   std::vector<double> regions_de00;
   bool by_views = false;            // the paint found has weights for several views
   std::vector<color::Rgb> weights;  // of the lobes found, in the order of search_columns(); none of a point light

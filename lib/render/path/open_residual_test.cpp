@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <random>
 
 #include "base/parallel.h"
+#include "math/statistics.h"
 #include "prefilter/prefilter.h"
 #include "render/exact.h"
 #include "render/integral/integral_engine.h"
@@ -89,9 +89,6 @@ struct World {
 struct Errors {
   double maps = 0, summed = 0, maps_mean = 0, summed_mean = 0;
 };
-double mean_of(const std::vector<double>& values) {
-  return std::reduce(values.begin(), values.end()) / static_cast<double>(values.size());
-}
 Errors errors_of(const World& world, double tolerance_de00 = 0.5) {
   const Effects effects = world.effects(tolerance_de00);
   const std::vector<VisiblePoint> points = probe_points({world.seen()}, 200);
@@ -111,7 +108,7 @@ Errors errors_of(const World& world, double tolerance_de00 = 0.5) {
     by_maps.push_back(seen_difference(drawn[i], exact[i], white));
     summed.push_back(seen_difference(drawn[i] + more[i], exact[i], white));
   }
-  const double maps_mean = mean_of(by_maps), summed_mean = mean_of(summed);
+  const double maps_mean = math::mean(by_maps), summed_mean = math::mean(summed);
   return {percentile_95(std::move(by_maps)), percentile_95(std::move(summed)), maps_mean, summed_mean};
 }
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "math/statistics.h"
 #include "render/exact.h"
 #include "render/integral/integral_engine.h"
 #include "render/internal/seen.h"
@@ -28,8 +28,7 @@ Missed OpenTruth::error(const std::vector<color::Rgb>& planned, const std::vecto
   for (std::size_t i = 0; i < exact_.size(); ++i)
     de00.push_back(
         seen_difference(more.empty() ? planned[i * step_] : planned[i * step_] + more[i], exact_[i], white_));
-  const double mean =
-      std::reduce(de00.begin(), de00.end()) / static_cast<double>(std::max<std::size_t>(1, de00.size()));
+  const double mean = math::mean(de00);
   return {mean, percentile_95(std::move(de00))};
 }
 

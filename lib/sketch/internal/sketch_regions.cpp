@@ -11,6 +11,10 @@ namespace goniochrome::sketch {
 
 namespace {
 
+constexpr double kRegionErrors = 4;  // standard errors; what regions share counts as much as what they do not
+constexpr double kHalfErrors = 2;    // of halves by height, which share less
+
+// The numbers from 0.
 std::vector<std::size_t> all_of(std::size_t count) {
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), 0);
@@ -78,6 +82,17 @@ std::vector<double> apart_by_regions(const formats::Basis& basis, const PaintWei
     apart.push_back(std::sqrt((count - 1) / count * squares));
   }
   return apart;
+}
+
+std::vector<double> told_by_regions(const LobeSearch& search, const FoundPaint& found, const formats::Basis& basis,
+                                    double coat_index, const Regions& places, const Regions& halves) {
+  const auto apart = [&](const Regions& regions, LobeSearch::Gloss gloss) {
+    return apart_by_regions(basis, found.weights, without_each_region(search, found, regions, gloss), coat_index);
+  };
+  std::vector<double> told = apart(places, LobeSearch::Gloss::kFound);
+  const std::vector<double> by_halves = apart(halves, LobeSearch::Gloss::kAnew);
+  for (std::size_t i = 0; i < told.size(); ++i) told[i] = std::max(kRegionErrors * told[i], kHalfErrors * by_halves[i]);
+  return told;
 }
 
 }  // namespace goniochrome::sketch

@@ -28,4 +28,11 @@ std::vector<PaintWeights> without_each_region(const LobeSearch& search, const Fo
 std::vector<double> apart_by_regions(const formats::Basis& basis, const PaintWeights& found,
                                      const std::vector<PaintWeights>& without, double coat_index);
 
+// By how much the paint may be off at each export angle, CIEDE2000, because of light that the search does not know. No
+// two regions of a picture have as much of it, so that they disagree about the paint. They may share the light that a
+// floor takes away, of which the half that faces up has little: four standard errors by places, or two by halves, where
+// these are more.
+std::vector<double> told_by_regions(const LobeSearch& search, const FoundPaint& found, const formats::Basis& basis,
+                                    double coat_index, const Regions& places, const Regions& halves);
+
 }  // namespace goniochrome::sketch
