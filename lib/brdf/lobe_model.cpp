@@ -31,6 +31,22 @@ double coat_transmission(double cosine, double coat_index) {
   return 1 - fresnel_dielectric(cosine, coat_index);
 }
 
+// With g = sqrt(n^2 - 1 + c^2) the amplitudes are r_s = (c - g)/(c + g) and r_p = (n^2 c - g)/(n^2 c + g), and dg/dc =
+// c/g.
+CoatedCosine coated_cosine(double cosine, double coat_index) {
+  const double c = cosine, n2 = coat_index * coat_index, contrast = (coat_index - 1) * (coat_index + 1);
+  const double g2 = contrast + c * c;
+  if (contrast == 0 || g2 <= 0) return {contrast == 0 ? c : 0, contrast == 0 ? 1.0 : 0.0, 0};
+  const double g = std::sqrt(g2), s = c + g, p = n2 * c + g, bent = c / g;
+  const double r_s = (c - g) / s, r_p = (n2 * c - g) / p;
+  const double slope_s = 2 * contrast / (g * s * s), slope_p = n2 * 2 * contrast / (g * p * p);
+  const double bend_s = -slope_s * (c / g2 + 2 * (1 + bent) / s), bend_p = -slope_p * (c / g2 + 2 * (n2 + bent) / p);
+  const double passed = 1 - 0.5 * (r_s * r_s + r_p * r_p);
+  const double slope = -(r_s * slope_s + r_p * slope_p);
+  const double bend = -(slope_s * slope_s + r_s * bend_s + slope_p * slope_p + r_p * bend_p);
+  return {c * passed, passed + c * slope, 2 * slope + c * bend};
+}
+
 // The reflectance falls steeply near grazing: x = sqrt(cos) makes it smooth there, and 2 c dc = 4 x^3 dx.
 double mean_coat_transmission(double coat_index) {
   static const std::vector<math::QuadraturePoint> points = math::gauss_legendre(24);
@@ -64,17 +80,28 @@ double coat_passages(double coat_index, double cos_i, double cos_o) {
   return coat_index == paint::kNoCoat ? 1 : coat_transmission(cos_i, coat_index) * coat_transmission(cos_o, coat_index);
 }
 
+namespace {
+
+// Where light falls on a paint whose base shows the same under both coats to a viewer at the normal.
+constexpr double kBase_deg = 45;
+
+}  // namespace
+
+double base_change(double cos_o, double from_index, double to_index) {
+  const double cos_i = math::cos(kBase_deg * kDegree);
+  return coat_passages(to_index, cos_i, cos_o) / coat_passages(from_index, cos_i, cos_o);
+}
+
+double mirror_change(double cos_o, double from_index, double to_index) {
+  return fresnel_dielectric(cos_o, mirror_index(to_index)) / fresnel_dielectric(cos_o, mirror_index(from_index));
+}
+
 paint::LobeFit under_coat(const paint::LobeFit& fit, double coat_index) {
   paint::LobeFit other = fit;
   if (coat_index == fit.coat_index) return other;
   other.coat_index = coat_index;
-  constexpr double kBase_deg = 45, kMirror_deg = 60;
-  const auto passages = [](double index) { return coat_passages(index, math::cos(kBase_deg * kDegree), 1); };
-  const auto mirrored = [](double index) {
-    return fresnel_dielectric(math::cos(kMirror_deg * kDegree), mirror_index(index));
-  };
-  const double base = passages(fit.coat_index) / passages(coat_index),
-               mirror = mirrored(fit.coat_index) / mirrored(coat_index);
+  const double base = base_change(1, coat_index, fit.coat_index),
+               mirror = mirror_change(math::cos(kMirrorReading_deg * kDegree), coat_index, fit.coat_index);
   const auto scale = [&](color::Rgb& diffuse, std::vector<paint::Lobe>& lobes) {
     diffuse = base * diffuse;
     for (paint::Lobe& lobe : lobes) {

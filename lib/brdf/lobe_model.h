@@ -20,8 +20,21 @@ double coat_transmission(double cosine, double coat_index);
 // Its mean over the hemisphere, weighted by the cosine: what even light is left of. Relative error 1e-6.
 double mean_coat_transmission(double coat_index);
 
+// c T(c): what a base under a coat gets from a direction of that cosine in (0,1], and the first and second derivatives.
+struct CoatedCosine {
+  double value, slope, bend;
+};
+CoatedCosine coated_cosine(double cosine, double coat_index);
+
 // What the passages leave of the light of a base that is lit and seen there, relative to the light without a coat.
 double coat_passages(double coat_index, double cos_i, double cos_o);
+
+// What the passages leave under one coat relative to another, where light falls in as it does on the mean and leaves at
+// this cosine; under no coat, 1.
+double base_change(double cos_o, double from_index, double to_index);
+
+// The same of the image in the mirror lobe.
+double mirror_change(double cos_o, double from_index, double to_index);
 
 // The index of the surface that the mirror lobe is the image on: that of the coat, or kCoatIndex where there is none.
 constexpr double mirror_index(double coat_index) {
@@ -43,6 +56,9 @@ color::Rgb brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_
 
 // The incidence at which K_G holds where no gloss meter's angle says so.
 constexpr double kGlossIncidence_deg = 45;
+
+// The incidence at which the mirror lobe shows the same under every coat: that of a gloss meter.
+constexpr double kMirrorReading_deg = 60;
 
 // What gloss is multiplied by under a clear coat: its Fresnel reflectance where light and viewer are each at an angle
 // of that cosine from the normal between them, over that at the incidence `gloss_deg`.

@@ -126,6 +126,19 @@ TEST(Coat, AWhiteBaseNeverSendsBackMoreThanItGets) {
   EXPECT_GT(textbook, 1.8);
 }
 
+// Central differences err by the square of their step, and by rounding over it.
+TEST(Coat, ItsCosineHasTheDerivativesThatItTells) {
+  constexpr double kStep = 1e-4;
+  for (const double index : {1.0, 1.3, 1.5, 1.9})
+    for (const double c : {0.02, 0.1, 0.3, 0.7, 0.99}) {
+      const CoatedCosine at = coated_cosine(c, index);
+      const auto value = [&](double cosine) { return cosine * coat_transmission(cosine, index); };
+      EXPECT_NEAR(at.value, value(c), 1e-15);
+      EXPECT_NEAR(at.slope, (value(c + kStep) - value(c - kStep)) / (2 * kStep), 1e-5);
+      EXPECT_NEAR(at.bend, (value(c + kStep) - 2 * value(c) + value(c - kStep)) / (kStep * kStep), 1e-4);
+    }
+}
+
 TEST(Coat, IsPassedTwiceByTheBaseAndNotByTheGloss) {
   paint::LobeFit fit = sample_fit();
   const Vec3 normal = {0, 0, 1};

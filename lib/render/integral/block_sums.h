@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 #include "envmap/block_tree.h"
 #include "envmap/environment.h"
@@ -31,10 +32,12 @@ inline double even_variance(const envmap::BlockTree::Block& block) {
   return 0.25 * block.sine * block.sine;
 }
 
-// The mean direction of a block's light, all channels together, and its variance along each axis about it.
+// The mean direction of a block's light, all channels together, its variance along each axis about it, and how far the
+// channels are from it.
 struct Beam {
   Vec3 direction;
   double variance;
+  std::array<Vec3, 3> of_channels;
 };
 inline Beam beam_of(const envmap::BlockTree::Block& block) {
   Vec3 moment;
@@ -47,7 +50,14 @@ inline Beam beam_of(const envmap::BlockTree::Block& block) {
   // Floats hold the moments to some 1e-6: narrower blocks are taken as even.
   constexpr double kRounded = 1e-5;
   const double variance = 1 - size / flux, even = even_variance(block);
-  return {(1 / size) * moment, variance < kRounded ? std::min(even, kRounded) : variance};
+  const Vec3 direction = (1 / size) * moment;
+  Beam beam{direction, variance < kRounded ? std::min(even, kRounded) : variance, {}};
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (!(block.flux[c] > 0)) continue;
+    const Vec3 own = (1 / block.flux[c]) * Vec3{block.moment[c][0], block.moment[c][1], block.moment[c][2]};
+    beam.of_channels[c] = own - dot(own, direction) * direction;
+  }
+  return beam;
 }
 
 template <class AnyGatherer>
@@ -65,7 +75,7 @@ void gather_blocks(const envmap::BlockTree& tree, AnyGatherer& point) {
         const Beam beam = beam_of(block);
         // A strip's variance lies along one axis: the cap's own bounds it.
         if (point.grain().opens(block, std::max(beam.variance, even_variance(block)))) return true;
-        point.add({beam.direction, 1, beam.variance}, flux);
+        point.add({beam.direction, 1, beam.variance, &beam.of_channels}, flux);
         return false;
       },
       [&](int column, int row) {

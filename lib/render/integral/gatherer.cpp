@@ -14,8 +14,7 @@ namespace goniochrome::render {
 
 namespace {
 
-// cos^E below exp(-kTail) is left out: 4e-18 of the peak.
-constexpr double kTail = 40;
+constexpr double kTail = BlurredLobe::kTail;  // 4e-18 of the peak
 // A texel is cut into pieces of at most this many standard deviations (1/sqrt E) of the sharpest lobe that reaches it.
 // The midpoint rule then errs by (1/4)^2/24 of the value on a patch, and far less in the sum over smooth radiance.
 constexpr double kPiece = 0.25;
@@ -298,10 +297,15 @@ color::Rgb Gatherer::lobe_over_disc(const paint::Lobe& lobe, const Vec3& r, cons
 }
 
 void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped) {
-  const double above = (1 - patch.variance) * dot(point_.normal, patch.direction), cos_i = horizon ? above : cos_o_;
-  color::Rgb f =
-      above > 0 ? above * (mapped ? mapped_toward(patch.direction) : let_in(above) * paint_.diffuse) : color::Rgb{};
-  if (above > 0 || !horizon) f += lobes_toward(patch, cos_i, mapped);
+  const double above = (1 - patch.variance) * dot(point_.normal, patch.direction);
+  const BaseLight base(patch, point_.normal, paint_.coat_index);
+  color::Rgb f;
+  if (above > 0) f = mapped ? above * mapped_toward(patch.direction) : base.mean() * paint_.diffuse;
+  if (!horizon) {
+    f += lobes_toward(patch, {std::clamp(cos_o_, 0.0, 1.0), paint_.coat_index}, mapped);
+  } else if (above > 0) {
+    f += lobes_toward(patch, base, mapped);
+  }
   if (above > 0 && model_.coat) {
     const double coat = model_.coat->sent(local(patch.direction), local_viewer_).f_cos;
     f += {coat, coat, coat};
@@ -330,24 +334,18 @@ Vec3 Gatherer::local(const Vec3& direction) const {
   return {dot(direction, frame_x_), dot(direction, frame_y_), dot(direction, point_.normal)};
 }
 
-color::Rgb Gatherer::lobes_toward(const Patch& patch, double cos_i, bool mapped) const {
-  const Vec3& direction = patch.direction;
+color::Rgb Gatherer::lobes_toward(const Patch& patch, const BaseLight& base, bool mapped) const {
   color::Rgb f;
-  const double cos_half = 0.5 * length(direction + point_.to_viewer);
+  const double cos_half = 0.5 * length(patch.direction + point_.to_viewer);
   const double fresnel = model_.fresnel ? brdf::fresnel_dielectric(std::min(1.0, cos_half), brdf::kCoatIndex) : 1;
-  const double base = let_in(cos_i) * cos_i;
   for (const Mirrored& m : mirrored_) {
-    // ln cos of the angle to the mirror direction, by the versine, which keeps its digits where the angle is small.
-    const Vec3 apart = m.direction - direction;
-    const double versine = 0.5 * dot(apart, apart);
-    if (versine >= 1) continue;
-    const double log_cos = std::log1p(-versine);
+    const LobeLight light(patch, m.direction, point_.normal);
     for (const paint::Lobe& lobe : lobes_) {
-      // The lobe as the spread of the patch blurs it: lower, and less sharp by the same factor.
-      const double lowered = grain_.lowered(lobe.exponent, patch.variance), exponent = lobe.exponent * lowered;
-      if (exponent * -log_cos > kTail) break;
-      const double power = m.share * lowered * std::exp(exponent * log_cos);
-      f += power * (mapped ? fresnel * lobe.gloss : base * lobe.directional_diffuse + fresnel * lobe.gloss);
+      const BlurredLobe blurred = grain_.blurred(lobe.exponent, patch.variance);
+      const color::Rgb power = m.share * light.mean(blurred);
+      if (power == color::Rgb{}) break;  // as it is for all that are sharper
+      f += power * (fresnel * lobe.gloss);
+      if (!mapped) f += power * base.mean(light.more_cosine(blurred, base)) * lobe.directional_diffuse;
     }
   }
   return f;
@@ -385,19 +383,19 @@ void TextureGatherer::add_lobe(const Vec3& axis, double exponent, const color::R
 }
 
 void TextureGatherer::add(const Patch& patch, const color::Rgb& radiance) {
-  const double cos_i = (1 - patch.variance) * dot(point_.normal, patch.direction);
-  if (cos_i <= 0) return;
-  color::Rgb f = diffuse_;
+  const BaseLight base(patch, point_.normal, paint::kNoCoat);
+  if (!(base.cosine() > 0)) return;
+  color::Rgb f = base.mean() * diffuse_;
   for (const TexelLobe& lobe : lobes_) {
-    if (dot(lobe.middle, patch.direction) < lobe.least_cosine) continue;
-    const Vec3 apart = lobe.middle - patch.direction;
-    const double log_cos = std::log1p(-0.5 * dot(apart, apart));
-    const double lowered = grain_.lowered(lobe.exponent, patch.variance);
-    f += lowered * std::exp(std::min(lobe.log_peak + lowered * lobe.exponent * log_cos, kLargestLog)) * lobe.color;
+    if (dot(lobe.middle, patch.direction) < lobe.least_cosine - std::sqrt(3 * patch.variance)) continue;
+    const LobeLight light(patch, lobe.middle, point_.normal);
+    const BlurredLobe blurred = grain_.blurred(lobe.exponent, patch.variance);
+    f += std::exp(std::min(lobe.log_peak, kLargestLog)) * light.mean(blurred) *
+         base.mean(light.more_cosine(blurred, base)) * lobe.color;
   }
   const color::Rgb product =
       reflection_ != nullptr ? goniochrome::color::reflected(*reflection_, f, radiance) : f * radiance;
-  sum_ += patch.solid_angle_sr * cos_i * product;
+  sum_ += patch.solid_angle_sr * product;
 }
 
 void TextureGatherer::add_light(const Light& light) {

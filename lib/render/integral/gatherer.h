@@ -5,19 +5,12 @@
 #include <algorithm>
 #include <vector>
 
-#include "brdf/lobe_model.h"
 #include "color/color.h"
 #include "envmap/block_tree.h"
 #include "render/exact.h"
+#include "render/integral/patch.h"
 
 namespace goniochrome::render {
-
-// The piece of a texel, or all that a block of texels holds as if it came from one direction.
-struct Patch {
-  Vec3 direction;  // unit
-  double solid_angle_sr;
-  double variance = 0;  // of its directions, along each axis (rad^2)
-};
 
 // The grain is how finely the light around a point must be divided: no patch may be wider than a given part of the
 // lobes that reach it.
@@ -35,11 +28,10 @@ class Grain {
   int pieces(const Vec3& direction) const;
   // Whether the light of a block is too wide to come from one direction. `variance` of its directions, along each axis.
   bool opens(const envmap::BlockTree::Block& block, double variance) const;
-  // What a lobe falls to at its peak where it is averaged over a patch of this variance: a Gaussian over a Gaussian,
-  // wider by the variance and lower as its area grows. 1 far from the lobe, where wide patches were let through.
-  double lowered(double exponent, double variance) const {
+  // Of this exponent, by a patch of this variance; as it is far from the lobe, where wide patches were let through.
+  BlurredLobe blurred(double exponent, double variance) const {
     const double most = most_spread_ * most_spread_ * (1 / exponent + apart2_);
-    return variance <= most ? 1 / (1 + exponent * variance) : 1;
+    return {exponent, variance <= most ? variance : 0};
   }
   // Whether a block that the horizon cuts is too wide for its mean direction to stand on one side of it.
   bool opens_at_horizon(const envmap::BlockTree::Block& block) const { return block.sine > 0.5 * most_spread_; }
@@ -91,7 +83,7 @@ class Gatherer {
   // With `horizon`, the direction's own cosine, and nothing from below. With `mapped`, the color map in the place of
   // the diffuse part and the flakes.
   void add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped);
-  color::Rgb lobes_toward(const Patch& patch, double cos_i, bool mapped) const;
+  color::Rgb lobes_toward(const Patch& patch, const BaseLight& base, bool mapped) const;
   color::Rgb mapped_toward(const Vec3& direction) const;
   Vec3 local(const Vec3& direction) const;
   color::Rgb lobes_toward_disc(const Light& light, bool mapped) const;

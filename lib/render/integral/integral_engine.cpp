@@ -59,7 +59,7 @@ const EngineInfo IntegralEngine::kInfo = {
     .make = [](Sight&) -> std::unique_ptr<Engine> { return std::make_unique<IntegralEngine>(); }};
 
 double spread_for(double tolerance_de00) {
-  return std::clamp(0.55 * std::sqrt(tolerance_de00), 0.05, 1.0);
+  return std::clamp(0.8 * std::sqrt(tolerance_de00), 0.05, 1.0);
 }
 
 Result<void> IntegralEngine::can_shade(const Scene& scene) const {

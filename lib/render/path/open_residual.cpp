@@ -16,7 +16,7 @@ namespace {
 // Between nodes the residual is off by the square of their distance: so many cells at a tolerance of kUsual, by the
 // figures of goniochrome-theory(7), RENDERING, Sums.
 constexpr double kUsual_de00 = 0.5;
-constexpr int kViews = 9, kNormals = 16;
+constexpr int kViews = 13, kNormals = 23;
 // Of the tolerance, what the blocks of a sum take.
 constexpr double kOfSums = 0.2;
 // Beyond so many sums those of other views are forgotten, and beyond so many surfaces those of other paints.
@@ -25,7 +25,7 @@ constexpr std::size_t kMostSums = std::size_t{1} << 19, kMostSurfaces = 64;
 constexpr std::size_t kRowsAtOnce = 8, kSumsAtOnce = 16;
 
 int finer(int cells, double tolerance_de00) {
-  const double scale = std::clamp(std::sqrt(kUsual_de00 / tolerance_de00), 0.5, 2.0);
+  const double scale = std::clamp(std::sqrt(kUsual_de00 / tolerance_de00), 0.5, 1.5);
   return static_cast<int>(std::lround(cells * scale));
 }
 

@@ -31,23 +31,20 @@ class ColumnGatherer {
   const Vec3& normal() const { return normal_; }
 
   void add(const Patch& patch, const color::Rgb& radiance) {
-    const double cos_i = (1 - patch.variance) * dot(normal_, patch.direction);
-    if (!(cos_i > 0)) return;
+    const BaseLight base(patch, normal_, coat_index_);
+    if (!(base.cosine() > 0)) return;
     const color::Rgb light = patch.solid_angle_sr * radiance;
-    const double base = let_out_ * cos_i * brdf::coat_transmission(std::min(cos_i, 1.0), coat_index_);
-    columns_[LobeColumns::diffuse()] += base * light;
+    columns_[LobeColumns::diffuse()] += let_out_ * base.mean() * light;
     const double cos_half = std::min(1.0, 0.5 * length(patch.direction + to_viewer_));
     const double fresnel = brdf::fresnel_dielectric(cos_half, brdf::kCoatIndex);
     for (const LobeAxis& axis : axes_) {
-      const Vec3 apart = axis.direction - patch.direction;
-      const double versine = 0.5 * dot(apart, apart);
-      if (versine >= 1) continue;
-      const double log_cos = std::log1p(-versine);
+      const LobeLight lobe_light(patch, axis.direction, normal_);
       for (std::size_t j = 0; j < exponents_.size(); ++j) {
-        const double lowered = grain_.lowered(exponents_[j], patch.variance);
-        const double power = axis.share * lowered * std::exp(lowered * exponents_[j] * log_cos);
-        columns_[LobeColumns::flake(j)] += base * power * light;
-        columns_[LobeColumns::gloss(j)] += fresnel * power * light;
+        const BlurredLobe blurred = grain_.blurred(exponents_[j], patch.variance);
+        const color::Rgb power = axis.share * lobe_light.mean(blurred) * light;
+        if (power == color::Rgb{}) continue;
+        columns_[LobeColumns::flake(j)] += let_out_ * base.mean(lobe_light.more_cosine(blurred, base)) * power;
+        columns_[LobeColumns::gloss(j)] += fresnel * power;
       }
     }
   }
