@@ -9,13 +9,16 @@
 #include "brdf/lobe_model.h"
 #include "envmap/open_maps.h"
 #include "math/cosine_power.h"
+#include "math/elementary.h"
 #include "render/aov.h"
 #include "render/effects.h"
 #include "render/gbuffer.h"
 #include "render/glints.h"
 #include "render/spots.h"
 #include "render/unit_weights.h"
+#include "sketch/internal/sketch_lobes.h"
 #include "sketch/internal/traced_point.h"
+#include "sketch/internal/view_angles.h"
 
 namespace goniochrome::sketch {
 
@@ -259,16 +262,22 @@ double half_variance(int samples) {
   return sum;
 }
 
+// What the light of a transport is multiplied by for paints under another coat, at one point.
+struct CoatChange {
+  double base = 1, mirror = 1;
+};
+
 // Adds to the columns what a point gathers, times its share; `factors` of each point's bounced light, or null.
-void add_point(const render::LobeTransport& t, std::size_t point, const std::vector<color::Rgb>* factors, double share,
-               Vec3* columns) {
+void add_point(const render::LobeTransport& t, std::size_t point, const std::vector<color::Rgb>* factors,
+               const CoatChange& coat, double share, Vec3* columns) {
   const double gloss = 1 / brdf::fresnel_dielectric(std::cos(kGloss_deg * kDegree), brdf::kCoatIndex);
   for (std::size_t k = 0; k < t.columns.count(); ++k) {
     const color::Rgb direct = t.light(point, k, false);
     color::Rgb bounced = t.light(point, k) - direct;
     if (factors != nullptr) bounced = (*factors)[point] * bounced;
     const bool scaled = t.columns.is_gloss(k) && k != t.columns.mirror();
-    columns[k] += (scaled ? share * gloss : share) * (direct + bounced);
+    const double change = k == t.columns.mirror() ? coat.mirror : scaled ? gloss : coat.base;
+    columns[k] += share * change * (direct + bounced);
   }
 }
 
@@ -280,38 +289,58 @@ Result<std::optional<SketchTransport>> SketchTransport::of(const image::AovFile&
   SketchTransport transport;
   transport.transport_ = std::make_shared<const render::LobeTransport>(*std::move(read));
   if (buffers.reflection.k != color::component_wise().k) transport.reflection_ = buffers.reflection;
+  if (const ViewAngles views(buffers); views.are_known()) {
+    std::vector<float> cosines;
+    for (const std::uint32_t place : transport.transport_->places)
+      cosines.push_back(static_cast<float>(math::cos(views.at(place) * kDegree)));
+    transport.cosines_ = std::make_shared<const std::vector<float>>(std::move(cosines));
+  }
   return std::optional<SketchTransport>(std::move(transport));
+}
+
+int SketchTransport::samples() const {
+  return transport_->samples;
+}
+
+double SketchTransport::coat_index() const {
+  const std::vector<double>& coats = transport_->worn.coats;
+  return coats.empty() ? paint::kNoCoat : *std::ranges::max_element(coats);
 }
 
 // The columns of a transport are those of the search; its gloss has the coat's reflectance in it, the search's has it
 // relative to that of the reading. A column that bends by d from pixel to pixel is, in the mean over samples of the
 // variance v about the center, off by v d/2 from what it is there: what the picture's samples and those of the
 // transport differ by is made up for.
-SketchLight SketchTransport::light(int samples) const {
+SketchLight SketchTransport::light(int samples, double coat_index) const {
   formats::Basis basis;
   basis.name = "transport", basis.exponents = transport_->columns.exponents, basis.mirror = true;
-  const double bend = half_variance(samples) - half_variance(transport_->samples);
-  const auto shade = [transport = transport_, factors = factors_, bend](std::uint32_t place, Vec3* out) {
+  const double bend = half_variance(samples) - half_variance(transport_->samples), traced = this->coat_index();
+  const bool same_coat = coat_index == traced || traced == paint::kNoCoat || cosines_ == nullptr;
+  const auto shade = [transport = transport_, factors = factors_, cosines = same_coat ? nullptr : cosines_, bend,
+                      traced, coat_index](std::uint32_t place, Vec3* out) {
     const render::LobeTransport& t = *transport;
     std::fill_n(out, t.columns.count(), Vec3{});
     const int x = static_cast<int>(place) % t.width, y = static_cast<int>(place) / t.width;
     const auto own = point_at(t, x, y);
     if (!own) return;
+    CoatChange coat;
+    if (cosines != nullptr) {
+      const double cosine = (*cosines)[*own];
+      coat = {brdf::base_change(cosine, traced, coat_index), brdf::mirror_change(cosine, traced, coat_index)};
+    }
     double share = 1;
     const auto add_bend = [&](const std::optional<std::size_t>& before, const std::optional<std::size_t>& behind) {
       if (!before || !behind || t.part[*before] != t.part[*own] || t.part[*behind] != t.part[*own]) return;
-      for (const std::size_t point : {*before, *behind}) add_point(t, point, factors.get(), bend, out);
+      for (const std::size_t point : {*before, *behind}) add_point(t, point, factors.get(), coat, bend, out);
       share -= 2 * bend;
     };
     if (bend != 0) {
       add_bend(point_at(t, x - 1, y), point_at(t, x + 1, y));
       add_bend(point_at(t, x, y - 1), point_at(t, x, y + 1));
     }
-    add_point(t, *own, factors.get(), share, out);
+    add_point(t, *own, factors.get(), coat, share, out);
   };
-  const std::vector<double>& coats = transport_->worn.coats;
-  const double coat = coats.empty() ? paint::kNoCoat : *std::ranges::max_element(coats);
-  return {basis, reflection_, shade, coat, false};
+  return {basis, reflection_, shade, same_coat ? traced : coat_index, false};
 }
 
 std::vector<int> SketchTransport::mesh_parts() const {
@@ -333,11 +362,14 @@ image::Image SketchTransport::worn_picture() const {
   return picture;
 }
 
-double SketchTransport::wear(const std::vector<color::Rgb>& weights, const std::vector<int>& parts) {
+double SketchTransport::wear(const std::vector<color::Rgb>& weights, double coat_index, const std::vector<int>& parts) {
   const render::LobeTransport& t = *transport_;
   if (t.bounces == 0) return 0;
+  formats::Basis basis;
+  basis.exponents = t.columns.exponents, basis.mirror = true;
   const double gloss = 1 / brdf::fresnel_dielectric(std::cos(kGloss_deg * kDegree), brdf::kCoatIndex);
-  std::vector<color::Rgb> own = weights;
+  std::vector<color::Rgb> own =
+      weights_of(basis, brdf::under_coat(lobes_of(basis, weights, coat_index), this->coat_index()));
   for (std::size_t k = 0; k < own.size(); ++k)
     if (t.columns.is_gloss(k) && k != t.columns.mirror()) own[k] = gloss * own[k];
   std::vector<std::vector<color::Rgb>> worn;

@@ -31,9 +31,16 @@ class SketchTransport {
   // Nothing where the buffers have no transport. Error: as render::transport_of().
   static Result<std::optional<SketchTransport>> of(const image::AovFile& buffers);
 
-  // As sketch_light(). Bounced light is that of the paints that were worn, or of the paint told last. A picture of
-  // several samples a pixel shows their mean, as the light in the centers of the pixels around tells it.
-  SketchLight light(int samples) const;
+  // Of a pixel, whose mean the light is.
+  int samples() const;
+
+  // The index of the coat that light was traced through, the largest of all parts.
+  double coat_index() const;
+
+  // As sketch_light(), for paints under a coat of that index. Bounced light is that of the paints that were worn, or of
+  // the paint told last. A picture of several samples a pixel shows their mean, as the light in the centers of the
+  // pixels around tells it.
+  SketchLight light(int samples, double coat_index) const;
 
   // The parts of the mesh, by number from 1. The floor has no number among them: it keeps what it wears.
   std::vector<int> mesh_parts() const;
@@ -41,13 +48,14 @@ class SketchTransport {
   // What the paints that were worn show (radiance, as R G B A), and A = 0 where no surface was traced.
   image::Image worn_picture() const;
 
-  // Scales bounced light to these weights on these parts (numbers from 1), and returns what that errs by
+  // Scales bounced light to these weights, under a coat of that index, on these parts (numbers from 1), and returns what that errs by
   // (CIEDE2000, 95th percentile): 0 where the tracing was done without bounces.
-  double wear(const std::vector<color::Rgb>& weights, const std::vector<int>& parts);
+  double wear(const std::vector<color::Rgb>& weights, double coat_index, const std::vector<int>& parts);
 
  private:
   SketchTransport() = default;
   std::shared_ptr<const render::LobeTransport> transport_;
+  std::shared_ptr<const std::vector<float>> cosines_;  // of each point, of the viewer; null: not known
   std::shared_ptr<const std::vector<color::Rgb>> factors_;  // of each point's bounced light; null: 1
   std::optional<color::ReflectionOperator> reflection_;
 };

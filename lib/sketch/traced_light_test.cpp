@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/angles.h"
+#include "brdf/lobe_model.h"
 #include "render/gbuffer.h"
 #include "render/light_transport.h"
 #include "sketch/pick.h"
@@ -39,14 +40,14 @@ std::vector<double> of_even_light() {
 }
 
 // `floor`: what the last pixel shows wears these weights and is no part of the mesh.
-image::AovFile buffers_of(const std::vector<Lit>& pixels, const std::optional<color::Rgb>& floor = {},
-                          int samples = 1) {
+image::AovFile buffers_of(const std::vector<Lit>& pixels, const std::optional<color::Rgb>& floor = {}, int samples = 1,
+                          double coat_index = paint::kNoCoat) {
   render::LobeTransport t;
   t.width = static_cast<int>(pixels.size()), t.height = 1, t.samples = samples;
   t.columns.exponents = kExponents;
   t.worn.groups = {{0}, 1};
   t.worn.weights = {std::vector<color::Rgb>(t.columns.count(), color::Rgb{0.1, 0.1, 0.1})};
-  t.worn.brushed.resize(1), t.worn.coats = {paint::kNoCoat}, t.worn.emission.resize(1);
+  t.worn.brushed.resize(1), t.worn.coats = {coat_index}, t.worn.emission.resize(1);
   if (floor) {
     t.worn.groups = {{0, 1}, 2}, t.worn.has_floor = true, t.worn.coats.push_back(paint::kNoCoat);
     t.worn.weights.emplace_back(t.columns.count());
@@ -60,7 +61,7 @@ image::AovFile buffers_of(const std::vector<Lit>& pixels, const std::optional<co
     t.places.push_back(i), t.part.push_back(0), t.noise_de00.push_back(0);
     put(pixels[i].diffuse);
     for (const double share : pixels[i].shares) put(share * pixels[i].diffuse), put({});
-    put({});
+    put(coat_index == paint::kNoCoat ? color::Rgb{} : 0.3 * pixels[i].diffuse);
   }
   t.bounced.assign(t.direct.size(), 0), t.classes.assign(pixels.size() * t.worn.groups.classes() * 3, 0);
   const render::TransportParts parts = render::transport_parts(t);
@@ -148,12 +149,44 @@ TEST(SketchTransport, APictureOfOtherSamplesThanTheTransportShowsTheirMean) {
     for (const int samples : {1, 4, 16})
       for (const std::uint32_t place : {2U, 3U, 4U}) {
         const double wanted = mean(place, samples);
-        (*transport)->light(samples).shade(place, columns.data());
+        (*transport)->light(samples, (*transport)->coat_index()).shade(place, columns.data());
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(columns[0][c], wanted * std::pow(0.5, c), 2e-3 * wanted) << place;
         if ((samples == 1) != (kept == 1)) {
           EXPECT_GT(std::abs(wanted - mean(place, kept)), 0.1) << "the control must fail";
         }
       }
+  }
+}
+
+// Seen at 70 deg, under the coat that light was traced through and under another. The light of the base that falls in
+// from 45 deg is exact, as the image is. The control: the light as it is kept.
+TEST(SketchTransport, ShowsWhatAnotherCoatLeavesOfLight) {
+  constexpr double kTraced = 1.5, kOther = 1.53;
+  image::AovFile file = buffers_of({{{1, 1, 1}, of_lamp(40)}}, {}, 1, kTraced);
+  const double c = std::cos(70 * kDegree), s = std::sin(70 * kDegree);
+  file.image = {
+      1, 1, 4, {1, 0, static_cast<float>(s), static_cast<float>(c)}, {"part", "normal.X", "normal.Y", "normal.Z"}};
+  file.has_rays = true, file.corner = {-0.5, -0.5, -1}, file.right = {1, 0, 0}, file.down = {0, 1, 0};
+  const auto transport = SketchTransport::of(file);
+  ASSERT_TRUE(transport.ok() && transport->has_value());
+  ASSERT_EQ((*transport)->coat_index(), kTraced);
+  const auto light = [&](double index) {
+    std::vector<Vec3> columns(2 * kExponents.size() + 2);
+    const SketchLight of_coat = (*transport)->light(1, index);
+    EXPECT_EQ(of_coat.coat_index, index);
+    of_coat.shade(0, columns.data());
+    return columns;
+  };
+  const std::vector<Vec3> traced = light(kTraced), other = light(kOther);
+  const double let_out = brdf::coat_passages(kOther, std::cos(45 * kDegree), c) /
+                         brdf::coat_passages(kTraced, std::cos(45 * kDegree), c),
+               image = brdf::fresnel_dielectric(c, kOther) / brdf::fresnel_dielectric(c, kTraced);
+  EXPECT_LT(let_out, 0.99) << "the control must fail";
+  EXPECT_GT(image, 1.02) << "the control must fail";
+  for (std::size_t k = 0; k < traced.size(); ++k) {
+    const bool gloss = k > 0 && k % 2 == 0 && k + 1 < traced.size();
+    const double change = k + 1 == traced.size() ? image : gloss ? 1 : let_out;
+    EXPECT_NEAR(other[k].y, change * traced[k].y, 1e-6) << k;
   }
 }
 

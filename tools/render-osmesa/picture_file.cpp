@@ -1,5 +1,6 @@
 #include "picture_file.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/angles.h"
@@ -64,7 +65,7 @@ Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const 
   part.attributes["goniochrome:exposure"] = static_cast<float>(stops);
   part.attributes["goniochrome:whiteLuminance"] = static_cast<float>(white.luminance);
   part.attributes["goniochrome:automaticExposure"] = static_cast<float>(automatic);
-  part.attributes["goniochrome:samples"] = request.samples;
+  part.attributes["goniochrome:samples"] = std::min(request.samples * request.samples_of_point, 16);
   if (!request.aovs.empty()) {
     const Vec3 to_light = scene.lights.empty() ? white.direction : scene.lights.front().direction;
     for (const std::string& aov : request.aovs) {

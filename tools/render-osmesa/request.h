@@ -17,6 +17,7 @@ namespace goniochrome::tool {
 struct Request {
   PictureSize size;  // with --gbuffer, that of the file, or of squares of its points
   int samples = 1;
+  int samples_of_point = 1;  // whose mean a point of --gbuffer is, where that is a transport
   // How many points stand beside each other in a pixel.
   int points_across() const { return samples >= 16 ? 4 : samples >= 4 ? 2 : 1; }
   std::vector<render::Light> lights;

@@ -425,6 +425,7 @@ Result<cli::Verdict> run(const Options& asked, cli::Session& session) {
   if (stage.gbuffer) {
     const int side = request.points_across();
     request.size = {stage.gbuffer->width / side, stage.gbuffer->height / side};
+    if (stage.transport) request.samples_of_point = stage.transport->light.samples;
   }
   if (is_stream(options)) return draw_stream(options, request, stage, display, session);
   return Shooting(options, std::move(request), stage, session).shoot(display);

@@ -120,6 +120,16 @@ figure() { grep -m1 "\"$1\"" "$2" | sed -E 's/.*: ([-0-9.e+a-z]+),?$/\1/'; }
   [ "$(jq '.results | .pixels_changed == .pixels_used and .pixels_changed > 40 and .pixels_changed <= 264' sketch.json)" = true ]
 }
 
+# A search for its paint takes the light of as many.
+@test "a picture tells of how many samples the points of its transport are the mean" {
+  render-osmesa -q --mesh walls.obj --size 10x6 --samples 4 -p fitted.xml#silver_fine --env studio.env.exr --aov transport \
+    --tolerance 20 -o mean.exr
+  render-osmesa -q --gbuffer mean.exr -p fitted.xml#silver_fine -o shown.exr
+  [[ "$(oiiotool --info -v shown.exr)" =~ "goniochrome:samples: 4" ]]
+  render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine -o shown.exr
+  [[ "$(oiiotool --info -v shown.exr)" =~ "goniochrome:samples: 1" ]]
+}
+
 @test "several points are a pixel: their mean, in single pictures and in streams" {
   render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine -o points.exr
   render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine --samples 4 -o pixels.exr --report pixels.json

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/text.h"
+#include "brdf/gloss.h"
 #include "paint/curve.h"
 #include "paint_stream.h"
 #include "residual.h"
@@ -240,18 +241,21 @@ void tell(const Options& options, const sketch::SketchPixels& pixels, const sket
       fit.rms_de76, pixels.used.size(), pixels.changed_only ? "edited " : ""));
 }
 
-// The paint in light that was traced. Bounced light depends on the paint: it is scaled to what was found, and the paint
-// is sought again.
+// The paint in light that was traced. Bounced light depends on the paint, as what the coat leaves of all light does:
+// both are changed to what was found, and the paint is sought again.
 sketch::SketchFit fit_in_transport(const sketch::SketchInput& input, const sketch::SketchPixels& pixels, int samples,
                                    const sketch::SketchLimits& limits, bool differences,
                                    sketch::SketchTransport& transport, cli::Session& session) {
   constexpr int kRounds = 3;
   sketch::SketchFit fit;
-  double error_de00 = 0;
+  double error_de00 = 0, coat_index = transport.coat_index();
   for (int round = 0; round < kRounds; ++round) {
-    fit = sketch::sketch_environment(input, pixels, transport.light(samples), limits, differences);
+    const sketch::SketchLight light = transport.light(samples, coat_index);
+    fit = sketch::sketch_environment(input, pixels, light, limits, differences);
     if (fit.weights.empty() || round + 1 == kRounds) break;
-    error_de00 = transport.wear(fit.weights, input.parts);
+    error_de00 = transport.wear(fit.weights, light.coat_index, input.parts);
+    const auto index = brdf::coat_index_of({{60, fit.gloss_60_gu}});
+    if (index.ok() && coat_index != paint::kNoCoat) coat_index = std::max(transport.coat_index(), *index);
   }
   session.results()["bounced_de00_p95"] = json_number(error_de00);
   if (error_de00 > kToldBounce_de00)
@@ -394,7 +398,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   const bool environment = !options.env.empty() || material.transport;
   sketch::SketchFit fit;
   if (material.transport) {
-    const int samples = material.picture.samples.value_or(pixels.from_shaded ? 1 : material.buffers.samples);
+    const int samples = material.picture.samples.value_or(pixels.from_shaded ? material.transport->samples()
+                                                                             : material.buffers.samples);
     fit = fit_in_transport(input, pixels, samples, limits, differences, *material.transport, session);
   } else if (environment) {
     GONIO_ASSIGN(const sketch::SketchLight light, sketch::sketch_light(material.buffers, material.env));

@@ -2,9 +2,25 @@
 
 #include <utility>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "math/elementary.h"
 
 namespace goniochrome::render {
+
+namespace {
+
+// What brdf::under_coat() misses of the image in a coat.
+std::vector<float> mirror_by_view(double traced_index, double index) {
+  const double weight = brdf::mirror_change(math::cos(brdf::kMirrorReading_deg * kDegree), traced_index, index);
+  std::vector<float> by_view;
+  for (int degree = 0; degree <= 90; ++degree)
+    by_view.push_back(
+        static_cast<float>(brdf::mirror_change(math::cos(degree * kDegree), traced_index, index) / weight));
+  return by_view;
+}
+
+}  // namespace
 
 Result<ShownPaints> shown_paints(const LobeColumns& columns, const WornPaints& worn,
                                  const std::vector<PartPaint>& parts) {
@@ -27,7 +43,9 @@ Result<ShownPaints> shown_paints(const LobeColumns& columns, const WornPaints& w
     if (!paint.ok()) return named(paint.error());
     auto flat = column_weights(columns, fit.diffuse, fit.lobes, part.gloss_deg);
     if (!flat.ok()) return named(flat.error());
-    shown.with_views |= paint->view_deg.size() > 1;
+    if (coat != paint::kNoCoat && part.paint->coat_index > coat)
+      paint->mirror_by_view = mirror_by_view(coat, part.paint->coat_index);
+    shown.with_views |= paint->view_deg.size() > 1 || !paint->mirror_by_view.empty();
     shown.paints.push_back(*std::move(paint)), shown.weights.push_back(*std::move(flat));
   }
   if (worn.has_floor) {

@@ -4,9 +4,12 @@
 
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/parallel.h"
+#include "brdf/lobe_model.h"
 #include "render/internal/seen.h"
 #include "render/path/path_tracer.h"
+#include "render/path/shown_paints.h"
 #include "render/path/transport_shading.h"
 #include "render/path/transport_stage_for_test.h"
 
@@ -77,6 +80,52 @@ TEST(TenPaints, FromOneTransportAreThoseThatAreTracedAnew) {
     controls += percentile_95(undone) > bound ? 1 : 0;
   }
   EXPECT_GE(controls, 8);
+}
+
+// A ball and its cup under one coat, shown with nothing but the image in another: at each point it is what Fresnel's
+// equations make of the image in the first one. The control: weights alone, which know no view.
+TEST(TenPaints, TheImageInAnotherCoatGoesWithTheView) {
+  constexpr double kTraced = 1.5, kOther = 1.56;
+  paint::LobeFit cup = matt({0.3, 0.3, 0.3}), ball = cup;
+  cup.coat_index = ball.coat_index = kTraced;
+  ball.lobes = {{paint::kMirrorExponent, {}, {1, 1, 1}}};
+  const Stage stage(cup, ball, kWidth, kHeight);
+  LobeTransportRequest request;
+  request.tolerance_de00 = 5, request.bounces = 1;
+  const LobeTransport t = stage.traced(request).transport;
+  const std::vector<float> views_deg = view_angles_deg(t, stage.surface.gbuffer);
+  const TransportShader shader(t, views_deg);
+  const auto image_of = [&](double index, bool by_view) {
+    paint::LobeFit image = matt({});
+    image.coat_index = index;
+    image.lobes = {{paint::kMirrorExponent, {}, {1, 1, 1}}};
+    const std::vector<PartPaint> parts(t.worn.brushed.size(), PartPaint{&image, {}, brdf::kGlossIncidence_deg, "", ""});
+    ShownPaints shown = *shown_paints(t.columns, t.worn, parts);
+    EXPECT_EQ(shown.with_views, index != kTraced);
+    for (TransportPaint& paint : shown.paints)
+      if (!by_view) paint.mirror_by_view.clear();
+    BounceScale unscaled;
+    unscaled.of_class.assign(t.worn.groups.classes(), {1, 1, 1});
+    image::Image picture{kWidth, kHeight, 4, std::vector<float>(4UL * kWidth * kHeight, 0.0F), {}};
+    shader.shade(shown.paints, nullptr, unscaled, 1, picture);
+    return picture;
+  };
+  const image::Image before = image_of(kTraced, true), after = image_of(kOther, true),
+                     control = image_of(kOther, false);
+  double off = 0, off_control = 0;
+  int compared = 0;
+  for (std::size_t i = 0; i < t.places.size(); ++i) {
+    const std::size_t at = 4 * t.places[i] + 1;
+    if (!(before.data[at] > 0)) continue;
+    const double c = std::cos(views_deg[i] * kDegree);
+    const double truth = before.data[at] * brdf::fresnel_dielectric(c, kOther) / brdf::fresnel_dielectric(c, kTraced);
+    off = std::max(off, std::abs(after.data[at] / truth - 1));
+    off_control = std::max(off_control, std::abs(control.data[at] / truth - 1));
+    ++compared;
+  }
+  EXPECT_GT(compared, 10);
+  EXPECT_LT(off, 1e-3);
+  EXPECT_GT(off_control, 0.04) << "the control must fail";
 }
 
 // One that is asked paint after paint sums up what the paints worn sent once. It says the same as one that is new, to

@@ -27,7 +27,7 @@ struct TransportShader::State {
     std::uint32_t points[kTransportLanes] = {};
     std::uint32_t count = 0;
   };
-  std::size_t columns = 0, classes = 0;
+  std::size_t columns = 0, classes = 0, mirror = 0;
   bool halves = true;
   float unit = 1;
   std::vector<Block> blocks;
@@ -121,7 +121,8 @@ std::vector<float> view_angles_deg(const LobeTransport& t, const Gbuffer& gbuffe
 TransportShader::TransportShader(const LobeTransport& t, std::vector<float> view_deg)
     : state_(std::make_unique<State>()) {
   State& s = *state_;
-  s.columns = t.columns.count(), s.classes = t.worn.groups.classes(), s.unit = static_cast<float>(t.unit);
+  s.columns = t.columns.count(), s.mirror = t.columns.mirror(), s.classes = t.worn.groups.classes(),
+  s.unit = static_cast<float>(t.unit);
   s.emission = t.worn.emission, s.emission.resize(t.worn.groups.of_part.size());
   s.places = t.places, s.view_deg = std::move(view_deg);
   const auto fits = [](const std::vector<float>& light) {
@@ -206,6 +207,20 @@ void TransportShader::shade(const std::vector<TransportPaint>& paints, const col
           if (!any) continue;
           shaded(set, mixed);
           for (std::size_t k = 0; k < 3 * kTransportLanes; ++k) rgb[k] += share[k % kTransportLanes] * mixed[k];
+        }
+      }
+      const std::vector<float>& by_view = paints[part].mirror_by_view;
+      if (!by_view.empty() && sets[part].front().dark[s.mirror] == 0) {
+        const std::size_t skipped = 3 * s.mirror * kTransportLanes;
+        light.direct = s.at(s.half_direct, s.direct, block.direct * of_block + skipped);
+        if (block.is_bounced) light.bounced = s.at(s.half_bounced, s.bounced, block.bounced * of_block + skipped);
+        const Set& set = sets[part].front();  // the mirror's weight is one for all views
+        shade_transport(light, {1, s.classes, &set.matrices[9 * s.mirror], &set.dark[s.mirror], factors.data()}, mixed);
+        for (std::size_t k = 0; k < 3 * kTransportLanes; ++k) {
+          const float view = std::min(s.view_deg[block.points[k % kTransportLanes]], 89.999F);
+          const auto degree = static_cast<std::size_t>(view);
+          const float rest = view - static_cast<float>(degree);
+          rgb[k] += ((1 - rest) * by_view[degree] + rest * by_view[degree + 1] - 1) * mixed[k];
         }
       }
       for (std::size_t lane = 0; lane < block.count; ++lane) {

@@ -15,6 +15,9 @@ namespace goniochrome::render {
 struct TransportPaint {
   std::vector<double> view_deg;                  // ascending; one entry where the weights hold for every view
   std::vector<std::vector<color::Rgb>> weights;  // for each
+  // Where the image in the mirror lobe goes with the view otherwise than under the coat that light was traced through:
+  // what it is there relative to the weights, by whole degrees from 0 to 90. Else empty.
+  std::vector<float> mirror_by_view = {};
 };
 // Error: as column_weights().
 Result<TransportPaint> transport_paint(const LobeColumns& columns, const paint::LobeFit& paint, double gloss_deg);
