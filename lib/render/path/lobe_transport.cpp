@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <numeric>
 
 #include "base/angles.h"
 #include "base/clock.h"
@@ -10,6 +11,7 @@
 #include "brdf/lobe_model.h"
 #include "render/effects.h"
 #include "render/internal/seen.h"
+#include "render/path/round_cut.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -61,11 +63,14 @@ class Tracing {
   TracedLobes trace() {
     std::vector<int> more(batches_.size(), fewest_);
     while (true) {
+      const double before = drawn();
+      pace_.start();
       sample(more);
+      pace_.end(drawn() - before);
       result_.noise_p95_de00 = judge();
       if (request_.progress) request_.progress(result_.noise_p95_de00, clock_.elapsed_s());
       result_.reached = result_.noise_p95_de00 <= request_.tolerance_de00;
-      if (result_.reached || deadline_.passed() || !plan(more)) break;
+      if (result_.reached || deadline_.passed() || !plan(more) || !cut(more)) break;
     }
     const double count = std::max<double>(1, static_cast<double>(batches_.size()));
     for (std::size_t i = 0; i < batches_.size(); ++i) {
@@ -79,6 +84,13 @@ class Tracing {
   }
 
  private:
+  double drawn() const { return std::accumulate(batches_.begin(), batches_.end(), 0.0); }
+
+  // No more than there is time for; whether any.
+  bool cut(std::vector<int>& more) const {
+    return cut_round(pace_.left(), more, [this](int batches) { return batches / fewest_ * fewest_; });
+  }
+
   void sample(const std::vector<int>& more) {
     std::vector<std::uint32_t> wanted;
     for (std::size_t i = 0; i < more.size(); ++i)
@@ -283,6 +295,7 @@ class Tracing {
   const OpenLight* open_;
   const LobeTransportRequest& request_;
   Deadline deadline_;
+  Pace pace_{deadline_};
   Stopwatch clock_;
   TracedLobes result_;
   std::vector<VisibleSurface> samples_;  // of the pixels; none: their centers

@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "render/internal/seen.h"
+#include "render/path/round_cut.h"
 #include "render/path/seen_point.h"
 
 namespace goniochrome::render {
@@ -119,12 +120,15 @@ class Picture {
     double noise = 0;
     bool reached = false;
     while (true) {
+      const double before = drawn();
+      pace_.start();
       sample(more);
       first_round_ = false;  // which no time limit cuts, so that every point is seen
+      pace_.end(drawn() - before);
       noise = judge();
       if (request_.progress) request_.progress(noise, clock_.elapsed_s());
       reached = request_.tolerance_de00 > 0 && noise <= request_.tolerance_de00;
-      if (reached || deadline_.passed() || !plan(noise, more) || !within_all(more)) break;
+      if (reached || deadline_.passed() || !plan(noise, more) || !cut(more)) break;
     }
     PathPicture picture;
     picture.reached = reached;
@@ -391,8 +395,7 @@ class Picture {
         request_.tolerance_de00 > 0 && tolerance() < worse_percentile([&](std::size_t i) {
                                          return states_[i].sums.fours() >= limit ? points_[i].noise_de00 : 0;
                                        });
-    double drawn = 0;
-    for (const State& state : states_) drawn += state.sums.fours();
+    const double least = kLeastRound * drawn();
     for (double scale = 1;; scale *= 1.1 * std::max(1.0, lacking * lacking)) {
       const double most = std::min(std::ceil(1.05 * scale * typical), limit);
       double asked = 0;
@@ -403,29 +406,23 @@ class Picture {
         asked += more[i];
         limited = limited && (n == 0 || states_[i].needed == 0 || n >= limit);
       }
-      if (asked >= kLeastRound * drawn && asked > 0) return true;
+      if (asked >= least && asked > 0) return true;
       if (in_vain) return false;
       if (limited || scale > 1e6) return asked > 0;
     }
   }
 
-  // Cuts the round so that no more samples are drawn in all than may be; whether any are left. All points lose the
-  // same part of what they were to get, and what is too little to be drawn is passed on to the points that follow.
-  bool within_all(std::vector<int>& more) const {
-    if (request_.most_in_all == 0) return true;
-    double drawn = 0, asked = 0;
-    for (const State& state : states_) drawn += state.sums.fours();
-    for (const int fours : more) asked += fours;
-    const double left = request_.most_in_all / kOfFour - drawn;
-    if (left >= asked) return true;
-    double due = 0;
-    bool any = false;
-    for (int& fours : more) {
-      due += std::max(0.0, left) / asked * fours;
-      fours = due >= Round::kSequences ? Round(std::min(fours, static_cast<int>(due))).fours() : 0;
-      due -= fours, any = any || fours > 0;
-    }
-    return any;
+  double drawn() const {
+    double fours = 0;
+    for (const State& state : states_) fours += state.sums.fours();
+    return fours;
+  }
+
+  // No more samples in all than may be, and no more than there is time for; whether any.
+  bool cut(std::vector<int>& more) const {
+    const double may = request_.most_in_all > 0 ? request_.most_in_all / kOfFour - drawn() : HUGE_VAL;
+    return cut_round(std::min(may, pace_.left()), more,
+                     [](int fours) { return fours >= Round::kSequences ? Round(fours).fours() : 0; });
   }
 
   const Transport& transport_;
@@ -435,6 +432,7 @@ class Picture {
   const image::Image* base_;
   const PathRequest& request_;
   Deadline deadline_;
+  Pace pace_{deadline_};
   Stopwatch clock_;
   bool first_round_ = true;
   std::size_t count_ = 1;                      // of the pixels' samples

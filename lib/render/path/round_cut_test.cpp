@@ -1,0 +1,55 @@
+// How a round is cut to what there is time for.
+#include "render/path/round_cut.h"
+
+#include <gtest/gtest.h>
+
+namespace goniochrome::render {
+namespace {
+
+int by_fours(int n) {
+  return n / 4 * 4;
+}
+
+// Points that were to get 4 to 200 samples get the same part of them, as far as fours can tell, and together no more
+// than are left. The control is a round that is broken off, in which the first points get all and the last ones
+// nothing.
+TEST(RoundCut, LeavesEveryPointTheSamePart) {
+  std::vector<int> asked;
+  for (int i = 0; i < 4000; ++i) asked.push_back(4 * (1 + i * 7 % 50));
+  const double sum = std::accumulate(asked.begin(), asked.end(), 0.0), left = 0.3 * sum;
+  std::vector<int> cut = asked;
+  ASSERT_TRUE(cut_round(left, cut, by_fours));
+  const double drawn = std::accumulate(cut.begin(), cut.end(), 0.0);
+  EXPECT_LE(drawn, left);
+  EXPECT_GT(drawn, left - 8);
+  std::vector<int> broken(asked.size(), 0);
+  double rest = left;
+  for (std::size_t i = 0; i < asked.size() && rest >= asked[i]; ++i) rest -= broken[i] = asked[i];
+  const auto farthest = [&](const std::vector<int>& got) {
+    double most = 0;
+    for (std::size_t i = 0; i < got.size(); ++i) most = std::max(most, std::abs(got[i] - 0.3 * asked[i]));
+    return most;
+  };
+  EXPECT_LE(farthest(cut), 8);
+  EXPECT_GT(farthest(broken), 100) << "the control must fail";
+}
+
+TEST(RoundCut, LeavesARoundThatThereIsTimeForAsItIs) {
+  std::vector<int> more = {4, 8, 0};
+  EXPECT_TRUE(cut_round(12, more, by_fours));
+  EXPECT_EQ(more, (std::vector<int>{4, 8, 0}));
+  const Deadline none;
+  EXPECT_TRUE(cut_round(Pace(none).left(), more, by_fours)) << "no time limit";
+  EXPECT_EQ(more, (std::vector<int>{4, 8, 0}));
+}
+
+TEST(RoundCut, DrawsNothingWhereNothingIsLeft) {
+  for (const double left : {0.0, 3.0, -5.0}) {
+    std::vector<int> more = {4, 8, 0};
+    EXPECT_FALSE(cut_round(left, more, by_fours)) << left;
+    EXPECT_EQ(more, (std::vector<int>{0, 0, 0}));
+  }
+}
+
+}  // namespace
+}  // namespace goniochrome::render
