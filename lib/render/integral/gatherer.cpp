@@ -19,8 +19,9 @@ constexpr double kTail = BlurredLobe::kTail;  // 4e-18 of the peak
 // The midpoint rule then errs by (1/4)^2/24 of the value on a patch, and far less in the sum over smooth radiance.
 constexpr double kPiece = 0.25;
 constexpr double kLargestLog = 700;  // exp of it is finite
-// A square is this many standard deviations of one of its coordinates wide.
-const double kSquare = std::sqrt(12.0);
+// Where blocks may be this wide, so may pieces, in standard deviations of a block's light. A square of as much variance
+// would be sqrt(12) wide, but a piece counts as of one direction.
+constexpr double kPieceOfBlock = 2.4;
 
 const ExactModel& model_of(const SurfacePoint& point) {
   static const ExactModel bare;
@@ -48,7 +49,7 @@ double bend_beyond(double q) {
 }  // namespace
 
 Grain::Grain(double texel_rad, double most_spread)
-    : texel_rad_(texel_rad), most_spread_(most_spread), piece_(std::max(kPiece, kSquare * most_spread)) {}
+    : texel_rad_(texel_rad), most_spread_(most_spread), piece_(std::max(kPiece, kPieceOfBlock * most_spread)) {}
 
 void Grain::add(std::vector<Vec3> middles, const std::vector<double>& exponents) {
   Bundle bundle{std::move(middles), {}, 0, {}};
@@ -85,9 +86,9 @@ int Grain::pieces(const Vec3& direction) const {
 }
 
 bool Grain::opens(const envmap::BlockTree::Block& block, double variance) const {
-  // First the diffuse part: the cosine law is a lobe of exponent 1 whose middle may be anywhere.
+  // First the diffuse part: the cosine law is a lobe of exponent 1 whose middle may be anywhere, and which a coat bends.
   const double most = most_spread_ * most_spread_;
-  if (variance > most) return true;
+  if (variance > 0.47 * most) return true;
   // Then each bundle of lobes, by how far the cap of the block is from the nearest lobe. A lobe bends less the farther
   // from its middle it is met, so that far blocks may be wider.
   constexpr double kHalfSphere = 0.5;  // of wider caps the sine is no measure
