@@ -216,12 +216,14 @@ void TransportShader::shade(const std::vector<TransportPaint>& paints, const col
         if (block.is_bounced) light.bounced = s.at(s.half_bounced, s.bounced, block.bounced * of_block + skipped);
         const Set& set = sets[part].front();  // the mirror's weight is one for all views
         shade_transport(light, {1, s.classes, &set.matrices[9 * s.mirror], &set.dark[s.mirror], factors.data()}, mixed);
-        for (std::size_t k = 0; k < 3 * kTransportLanes; ++k) {
-          const float view = std::min(s.view_deg[block.points[k % kTransportLanes]], 89.999F);
+        float more[kTransportLanes];
+        for (std::size_t lane = 0; lane < kTransportLanes; ++lane) {
+          const float view = std::min(s.view_deg[block.points[lane]], 89.999F);
           const auto degree = static_cast<std::size_t>(view);
           const float rest = view - static_cast<float>(degree);
-          rgb[k] += ((1 - rest) * by_view[degree] + rest * by_view[degree + 1] - 1) * mixed[k];
+          more[lane] = (1 - rest) * by_view[degree] + rest * by_view[degree + 1] - 1;
         }
+        for (std::size_t k = 0; k < 3 * kTransportLanes; ++k) rgb[k] += more[k % kTransportLanes] * mixed[k];
       }
       for (std::size_t lane = 0; lane < block.count; ++lane) {
         float* pixel = &rgba.data[4 * static_cast<std::size_t>(s.places[block.points[lane]])];
