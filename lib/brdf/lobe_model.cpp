@@ -82,7 +82,7 @@ double coat_passages(double coat_index, double cos_i, double cos_o) {
 
 namespace {
 
-// Where light falls on a paint whose base shows the same under both coats to a viewer at the normal.
+// From where the light falls by which bases under two coats are compared.
 constexpr double kBase_deg = 45;
 
 }  // namespace

@@ -29,11 +29,11 @@ CoatedCosine coated_cosine(double cosine, double coat_index);
 // What the passages leave of the light of a base that is lit and seen there, relative to the light without a coat.
 double coat_passages(double coat_index, double cos_i, double cos_o);
 
-// What the passages leave under one coat relative to another, where light falls in as it does on the mean and leaves at
-// this cosine; under no coat, 1.
+// What one coat leaves of a base's light relative to what another leaves of it: of light that falls in at 45 deg and is
+// seen at the angle of this cosine.
 double base_change(double cos_o, double from_index, double to_index);
 
-// The same of the image in the mirror lobe.
+// How bright the mirror image in one coat is, relative to that in another, at the angle of this cosine.
 double mirror_change(double cos_o, double from_index, double to_index);
 
 // The index of the surface that the mirror lobe is the image on: that of the coat, or kCoatIndex where there is none.

@@ -48,14 +48,14 @@ class SketchTransport {
   // What the paints that were worn show (radiance, as R G B A), and A = 0 where no surface was traced.
   image::Image worn_picture() const;
 
-  // Scales bounced light to these weights, under a coat of that index, on these parts (numbers from 1), and returns what that errs by
-  // (CIEDE2000, 95th percentile): 0 where the tracing was done without bounces.
+  // Scales bounced light to these weights, under a coat of that index, on these parts (numbers from 1), and returns
+  // what that errs by (CIEDE2000, 95th percentile): 0 where the tracing was done without bounces.
   double wear(const std::vector<color::Rgb>& weights, double coat_index, const std::vector<int>& parts);
 
  private:
   SketchTransport() = default;
   std::shared_ptr<const render::LobeTransport> transport_;
-  std::shared_ptr<const std::vector<float>> cosines_;  // of each point, of the viewer; null: not known
+  std::shared_ptr<const std::vector<float>> cosines_;       // of each point, of the viewer; null: not known
   std::shared_ptr<const std::vector<color::Rgb>> factors_;  // of each point's bounced light; null: 1
   std::optional<color::ReflectionOperator> reflection_;
 };

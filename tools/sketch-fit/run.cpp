@@ -255,7 +255,7 @@ sketch::SketchFit fit_in_transport(const sketch::SketchInput& input, const sketc
     if (fit.weights.empty() || round + 1 == kRounds) break;
     error_de00 = transport.wear(fit.weights, light.coat_index, input.parts);
     const auto index = brdf::coat_index_of({{60, fit.gloss_60_gu}});
-    if (index.ok() && coat_index != paint::kNoCoat) coat_index = std::max(transport.coat_index(), *index);
+    if (index.ok() && *index != paint::kNoCoat && coat_index != paint::kNoCoat) coat_index = *index;
   }
   session.results()["bounced_de00_p95"] = json_number(error_de00);
   if (error_de00 > kToldBounce_de00)

@@ -22,6 +22,9 @@ constexpr double kLargestLog = 700;  // exp of it is finite
 // Where blocks may be this wide, so may pieces, in standard deviations of a block's light. A square of as much variance
 // would be sqrt(12) wide, but a piece counts as of one direction.
 constexpr double kPieceOfBlock = 2.4;
+// The variance that a block may have for the base under a coat, relative to that for a lobe of exponent 1 about its
+// middle: the coat bends the cosine law.
+constexpr double kBaseOfLobe = 0.47;
 
 const ExactModel& model_of(const SurfacePoint& point) {
   static const ExactModel bare;
@@ -86,9 +89,9 @@ int Grain::pieces(const Vec3& direction) const {
 }
 
 bool Grain::opens(const envmap::BlockTree::Block& block, double variance) const {
-  // First the diffuse part: the cosine law is a lobe of exponent 1 whose middle may be anywhere, and which a coat bends.
+  // First the diffuse part: the cosine law is a lobe of exponent 1 whose middle may be anywhere.
   const double most = most_spread_ * most_spread_;
-  if (variance > 0.47 * most) return true;
+  if (variance > kBaseOfLobe * most) return true;
   // Then each bundle of lobes, by how far the cap of the block is from the nearest lobe. A lobe bends less the farther
   // from its middle it is met, so that far blocks may be wider.
   constexpr double kHalfSphere = 0.5;  // of wider caps the sine is no measure

@@ -16,10 +16,11 @@ namespace goniochrome::render {
 struct Patch {
   Vec3 direction;  // of its light in the mean, unit
   double solid_angle_sr;
-  double variance = 0;                               // of its directions, along each axis (rad^2)
-  const std::array<Vec3, 3>* of_channels = nullptr;  // where R, G and B come from in the mean, less `direction`
+  double variance = 0;  // of its directions, along each axis (rad^2)
+  // How far the mean directions of R, G and B are from `direction`, as vectors across it; null: all are there.
+  const std::array<Vec3, 3>* of_channels = nullptr;
 
-  // How far the channels are from `direction`, along an axis.
+  // The same along an axis.
   color::Rgb along(const Vec3& axis) const {
     if (of_channels == nullptr) return {};
     return {dot((*of_channels)[0], axis), dot((*of_channels)[1], axis), dot((*of_channels)[2], axis)};
@@ -30,8 +31,8 @@ inline color::Rgb at_least_0(const color::Rgb& c) {
   return {std::max(0.0, c.x), std::max(0.0, c.y), std::max(0.0, c.z)};
 }
 
-// A lobe cos^E as a patch of this variance blurs it: peak cos^exponent (1 + bend (1/cos^2 - 1 + 2 ln cos)). It is exact
-// to the first order in the variance, and for a cosine and a Gaussian to all. Variance 0: the lobe as it is.
+// A lobe cos^E as a patch of this variance blurs it: peak cos^exponent (1 + bend (1/cos^2 - 1 + 2 ln cos)). It is right
+// to the first order in the variance and, for a sharp lobe, which is a Gaussian, beyond. Variance 0: the lobe as it is.
 struct BlurredLobe {
   static constexpr double kTail = 40;  // cos^E below exp(-kTail) is left out: 4e-18 of the peak
 

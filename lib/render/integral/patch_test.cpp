@@ -95,8 +95,8 @@ TEST(Patch, IsWhatALobeMakesOfItInTheMean) {
   }
 }
 
-// A cosine is met exactly, wherever the channels are.
-TEST(Patch, KeepsACosineExactly) {
+// A base meets a cosine exactly, wherever the channels are, and a lobe of exponent 1 up to the square of the variance.
+TEST(Patch, KeepsACosine) {
   const Vec3 normal = normalized({0.2, 0.3, 0.9});
   const Cap cap(normalized({0.5, -0.2, 0.8}), {1, 0, 0}, kVariance);
   const std::array<double, 2> truth = cap.means([&](const Vec3& d) { return dot(d, normal); });

@@ -43,7 +43,7 @@ Result<ShownPaints> shown_paints(const LobeColumns& columns, const WornPaints& w
     if (!paint.ok()) return named(paint.error());
     auto flat = column_weights(columns, fit.diffuse, fit.lobes, part.gloss_deg);
     if (!flat.ok()) return named(flat.error());
-    if (coat != paint::kNoCoat && part.paint->coat_index > coat)
+    if (coat != paint::kNoCoat && part.paint->coat_index != paint::kNoCoat && part.paint->coat_index != coat)
       paint->mirror_by_view = mirror_by_view(coat, part.paint->coat_index);
     shown.with_views |= paint->view_deg.size() > 1 || !paint->mirror_by_view.empty();
     shown.paints.push_back(*std::move(paint)), shown.weights.push_back(*std::move(flat));

@@ -84,10 +84,12 @@ TEST(TenPaints, FromOneTransportAreThoseThatAreTracedAnew) {
 
 // A ball and its cup under one coat, shown with nothing but the image in another: at each point it is what Fresnel's
 // equations make of the image in the first one. The control: weights alone, which know no view.
-TEST(TenPaints, TheImageInAnotherCoatGoesWithTheView) {
-  constexpr double kTraced = 1.5, kOther = 1.56;
+class AnotherCoat : public testing::TestWithParam<std::pair<double, double>> {};
+
+TEST_P(AnotherCoat, ShowsItsImageAsItGoesWithTheView) {
+  const auto [traced_index, other_index] = GetParam();
   paint::LobeFit cup = matt({0.3, 0.3, 0.3}), ball = cup;
-  cup.coat_index = ball.coat_index = kTraced;
+  cup.coat_index = ball.coat_index = traced_index;
   ball.lobes = {{paint::kMirrorExponent, {}, {1, 1, 1}}};
   const Stage stage(cup, ball, kWidth, kHeight);
   LobeTransportRequest request;
@@ -101,7 +103,7 @@ TEST(TenPaints, TheImageInAnotherCoatGoesWithTheView) {
     image.lobes = {{paint::kMirrorExponent, {}, {1, 1, 1}}};
     const std::vector<PartPaint> parts(t.worn.brushed.size(), PartPaint{&image, {}, brdf::kGlossIncidence_deg, "", ""});
     ShownPaints shown = *shown_paints(t.columns, t.worn, parts);
-    EXPECT_EQ(shown.with_views, index != kTraced);
+    EXPECT_EQ(shown.with_views, index != traced_index);
     for (TransportPaint& paint : shown.paints)
       if (!by_view) paint.mirror_by_view.clear();
     BounceScale unscaled;
@@ -110,15 +112,16 @@ TEST(TenPaints, TheImageInAnotherCoatGoesWithTheView) {
     shader.shade(shown.paints, nullptr, unscaled, 1, picture);
     return picture;
   };
-  const image::Image before = image_of(kTraced, true), after = image_of(kOther, true),
-                     control = image_of(kOther, false);
+  const image::Image before = image_of(traced_index, true), after = image_of(other_index, true),
+                     control = image_of(other_index, false);
   double off = 0, off_control = 0;
   int compared = 0;
   for (std::size_t i = 0; i < t.places.size(); ++i) {
     const std::size_t at = 4 * t.places[i] + 1;
     if (!(before.data[at] > 0)) continue;
     const double c = std::cos(views_deg[i] * kDegree);
-    const double truth = before.data[at] * brdf::fresnel_dielectric(c, kOther) / brdf::fresnel_dielectric(c, kTraced);
+    const double truth =
+        before.data[at] * brdf::fresnel_dielectric(c, other_index) / brdf::fresnel_dielectric(c, traced_index);
     off = std::max(off, std::abs(after.data[at] / truth - 1));
     off_control = std::max(off_control, std::abs(control.data[at] / truth - 1));
     ++compared;
@@ -127,6 +130,7 @@ TEST(TenPaints, TheImageInAnotherCoatGoesWithTheView) {
   EXPECT_LT(off, 1e-3);
   EXPECT_GT(off_control, 0.04) << "the control must fail";
 }
+INSTANTIATE_TEST_SUITE_P(Each, AnotherCoat, testing::Values(std::pair(1.5, 1.56), std::pair(1.56, 1.5)));
 
 // One that is asked paint after paint sums up what the paints worn sent once. It says the same as one that is new, to
 // the last bit, by any number of threads. The control is another paint.
