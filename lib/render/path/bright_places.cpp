@@ -25,8 +25,8 @@ constexpr double kByArea = 0.75;
 // Of each piece one path is followed, and so many of each group.
 constexpr std::uint32_t kMostPieces = 1U << 14, kPathsOfGroup = 64;
 // About so many rays of a receiver are shared out among the places, of which each gets no less and no more than this.
-constexpr double kRays = 2048;
-constexpr std::uint32_t kLeastPairs = 2, kMostPairs = 64;
+constexpr double kRays = 8192;
+constexpr std::uint32_t kLeastPairs = 8, kMostPairs = 256;
 // Where light is spread this evenly, places are not worth while: the mean square of what the surface sends over the
 // square of its mean; and what they have to gain.
 constexpr double kEven = 10, kLeastGain = 2;
@@ -273,7 +273,7 @@ BrightPlaces::Link BrightPlaces::link(std::size_t receiver, std::size_t place, c
   return {cos, std::max(toward, cos * area_[place] / kPi)};
 }
 
-// A few pairs of points tell how much light each place would send with nothing in the way; rays go where that is much.
+// Some pairs of points tell how much light each place would send with nothing in the way; rays go where that is much.
 // With as many to all places, small bright ones that are seen from a part of the receiver alone would often be missed.
 BrightPlaces::Links BrightPlaces::links(std::size_t receiver, const std::vector<double>& squares,
                                         const Sequence& sequence) const {

@@ -143,7 +143,7 @@ Moments moments(const PathStage& stage, const Rays& through, int batches) {
   return moments;
 }
 
-// Mean and relative variance, by places and by lobes alone. The ratio of variances is 3.9 in the lounge and 13
+// Mean and relative variance, by places and by lobes alone. The ratio of variances is 3.9 in the lounge and 29
 // behind the shade; with two rays from each group to each other it is 1.7 and 3.9.
 void expect_same_with_less_noise(PathStage& stage, const Rays& through, double times) {
   stage.build();
@@ -159,13 +159,13 @@ TEST(BrightPlaces, TheSameLightHasLessNoise) {
   Lounge lounge;
   expect_same_with_less_noise(lounge, lounge.through, 2.5);
   ShadedLamp shaded;
-  expect_same_with_less_noise(shaded, shaded.through, 6);
+  expect_same_with_less_noise(shaded, shaded.through, 15);
 }
 
 // The bowls of the lounge's lamps are bright within, and the walls see that past their rims, from a part of each group
 // alone. Nearly all directions from walls and ceiling to lit points of the bowls are drawn toward places as well: along
-// the others light is met by luck only, as specks. They are 0.7 % here, and 8.5 % with two rays from each group to each
-// other, however bright it is.
+// the others light is met by luck only, as specks. They are 0.06 % here, 0.7 % with a quarter of the rays, and 8.5 %
+// with two rays from each group to each other, however bright it is.
 TEST(BrightPlaces, AreKnownWhereTheyAreSeenFromAPartOfAGroup) {
   Lounge lounge;
   const Transport& transport = lounge.build();
@@ -199,7 +199,7 @@ TEST(BrightPlaces, AreKnownWhereTheyAreSeenFromAPartOfAGroup) {
     }
   }
   ASSERT_GT(seen, 1000);
-  EXPECT_LT(seen - known, 0.025 * seen);
+  EXPECT_LT(seen - known, 0.003 * seen);
 }
 
 // Two of the box's walls that shine evenly light all of it evenly.
