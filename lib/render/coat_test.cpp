@@ -5,10 +5,12 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/hard_case_for_test.h"
 #include "base/testdata_for_test.h"
 #include "brdf/lobe_model.h"
 #include "fit/paint_fit.h"
 #include "formats/xml.h"
+#include "render/cpu/cpu_engine.h"
 #include "render/exact.h"
 #include "render/path/lobe_columns.h"
 #include "render/path/open_light.h"
@@ -150,6 +152,38 @@ TEST(Coat, LampsPassItAtTheirOwnAngle) {
     EXPECT_LE(off, 2e-3) << engine->name;
     EXPECT_GT(off_control, 2e-2);
   }
+}
+
+// A part without a coat beside one with a coat, where a disc lamp touches the horizon from below: what it lights there
+// comes to 0, and the coat is asked for what it lets in at a cosine of 0. Without a coat that is 1. The control is the
+// textbook form of the amplitudes, which is 0/0.
+TEST(HardCase, PartsWithoutACoatWhereALampSets) {
+  paint::LobeFit bare = matt({0.1, 0.2, 0.05});
+  bare.lobes = {{6, {0.05, 0.1, 0.02}, {0.01, 0.01, 0.01}}};
+  bare.coat_index = paint::kNoCoat;
+  paint::LobeFit coated = bare;
+  coated.coat_index = 1.5;
+  const mesh::Mesh mesh = panels_mesh(2);
+  Scene scene;
+  scene.mesh = &mesh, scene.paints = {bare, coated};
+  Light disc{{0, 1, 0}, {1, 1, 1}};
+  disc.radius_rad = 0.05;
+  scene.lights = {disc};
+  std::vector<VisiblePoint> points;
+  auto sine = static_cast<float>(-std::sin(disc.radius_rad));
+  for (int k = 0; k < 4; ++k) sine = std::nextafter(sine, -1.0F);
+  for (int k = 0; k < 64; ++k, sine = std::nextafter(sine, 1.0F)) {
+    const double y = sine, x = std::sqrt(1 - y * y);
+    points.push_back({{x, y, 0}, {x, y, 0}, 0});
+  }
+  CpuEngine cpu;
+  ASSERT_TRUE(cpu.load(scene, effects_of(scene)).ok());
+  double ours = 0;
+  for (const color::Rgb& seen : cpu.colors(points))
+    for (int c = 0; c < 3; ++c) ours = worst_of(ours, std::abs(seen[c]));
+  const float contrast = 0, c = 0, g = std::sqrt(contrast + c * c), s = c + g;
+  const double textbook = worst_of(0, std::abs(1 - 0.5 * std::pow(contrast / (s * s), 2)));
+  hard_case("coat-absent", {"a part without a coat where lamps touch the horizon", textbook, ours, 1e-6, "radiance"});
 }
 
 // What a transport knows of the open sky is what the engine cpu draws of it, also where parts differ in their coats.

@@ -262,8 +262,9 @@ HWY_INLINE V fresnel_of(V c) {
 }
 
 // What a coat lets in, by brdf's form of the Fresnel reflectance; `index2` is the square of its index, 1 without a
-// coat.
+// coat, where the amplitudes would be 0/0 at c = 0.
 HWY_INLINE float let_in(float c, float index2) {
+  if (index2 <= 1) return 1;
   const float contrast = index2 - 1, g = std::sqrt(contrast + c * c), s = c + g, p = index2 * c + g;
   const float r_s = contrast / (s * s), r_p = contrast * ((index2 + 1) * c * c - 1) / (p * p);
   return 1 - 0.5F * (r_s * r_s + r_p * r_p);

@@ -40,9 +40,10 @@ vec4 W(int slot) {
 )";
 
 // What a coat lets in, by brdf's form of the Fresnel reflectance; `index2` is the square of its index, 1 without a
-// coat.
+// coat, where the amplitudes would be 0/0 at c = 0.
 inline constexpr const char* kLetIn = R"(
 float let_in(float c, float index2) {
+  if (index2 <= 1.0) return 1.0;
   float contrast = index2 - 1.0, g = sqrt(contrast + c * c), s = c + g, p = index2 * c + g;
   float r_s = contrast / (s * s), r_p = contrast * ((index2 + 1.0) * c * c - 1.0) / (p * p);
   return 1.0 - 0.5 * (r_s * r_s + r_p * r_p);
