@@ -16,8 +16,10 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "base/child.h"
 #include "base/file.h"
@@ -82,6 +84,27 @@ bool read_whole(std::vector<unsigned char>* bytes, std::string* error, const std
   bytes->assign(content->begin(), content->end());
   return true;
 }
+bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+  return false;
+}
+bool find_size(std::size_t* bytes, std::string* error, const std::string& path, void*) {
+  std::error_code failure;
+  *bytes = std::filesystem::file_size(path, failure);
+  if (failure) *error += failure.message();
+  return !failure;
+}
+// Version 2.9 of the library also asks for the size of a file before it reads it, and takes no incomplete list.
+template <class Callbacks>
+Callbacks callbacks_for(std::string& folder) {
+  Callbacks callbacks{};
+  callbacks.FileExists = is_beside;
+  callbacks.ExpandFilePath = as_it_is;
+  callbacks.ReadWholeFile = read_whole;
+  callbacks.WriteWholeFile = write_nothing;
+  if constexpr (requires { callbacks.GetFileSizeInBytes; }) callbacks.GetFileSizeInBytes = find_size;
+  callbacks.user_data = &folder;
+  return callbacks;
+}
 bool pass_over_picture(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
   return true;
 }
@@ -111,7 +134,7 @@ class Reader {
   Result<void> load(const std::string& content) {
     tinygltf::TinyGLTF library;
     library.SetImageLoader(pass_over_picture, nullptr);
-    library.SetFsCallbacks({is_beside, as_it_is, read_whole, nullptr, &folder_});
+    library.SetFsCallbacks(callbacks_for<tinygltf::FsCallbacks>(folder_));
     std::string error, warning;
     const auto size = static_cast<unsigned>(content.size());
     if (size != content.size()) return refused("file", "has more than 4 GB: split it");
@@ -440,8 +463,8 @@ class Reader {
   Result<void> put_sparse(const tinygltf::Accessor& of, const Numbers& all, const std::string& where,
                           std::vector<double>& values) const {
     const auto& sparse = of.sparse;
-    if (!is_index(sparse.indices.componentType) || sparse.count < 0 || sparse.indices.byteOffset < 0 ||
-        sparse.values.byteOffset < 0)
+    if (!is_index(sparse.indices.componentType) || std::cmp_less(sparse.count, 0) ||
+        std::cmp_less(sparse.indices.byteOffset, 0) || std::cmp_less(sparse.values.byteOffset, 0))
       return refused(where, "its sparse accessor has indices that are no whole numbers");
     const auto count = static_cast<std::size_t>(sparse.count);
     std::vector<double> places, numbers;

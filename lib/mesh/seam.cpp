@@ -1,10 +1,17 @@
 #include "mesh/seam.h"
 
+#include <CGAL/AABB_tree.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/version.h>
+#if CGAL_VERSION_MAJOR >= 6
+#include <CGAL/AABB_segment_primitive_3.h>
+#include <CGAL/AABB_traits_3.h>
+#include <CGAL/AABB_triangle_primitive_3.h>
+#else
 #include <CGAL/AABB_segment_primitive.h>
 #include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
-#include <CGAL/Simple_cartesian.h>
+#endif
 
 #include <algorithm>
 #include <array>
@@ -183,10 +190,16 @@ using Kernel = CGAL::Simple_cartesian<double>;
 using Point = Kernel::Point_3;
 using Segments = std::vector<Kernel::Segment_3>;
 using Triangles = std::vector<Kernel::Triangle_3>;
-using SegmentTree =
-    CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_segment_primitive<Kernel, Segments::const_iterator>>>;
-using TriangleTree =
-    CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>>>;
+// CGAL 6 names its trees by their dimension.
+#if CGAL_VERSION_MAJOR >= 6
+using OfSegments = CGAL::AABB_traits_3<Kernel, CGAL::AABB_segment_primitive_3<Kernel, Segments::const_iterator>>;
+using OfTriangles = CGAL::AABB_traits_3<Kernel, CGAL::AABB_triangle_primitive_3<Kernel, Triangles::const_iterator>>;
+#else
+using OfSegments = CGAL::AABB_traits<Kernel, CGAL::AABB_segment_primitive<Kernel, Segments::const_iterator>>;
+using OfTriangles = CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>>;
+#endif
+using SegmentTree = CGAL::AABB_tree<OfSegments>;
+using TriangleTree = CGAL::AABB_tree<OfTriangles>;
 
 Point point(const Vec3& v) {
   return {v.x, v.y, v.z};

@@ -1,11 +1,10 @@
 #include "rays/ray_scene.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 
+#include "rays/internal/embree.h"
 #include "rays/internal/vertex_tree.h"
 
 namespace goniochrome::rays {
@@ -67,12 +66,6 @@ Result<void> check(const mesh::Mesh& mesh, const std::optional<Floor>& floor) {
                        covered, mesh.triangles.size());
   if (floor && !std::isfinite(floor->height)) return input_error("a floor at height {}: write a number", floor->height);
   return {};
-}
-
-RTCIntersectContext incoherent() {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  return context;
 }
 
 RTCRay ray_of(const Float3& origin, const Float3& direction, float distance) {
@@ -234,12 +227,11 @@ double RayScene::by_solid_angle(std::uint32_t triangle, const Float3& direction,
 }
 
 Hit RayScene::closest(const Float3& origin, const Float3& direction) const {
-  RTCIntersectContext context = incoherent();
   RTCRayHit query{};
   const float floor = floor_distance(origin, direction);
   query.ray = ray_of(origin, direction, floor);
   query.hit.geomID = query.hit.primID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(state_->scene.get(), &context, &query);
+  intersect(state_->scene.get(), ray_query(false), query);
   if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) return {query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
   if (floor < kInfinite) return {kFloor, 0, 0, floor};
   return {};
@@ -247,15 +239,12 @@ Hit RayScene::closest(const Float3& origin, const Float3& direction) const {
 
 bool RayScene::blocked(const Float3& origin, const Float3& direction, float distance) const {
   if (floor_distance(origin, direction) < distance) return true;
-  RTCIntersectContext context = incoherent();
   RTCRay ray = ray_of(origin, direction, distance);
-  rtcOccluded1(state_->scene.get(), &context, &ray);
+  occlude(state_->scene.get(), ray_query(false), ray);
   return ray.tfar < 0;
 }
 
 unsigned RayScene::blocked(const Fan& fan) const {
-  RTCIntersectContext context = incoherent();
-  if (fan.narrow) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   RTCRay8 rays{};
   alignas(32) int valid[8];
   unsigned result = 0;
@@ -271,14 +260,13 @@ unsigned RayScene::blocked(const Fan& fan) const {
     rays.tfar[i] = fan.reach;
     rays.mask[i] = ~0U;
   }
-  rtcOccluded8(valid, state_->scene.get(), &context, &rays);
+  occlude(state_->scene.get(), ray_query(fan.narrow), valid, rays);
   for (unsigned i = 0; i < 8; ++i)
     if (valid[i] != 0 && rays.tfar[i] < 0) result |= 1U << i;
   return result;
 }
 
 void RayScene::closest(const Fan& fan, Hit* hits) const {
-  RTCIntersectContext context = incoherent();
   RTCRayHit8 rays{};
   alignas(32) int valid[8];
   for (unsigned i = 0; i < 8; ++i) {
@@ -289,7 +277,7 @@ void RayScene::closest(const Fan& fan, Hit* hits) const {
     rays.ray.mask[i] = ~0U;
     rays.hit.geomID[i] = rays.hit.primID[i] = RTC_INVALID_GEOMETRY_ID;
   }
-  rtcIntersect8(valid, state_->scene.get(), &context, &rays);
+  intersect(state_->scene.get(), ray_query(false), valid, rays);
   for (unsigned i = 0; i < 8; ++i) {
     if (valid[i] == 0) continue;
     if (rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {

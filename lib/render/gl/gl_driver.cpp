@@ -1,6 +1,5 @@
 #include "render/gl/gl_driver.h"
 
-#include <GL/osmesa.h>
 #include <sys/mman.h>
 
 #include <cstdlib>
@@ -17,13 +16,19 @@ namespace {
 constexpr int kWindow = 4;
 unsigned char window_pixels[kWindow * kWindow * 4];
 
+// Mesa's interface of OSMesa (GL/osmesa.h), declared here because Mesa ended it in version 25.1.
+using OSMesaContext = struct OsmesaContext*;
+constexpr int kFormat = 0x22, kDepthBits = 0x30, kProfile = 0x33, kCoreProfile = 0x34, kMajorVersion = 0x36,
+              kMinorVersion = 0x37, kRgba = 0x1908;
+constexpr unsigned kUnsignedByte = 0x1401;  // GL_UNSIGNED_BYTE
+
 constexpr const char* kOsmesaLibrary = "libOSMesa.so.8";
 struct OSMesa {
   LateLibrary library{kOsmesaLibrary};
-  decltype(&OSMesaCreateContextAttribs) create = nullptr;
-  decltype(&OSMesaMakeCurrent) make_current = nullptr;
-  decltype(&OSMesaDestroyContext) destroy = nullptr;
-  decltype(&OSMesaGetProcAddress) address = nullptr;
+  OSMesaContext (*create)(const int* attributes, OSMesaContext shared) = nullptr;
+  unsigned char (*make_current)(OSMesaContext context, void* pixels, unsigned type, int width, int height) = nullptr;
+  void (*destroy)(OSMesaContext context) = nullptr;
+  void (*(*address)(const char* name))() = nullptr;
 };
 
 // The library, loaded once. Error: it is not there, or is another one.
@@ -46,7 +51,7 @@ class OsmesaDriver : public GlDriver {
   ~OsmesaDriver() override { library_.destroy(context_); }
 
   void make_current() const override {
-    library_.make_current(context_, window_pixels, GL_UNSIGNED_BYTE, kWindow, kWindow);
+    library_.make_current(context_, window_pixels, kUnsignedByte, kWindow, kWindow);
   }
   void* address(const char* name) const override { return reinterpret_cast<void*>(library_.address(name)); }
   const char* name() const override { return "OSMesa"; }
@@ -58,17 +63,7 @@ class OsmesaDriver : public GlDriver {
 
 Result<std::shared_ptr<const GlDriver>> osmesa_driver() {
   GONIO_ASSIGN(const OSMesa* library, osmesa());
-  const int wanted[] = {OSMESA_FORMAT,
-                        OSMESA_RGBA,
-                        OSMESA_DEPTH_BITS,
-                        0,
-                        OSMESA_PROFILE,
-                        OSMESA_CORE_PROFILE,
-                        OSMESA_CONTEXT_MAJOR_VERSION,
-                        3,
-                        OSMESA_CONTEXT_MINOR_VERSION,
-                        3,
-                        0};
+  const int wanted[] = {kFormat, kRgba, kDepthBits, 0, kProfile, kCoreProfile, kMajorVersion, 3, kMinorVersion, 3, 0};
   const OSMesaContext context = library->create(wanted, nullptr);
   if (context == nullptr)
     return input_error("OSMesa makes no OpenGL 3.3 core context: install libosmesa6 of Mesa 22 or later");
