@@ -18,7 +18,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 
-namespace goniochrome {
+namespace goniochrome::child_test {
 namespace {
 
 using testing::HasSubstr;
@@ -180,4 +180,4 @@ TEST(Child, TellsWhatItCosts) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::child_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace goniochrome {
+namespace goniochrome::encode_test {
 namespace {
 
 // The examples of RFC 4648, section 10.
@@ -23,4 +23,4 @@ TEST(Encode, PartsOfAddresses) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::encode_test

@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::file_names_test {
 namespace {
 
 using testing::HasSubstr;
@@ -73,4 +73,4 @@ TEST(FileName, MisspelledWordIsToldAndOtherBracesAreNot) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::file_names_test

@@ -12,7 +12,7 @@
 #include "base/hard_case_for_test.h"
 #include "base/scratch_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::file_test {
 namespace {
 
 class Files : public testing::Test {
@@ -151,4 +151,4 @@ TEST_F(Files, HardCase_InterruptedDiskFullIsAnError) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::file_test

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-namespace goniochrome {
+namespace goniochrome::heap_test {
 namespace {
 
 constexpr std::size_t kBytes = std::size_t{40} << 20;  // more than glibc ever keeps by itself
@@ -46,4 +46,4 @@ TEST(Heap, KeepsTheMemoryOfAnArrayForTheNext) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::heap_test

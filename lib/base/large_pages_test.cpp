@@ -7,7 +7,7 @@
 
 #include "base/unset_array.h"
 
-namespace goniochrome {
+namespace goniochrome::large_pages_test {
 namespace {
 
 constexpr std::size_t kMany = 3'000'001;  // 12 MB, and no whole number of pages
@@ -40,4 +40,4 @@ TEST(LargePages, AnUnsetArrayIsWritten) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::large_pages_test

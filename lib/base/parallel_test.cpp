@@ -12,7 +12,7 @@
 
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::parallel_test {
 namespace {
 
 TEST(Parallel, EveryIndexOnceWhateverTheThreads) {
@@ -105,4 +105,4 @@ TEST(HardCase, ThreadsChunkedSumsAreBitIdentical) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::parallel_test

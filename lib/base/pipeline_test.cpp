@@ -6,7 +6,7 @@
 #include <chrono>
 #include <numeric>
 
-namespace goniochrome {
+namespace goniochrome::pipeline_test {
 namespace {
 
 struct Slot {
@@ -92,4 +92,4 @@ TEST(Pipeline, HoldsNoMoreThanItsSlots) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::pipeline_test

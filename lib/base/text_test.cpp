@@ -6,7 +6,7 @@
 #include <cstring>
 #include <random>
 
-namespace goniochrome {
+namespace goniochrome::text_test {
 namespace {
 
 TEST(Text, NumbersParseWholeOrNotAtAll) {
@@ -40,4 +40,4 @@ TEST(Text, SplitKeepsEmptyPieces) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::text_test

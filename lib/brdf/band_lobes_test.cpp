@@ -7,7 +7,7 @@
 #include "base/angles.h"
 #include "paint/spectra.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::band_lobes_test {
 namespace {
 
 using color::Bands;
@@ -141,4 +141,4 @@ TEST(BandLobes, GrayAsksForNoSpectrumAndColorDoes) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::band_lobes_test

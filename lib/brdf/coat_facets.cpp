@@ -44,7 +44,7 @@ Pair spread_pair(int i) {
   return {std::fmod(0.5 + i / kGolden, 1), std::fmod(0.5 + i / (kGolden * kGolden), 1)};
 }
 
-bool is_gray(const color::Rgb& c) {
+bool is_even(const color::Rgb& c) {
   return c.x == c.y && c.y == c.z;
 }
 
@@ -130,7 +130,7 @@ bool stands_for_coat(const paint::LobeFit& fit) {
   for (const paint::ViewLobes& view : fit.views) {
     const std::vector<paint::Lobe>& first = fit.views.front().lobes;
     for (std::size_t j = 0; j < view.lobes.size(); ++j) {
-      if (!is_gray(view.lobes[j].gloss)) return false;
+      if (!is_even(view.lobes[j].gloss)) return false;
       changes = changes || j >= first.size() || view.lobes[j].gloss != first[j].gloss;
     }
   }

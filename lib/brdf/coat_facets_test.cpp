@@ -8,7 +8,7 @@
 #include "brdf/gloss.h"
 #include "brdf/true_coat_for_test.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::coat_facets_test {
 namespace {
 
 const TrueCoat kCoats[] = {{0, 0.004, 0.3},       {0, 0.25, 0.3},       {1.2, 0.008, 0.3},      {2.9, 0.02, 0.45},
@@ -128,4 +128,4 @@ TEST(CoatFacets, LobesTellTheirCoat) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::coat_facets_test

@@ -10,7 +10,7 @@
 #include "brdf/tilted_lobes.h"
 #include "brdf/true_coat_for_test.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::coat_tilts_test {
 namespace {
 
 const std::vector<double> kBasis = {1.3, 6, 20, 70, 250, 900, 3000};
@@ -95,4 +95,4 @@ TEST(CoatTilts, HaveAllTheLight) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::coat_tilts_test

@@ -8,7 +8,7 @@
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::color_map_test {
 namespace {
 
 TEST(ColorMap, TexelsStandForTheirDirections) {
@@ -140,4 +140,4 @@ TEST(HardCase, IsolineCriticalSphereHasNoErrorPixels) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::color_map_test

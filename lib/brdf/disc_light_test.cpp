@@ -11,7 +11,7 @@
 #include "math/cosine_power.h"
 #include "math/quadrature.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::disc_light_test {
 namespace {
 
 using ::testing::Le;
@@ -232,4 +232,4 @@ TEST(DiscLight, NodesThatAreFilledAgreeWithThoseThatAreComputed) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::disc_light_test

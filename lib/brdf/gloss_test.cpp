@@ -9,7 +9,7 @@
 #include "base/hard_case_for_test.h"
 #include "brdf/internal/gloss_meter_for_test.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::gloss_test {
 namespace {
 
 const std::vector<double> kBasis = {1.3, 6, 20, 70, 250, 900, 3000};
@@ -250,4 +250,4 @@ TEST(Gloss, ACoatTakesFromWhatTheBaseReads) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::gloss_test

@@ -7,7 +7,7 @@
 #include "base/angles.h"
 #include "brdf/disc_light.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::highlight_test {
 namespace {
 
 paint::LobeFit glossy(double exponent) {
@@ -47,4 +47,4 @@ TEST(Highlight, WiderEdgesHaveLessGlossDownToTheLamp) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::highlight_test

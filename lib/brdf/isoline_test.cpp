@@ -11,7 +11,7 @@
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::isoline_test {
 namespace {
 
 constexpr std::array kTreatments = {CriticalAngle::kClip, CriticalAngle::kSlide, CriticalAngle::kSlideMap,
@@ -271,4 +271,4 @@ TEST(Isoline, NamesOfTreatments) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::isoline_test

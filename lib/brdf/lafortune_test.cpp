@@ -9,7 +9,7 @@
 #include "base/hard_case_for_test.h"
 #include "brdf/lobe_model.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::lafortune_test {
 namespace {
 
 Vec3 direction(double polar_rad, double azimuth_rad) {
@@ -113,4 +113,4 @@ TEST(Lafortune, BlendsBetweenStoredExponents) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::lafortune_test

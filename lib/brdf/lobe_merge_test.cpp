@@ -6,7 +6,7 @@
 
 #include "base/angles.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::lobe_merge_test {
 namespace {
 
 TurnedLobe lobe(double exponent, double share, double turn_rad = 0, double across = -1) {
@@ -99,4 +99,4 @@ TEST(MergedLobes, AFewAreNearToMany) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::lobe_merge_test

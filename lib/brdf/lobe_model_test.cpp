@@ -7,7 +7,7 @@
 
 #include "base/angles.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::lobe_model_test {
 namespace {
 
 TEST(LobeModel, FresnelKnownValues) {
@@ -182,4 +182,4 @@ TEST(Coat, UnderAnotherCoatAPaintLooksTheSameAtTheUsualGeometry) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::lobe_model_test

@@ -8,7 +8,7 @@
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::lobe_surface_test {
 namespace {
 
 // The definition of McAllister's equation 2, with the frame of the lobe as three vectors.
@@ -150,4 +150,4 @@ TEST(LobeSurface, LobesKeepDirectionsOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::lobe_surface_test

@@ -56,17 +56,17 @@ double dark_noise(std::vector<Swapped> pairs) {
 // integral f cos(theta_o) d omega for light at 45 deg, the midpoint rule on equal cosine-weighted areas; the 10 deg
 // about specular hold the gloss, which no such grid resolves.
 double albedo_without_gloss(const MeasuredBrdf& brdf) {
-  constexpr int kRings = 24, kSpokes = 48;
+  constexpr int kRowsOfDisc = 24, kSpokes = 48;
   const Vec3 light = {std::sin(45 * kDegree), 0, std::cos(45 * kDegree)};
   double sum = 0;
-  for (int i = 0; i < kRings; ++i)
+  for (int i = 0; i < kRowsOfDisc; ++i)
     for (int j = 0; j < kSpokes; ++j) {
-      const double sine = std::sqrt((i + 0.5) / kRings), azimuth = 2 * kPi * (j + 0.5) / kSpokes;
+      const double sine = std::sqrt((i + 0.5) / kRowsOfDisc), azimuth = 2 * kPi * (j + 0.5) / kSpokes;
       const Vec3 view = {sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - sine * sine)};
       if (paint::aspecular_angle_rad(light, view, {0, 0, 1}) < 10 * kDegree) continue;
       sum += math::mean(brdf.value(light, view).f);
     }
-  return sum * kPi / (kRings * kSpokes);
+  return sum * kPi / (kRowsOfDisc * kSpokes);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace goniochrome::brdf {
 
 namespace {
 
-constexpr std::string_view kMagic = "NVIDIA ARC MBSDF", kReflection = "MBSDF_DATA_REFLECTION=\n";
+constexpr std::string_view kMbsdfMagic = "NVIDIA ARC MBSDF", kReflection = "MBSDF_DATA_REFLECTION=\n";
 
 // Values at the centers of cells: theta (i + 1/2) 90/n_theta deg for light and viewer, azimuth (k + 1/2) 180/n_phi deg,
 // 180 deg across the normal from the light.
@@ -90,7 +90,7 @@ void find_copied_rows(const Grid& grid, MeasuredTraits& traits) {
 }
 
 bool looks_mbsdf(std::string_view, std::string_view head) {
-  return head.starts_with(kMagic);
+  return head.starts_with(kMbsdfMagic);
 }
 
 Result<MeasuredPointer> read_mbsdf(const std::string& path, std::string_view bytes) {

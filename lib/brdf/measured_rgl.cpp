@@ -11,7 +11,7 @@ namespace goniochrome::brdf {
 
 namespace {
 
-constexpr std::string_view kMagic{"tensor_file\0", 12};
+constexpr std::string_view kTensorMagic{"tensor_file\0", 12};
 
 struct Tensor {
   std::vector<std::size_t> shape = {};
@@ -42,7 +42,7 @@ Result<TensorFile> TensorFile::parse(const std::string& path, std::string_view b
   TensorFile file;
   file.path_ = path;
   const auto cut = [&] { return input_error("{}: the tensor file is cut within its header", path); };
-  ByteReader reader(bytes.substr(kMagic.size()));
+  ByteReader reader(bytes.substr(kTensorMagic.size()));
   const auto version = reader.next<std::uint16_t>();
   const auto count = reader.next<std::uint32_t>();
   if (!count) return cut();
@@ -202,7 +202,7 @@ class RglBrdf final : public MeasuredBrdf {
 };
 
 bool looks_rgl(std::string_view, std::string_view head) {
-  return head.starts_with(kMagic);
+  return head.starts_with(kTensorMagic);
 }
 
 Result<MeasuredPointer> read_rgl(const std::string& path, std::string_view bytes) {

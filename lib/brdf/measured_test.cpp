@@ -18,7 +18,7 @@
 #include "base/text.h"
 #include "color/reflection.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::measured_test {
 namespace {
 
 using testing::HasSubstr;
@@ -579,4 +579,4 @@ TEST_F(Measured, CornellPaintsInHeldOutLampsRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::measured_test

@@ -30,12 +30,12 @@ namespace {
 
 constexpr int kSlopes = 29;
 constexpr std::size_t kViewCount = std::size(kCoatViews_deg);
-constexpr int kRings = 26;  // to 90 deg; one more lies beyond
+constexpr int kCoatRings = 26;  // to 90 deg; one more lies beyond
 constexpr double kFirstRing_deg = 0.03;
 constexpr double kAll = std::numeric_limits<double>::infinity();
 constexpr double kGaussianReach = 4;  // widths, where exp(-16) is left
 
-using Rings = std::array<double, kRings + 1>;
+using Rings = std::array<double, kCoatRings + 1>;
 
 // f cos_i cos_o of one scale; 0 where a direction is below the horizon.
 double sent(const Vec3& in, const Vec3& out, const Facets& facets) {
@@ -103,12 +103,12 @@ double facets_reading(const Meter& meter, const Facets& facets) {
                         [&](const Vec3& in, const Vec3& out) { return sent(in, out, facets); });
 }
 
-const std::array<double, kRings + 1>& ring_angles() {
+const std::array<double, kCoatRings + 1>& ring_angles() {
   static const auto made = [] {
-    std::array<double, kRings + 1> angles{};
-    for (int k = 0; k < kRings; ++k)
-      angles[k] = kFirstRing_deg * math::pow(90 / kFirstRing_deg, k / (kRings - 1.0)) * kDegree;
-    angles[kRings] = kPi;
+    std::array<double, kCoatRings + 1> angles{};
+    for (int k = 0; k < kCoatRings; ++k)
+      angles[k] = kFirstRing_deg * math::pow(90 / kFirstRing_deg, k / (kCoatRings - 1.0)) * kDegree;
+    angles[kCoatRings] = kPi;
     return angles;
   }();
   return made;
@@ -123,7 +123,7 @@ Rings within_rings(double view_deg, int around, const Function& g) {
   const Vec3 axis = {-sine, 0, cosine}, toward = {cosine, 0, sine};
   Rings within{};
   double sum = 0, low = 0;
-  for (int k = 0; k <= kRings; ++k) {
+  for (int k = 0; k <= kCoatRings; ++k) {
     const double high = ring_angles()[k];
     for (const auto& [x, w] : rule) {
       const double angle = (low + high) / 2 + (high - low) / 2 * x;
@@ -249,7 +249,7 @@ std::span<const double> ring_angles_rad() {
 
 std::vector<double> coat_within(const RoughCoat& coat, std::size_t view) {
   const Table<FacetRings>& table = rings(coat.slopes);
-  std::vector<double> within(kRings + 1, 0.0);
+  std::vector<double> within(kCoatRings + 1, 0.0);
   for (const bool sharp : {true, false}) {
     const Place at = place(sharp ? coat.slope : coat.haze);
     for (std::size_t k = 0; k < within.size(); ++k) {

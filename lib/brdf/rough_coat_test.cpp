@@ -9,7 +9,7 @@
 #include "brdf/gloss.h"
 #include "brdf/true_coat_for_test.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::rough_coat_test {
 namespace {
 
 const std::vector<double> kBasis = {1.3, 6, 20, 70, 250, 900, 3000};
@@ -217,4 +217,4 @@ TEST(HardCase, GlossSatinMeetsThreeReadingsTogether) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::rough_coat_test

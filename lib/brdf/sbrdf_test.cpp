@@ -6,7 +6,7 @@
 
 #include "base/angles.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::sbrdf_test {
 namespace {
 
 SbrdfTexture two_by_one() {
@@ -60,4 +60,4 @@ TEST(Sbrdf, TapsOfPlacesBeyondAllNumbersAreTexels) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::sbrdf_test

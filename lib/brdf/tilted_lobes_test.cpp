@@ -6,7 +6,7 @@
 
 #include "base/angles.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::tilted_lobes_test {
 namespace {
 
 paint::TiltedLobes two_lobes() {
@@ -92,4 +92,4 @@ TEST(TiltedLobes, AWeightIsTheShareOfEvenLight) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::tilted_lobes_test

@@ -8,7 +8,7 @@
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome::brdf {
+namespace goniochrome::brdf::ward_test {
 namespace {
 
 Vec3 direction(double polar_rad, double azimuth_rad) {
@@ -175,4 +175,4 @@ TEST(Ward, TiltsOfExtremeAndSwappedAxes) {
 }
 
 }  // namespace
-}  // namespace goniochrome::brdf
+}  // namespace goniochrome::brdf::ward_test

@@ -10,7 +10,7 @@
 #include "base/scratch_for_test.h"
 #include "capture/internal/truth_for_test.h"
 
-namespace goniochrome::capture {
+namespace goniochrome::capture::map_fit_test {
 namespace {
 
 constexpr int kWidth = 20, kHeight = 12;
@@ -261,4 +261,4 @@ TEST(MapFit, TexelsThatNobodySawShineAreUncertain) {
 }
 
 }  // namespace
-}  // namespace goniochrome::capture
+}  // namespace goniochrome::capture::map_fit_test

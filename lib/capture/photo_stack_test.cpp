@@ -8,7 +8,7 @@
 #include "base/scratch_for_test.h"
 #include "image/image.h"
 
-namespace goniochrome::capture {
+namespace goniochrome::capture::photo_stack_test {
 namespace {
 
 class PhotoStackOf : public testing::Test {
@@ -70,4 +70,4 @@ TEST_F(PhotoStackOf, RefusesWhatIsNoStack) {
 }
 
 }  // namespace
-}  // namespace goniochrome::capture
+}  // namespace goniochrome::capture::photo_stack_test

@@ -4,7 +4,7 @@
 
 #include "base/scratch_for_test.h"
 
-namespace goniochrome::capture {
+namespace goniochrome::capture::photo_table_test {
 namespace {
 
 const std::string kHead = "image,light_x,light_y,light_z,camera_x,camera_y,camera_z,exposure\n";
@@ -74,4 +74,4 @@ TEST(PhotoTable, StationsThatTellNothingAreRefused) {
 }
 
 }  // namespace
-}  // namespace goniochrome::capture
+}  // namespace goniochrome::capture::photo_table_test

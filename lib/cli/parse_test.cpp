@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "cli/tool.h"
 
-namespace goniochrome::cli {
+namespace goniochrome::cli::parse_test {
 namespace {
 
 struct Values {
@@ -199,4 +199,4 @@ TEST(Tool, TheExitStatusFollowsTheOutcome) {
 }
 
 }  // namespace
-}  // namespace goniochrome::cli
+}  // namespace goniochrome::cli::parse_test

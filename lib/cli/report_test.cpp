@@ -7,7 +7,7 @@
 #include "base/clock.h"
 #include "base/file.h"
 
-namespace goniochrome::cli {
+namespace goniochrome::cli::report_test {
 namespace {
 
 std::string path() {
@@ -55,4 +55,4 @@ TEST(Report, AListOfAnyLengthTakesConstantMemory) {
 #endif
 
 }  // namespace
-}  // namespace goniochrome::cli
+}  // namespace goniochrome::cli::report_test

@@ -25,7 +25,7 @@ namespace goniochrome::cli {
 
 namespace {
 
-constexpr int kInputStatus = 3;
+constexpr int kNoThreadStatus = 3;
 
 // A message that is written where nothing may be allocated.
 struct Message {
@@ -47,7 +47,7 @@ std::atomic<bool> expected = false;
   if (!expected.exchange(false)) return;
   end_child_without_thread();
   (is_short_of_memory() ? no_memory : no_thread).print();
-  _exit(kInputStatus);
+  _exit(kNoThreadStatus);
 }
 
 }  // namespace

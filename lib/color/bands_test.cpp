@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "color/spectrum.h"
 
-namespace goniochrome::color {
+namespace goniochrome::color::bands_test {
 namespace {
 
 struct Column {
@@ -123,4 +123,4 @@ TEST(Bands, RefuseWhatIsNoSpectrum) {
 }
 
 }  // namespace
-}  // namespace goniochrome::color
+}  // namespace goniochrome::color::bands_test

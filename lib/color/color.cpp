@@ -26,7 +26,7 @@ constexpr Matrix operator*(const Matrix& a, const Matrix& b) {
 }
 
 // The inverse, by cross products of the rows.
-constexpr Matrix inverse(const Matrix& m) {
+constexpr Matrix inverse_of(const Matrix& m) {
   const double scale = 1 / dot(m[0], cross(m[1], m[2]));
   return transposed({scale * cross(m[1], m[2]), scale * cross(m[2], m[0]), scale * cross(m[0], m[1])});
 }
@@ -50,7 +50,7 @@ constexpr Vec3 xyz_of(const Chromaticity& c) {
 constexpr Matrix rgb_to_xyz(const Chromaticity& red, const Chromaticity& green, const Chromaticity& blue,
                             const Chromaticity& white) {
   const Matrix columns = {xyz_of(red), xyz_of(green), xyz_of(blue)};
-  const Vec3 scale = inverse(transposed(columns)) * xyz_of(white);
+  const Vec3 scale = inverse_of(transposed(columns)) * xyz_of(white);
   return transposed({scale.x * columns[0], scale.y * columns[1], scale.z * columns[2]});
 }
 
@@ -58,15 +58,15 @@ constexpr Matrix rgb_to_xyz(const Chromaticity& red, const Chromaticity& green, 
 constexpr Chromaticity kWhite = {0.3127, 0.3290};
 constexpr Matrix kXyzFrom2020 = rgb_to_xyz({0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, kWhite);
 constexpr Matrix kXyzFrom709 = rgb_to_xyz({0.640, 0.330}, {0.300, 0.600}, {0.150, 0.060}, kWhite);
-constexpr Matrix k2020FromXyz = inverse(kXyzFrom2020);
+constexpr Matrix k2020FromXyz = inverse_of(kXyzFrom2020);
 constexpr Matrix k2020From709 = k2020FromXyz * kXyzFrom709;
-constexpr Matrix k709From2020 = inverse(k2020From709);
+constexpr Matrix k709From2020 = inverse_of(k2020From709);
 constexpr Xyz kWorkingWhite = xyz(xyz_of(kWhite));
 
 // Sharpened cone responses of the Bradford transform. [Lam1985]
 constexpr Matrix kBradford = {Vec3{0.8951, 0.2664, -0.1614}, Vec3{-0.7502, 1.7135, 0.0367},
                               Vec3{0.0389, -0.0685, 1.0296}};
-constexpr Matrix kBradfordInverse = inverse(kBradford);
+constexpr Matrix kBradfordInverse = inverse_of(kBradford);
 
 // [S-2014-004], the primaries AP1 and the white of ACES, to which colors are adapted by Bradford's matrix.
 constexpr Chromaticity kAcesWhite = {0.32168, 0.33767};
@@ -77,7 +77,7 @@ constexpr Matrix between_whites(const Vec3& from, const Vec3& to) {
   return kBradfordInverse * (scale * kBradford);
 }
 constexpr Matrix k2020FromAcescg = k2020FromXyz * (between_whites(xyz_of(kAcesWhite), xyz_of(kWhite)) * kXyzFromAcescg);
-constexpr Matrix kAcescgFrom2020 = inverse(k2020FromAcescg);
+constexpr Matrix kAcescgFrom2020 = inverse_of(k2020FromAcescg);
 
 // White points as CIE 15 and ASTM E308 print them (X and Z for Y = 100), for the 2 and the 10 deg observer.
 struct White {

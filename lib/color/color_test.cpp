@@ -13,7 +13,7 @@
 #include "base/text.h"
 #include "color/acescg.h"
 
-namespace goniochrome::color {
+namespace goniochrome::color::color_test {
 namespace {
 
 const Xyz kD65_10 = *white_point({"D65", 10});
@@ -206,4 +206,4 @@ TEST(HardCase, LabExtremes) {
 }
 
 }  // namespace
-}  // namespace goniochrome::color
+}  // namespace goniochrome::color::color_test

@@ -9,7 +9,7 @@
 #include "base/hard_case_for_test.h"
 #include "color/color.h"
 
-namespace goniochrome::color {
+namespace goniochrome::color::difference_test {
 namespace {
 
 struct Pair {
@@ -161,4 +161,4 @@ TEST(Difference, VectorHasTheLengthOfTheDifference) {
 }
 
 }  // namespace
-}  // namespace goniochrome::color
+}  // namespace goniochrome::color::difference_test

@@ -18,7 +18,7 @@
 #include "color/reflection.h"
 #include "color/reflection_file.h"
 
-namespace goniochrome::color {
+namespace goniochrome::color::reflection_evidence_test {
 namespace {
 
 using Spectrum = std::vector<double>;
@@ -346,4 +346,4 @@ TEST_F(ReflectionEvidence, TheTableIsTheLeastOfItsKindOnWhatItWasFittedTo) {
 }
 
 }  // namespace
-}  // namespace goniochrome::color
+}  // namespace goniochrome::color::reflection_evidence_test

@@ -9,7 +9,7 @@
 
 #include "base/scratch_for_test.h"
 
-namespace goniochrome::color {
+namespace goniochrome::color::reflection_file_test {
 namespace {
 
 double largest_difference(const ReflectionOperator& a, const ReflectionOperator& b) {
@@ -96,4 +96,4 @@ TEST(ReflectionFile, NamesAndSharesAreTakenAsOptionsHaveThem) {
 }
 
 }  // namespace
-}  // namespace goniochrome::color
+}  // namespace goniochrome::color::reflection_file_test

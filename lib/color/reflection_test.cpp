@@ -10,7 +10,7 @@
 #include "base/hard_case_for_test.h"
 #include "color/internal/cie_tables.h"
 
-namespace goniochrome::color {
+namespace goniochrome::color::reflection_test {
 namespace {
 
 double largest_difference(const ReflectionOperator& a, const ReflectionOperator& b) {
@@ -230,4 +230,4 @@ TEST(Reflection, EstimationIsExactForSensorsThatDoNotOverlap) {
 }
 
 }  // namespace
-}  // namespace goniochrome::color
+}  // namespace goniochrome::color::reflection_test

@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "color/internal/cie_tables.h"
 
-namespace goniochrome::color {
+namespace goniochrome::color::spectrum_test {
 namespace {
 
 std::vector<double> wavelengths(double first, double last, double step) {
@@ -228,4 +228,4 @@ TEST(Spectrum, PatchesAreTheirDirectSumsRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome::color
+}  // namespace goniochrome::color::spectrum_test

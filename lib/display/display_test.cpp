@@ -7,7 +7,7 @@
 
 #include "display/paint_view.h"
 
-namespace goniochrome::display {
+namespace goniochrome::display::display_test {
 namespace {
 
 using testing::HasSubstr;
@@ -78,4 +78,4 @@ TEST(Display, ABadConfigurationIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace goniochrome::display
+}  // namespace goniochrome::display::display_test

@@ -7,7 +7,7 @@
 
 #include "base/random_for_test.h"
 
-namespace goniochrome::display {
+namespace goniochrome::display::paint_view_test {
 namespace {
 
 TEST(PaintView, KeepsColorsBelowTheKneeAndHueAboveIt) {
@@ -104,4 +104,4 @@ TEST(CodeWidth, HoldsFiveCodesOfTheDisplay) {
 }
 
 }  // namespace
-}  // namespace goniochrome::display
+}  // namespace goniochrome::display::paint_view_test

@@ -8,7 +8,7 @@
 
 #include "base/angles.h"
 
-namespace goniochrome::envmap {
+namespace goniochrome::envmap::bright_spots_test {
 namespace {
 
 using testing::HasSubstr;
@@ -152,4 +152,4 @@ TEST(BrightSpots, BadTextIsRefused) {
 }
 
 }  // namespace
-}  // namespace goniochrome::envmap
+}  // namespace goniochrome::envmap::bright_spots_test

@@ -8,7 +8,7 @@
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome::envmap {
+namespace goniochrome::envmap::cube_map_test {
 namespace {
 
 Vec3 random_direction(std::mt19937_64& random) {
@@ -91,4 +91,4 @@ TEST(CubeMap, LookupOfOneTexelFacesIsFinite) {
 }
 
 }  // namespace
-}  // namespace goniochrome::envmap
+}  // namespace goniochrome::envmap::cube_map_test

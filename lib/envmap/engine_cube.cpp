@@ -61,7 +61,7 @@ void put_face(std::string& out, const CubeMap& map, std::size_t face, const Stor
 
 // One line of numbers, level by level.
 template <class Number>
-std::string listed(const std::vector<PrefilteredLobe>& levels, const Number& number) {
+std::string line_of(const std::vector<PrefilteredLobe>& levels, const Number& number) {
   std::string text;
   for (const PrefilteredLobe& level : levels) text += (text.empty() ? "" : " ") + shortest(number(level));
   return text;
@@ -127,9 +127,9 @@ Result<void> write_ktx2(const std::string& path, const std::vector<PrefilteredLo
       {{"KTXorientation", "rd"},
        {"KTXwriter", "goniochrome"},
        {"goniochrome:command", command},
-       {"goniochrome:exponents", listed(levels, [](const PrefilteredLobe& level) { return level.exponent; })},
-       {"goniochrome:lookupErrors", listed(levels, [](const PrefilteredLobe& level) { return level.lookup_error; })},
-       {"goniochrome:maxErrors", listed(levels, [](const PrefilteredLobe& level) { return level.max_error; })},
+       {"goniochrome:exponents", line_of(levels, [](const PrefilteredLobe& level) { return level.exponent; })},
+       {"goniochrome:lookupErrors", line_of(levels, [](const PrefilteredLobe& level) { return level.lookup_error; })},
+       {"goniochrome:maxErrors", line_of(levels, [](const PrefilteredLobe& level) { return level.max_error; })},
        {"goniochrome:source", source},
        {"goniochrome:tolerance", shortest(levels.front().tolerance)}});
 

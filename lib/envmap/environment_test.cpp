@@ -15,7 +15,7 @@
 #include "base/hard_case_for_test.h"
 #include "color/color.h"
 
-namespace goniochrome::envmap {
+namespace goniochrome::envmap::environment_test {
 namespace {
 
 using testing::HasSubstr;
@@ -355,4 +355,4 @@ TEST_F(EnvironmentFile, FacesOfDifferentSizeAreRefused) {
 }
 
 }  // namespace
-}  // namespace goniochrome::envmap
+}  // namespace goniochrome::envmap::environment_test

@@ -11,7 +11,7 @@
 #include "base/vec3.h"
 #include "envmap/environment.h"
 
-namespace goniochrome::envmap {
+namespace goniochrome::envmap::mirror_ball_test {
 namespace {
 
 using testing::HasSubstr;
@@ -155,4 +155,4 @@ TEST(MirrorBall, LightInTheCornersOfASquareTellsThatItIsNoAngularMap) {
 }
 
 }  // namespace
-}  // namespace goniochrome::envmap
+}  // namespace goniochrome::envmap::mirror_ball_test

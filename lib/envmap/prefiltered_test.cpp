@@ -13,7 +13,7 @@
 #include "envmap/open_maps.h"
 #include "image/exr.h"
 
-namespace goniochrome::envmap {
+namespace goniochrome::envmap::prefiltered_test {
 namespace {
 
 using testing::HasSubstr;
@@ -222,4 +222,4 @@ TEST_F(EnvFile, OtherFilesAreRefusedByPart) {
 }
 
 }  // namespace
-}  // namespace goniochrome::envmap
+}  // namespace goniochrome::envmap::prefiltered_test

@@ -7,7 +7,7 @@
 
 #include "base/angles.h"
 
-namespace goniochrome::envmap {
+namespace goniochrome::envmap::weighted_diffuse_test {
 namespace {
 
 template <class Radiance>
@@ -79,4 +79,4 @@ TEST(WeightedDiffuse, IsTheSumOverTheEnvironment) {
 }
 
 }  // namespace
-}  // namespace goniochrome::envmap
+}  // namespace goniochrome::envmap::weighted_diffuse_test

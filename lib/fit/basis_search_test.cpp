@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "math/cosine_power.h"
 
-namespace goniochrome::fit {
+namespace goniochrome::fit::basis_search_test {
 namespace {
 
 // Paints that are sums of lobes with random weights, at 40 angles from 15 to 90 deg.
@@ -232,4 +232,4 @@ TEST(BasisSearch, GradientHoldsWithACoat) {
 }
 
 }  // namespace
-}  // namespace goniochrome::fit
+}  // namespace goniochrome::fit::basis_search_test

@@ -5,7 +5,7 @@
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
 
-namespace goniochrome::fit {
+namespace goniochrome::fit::brdf_target_test {
 namespace {
 
 // The same in all directions.
@@ -37,4 +37,4 @@ TEST(AlbedoError, OfASharpLobeIsItsAlbedo) {
 }
 
 }  // namespace
-}  // namespace goniochrome::fit
+}  // namespace goniochrome::fit::brdf_target_test

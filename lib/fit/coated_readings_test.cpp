@@ -18,7 +18,7 @@
 #include "formats/csv.h"
 #include "formats/xml.h"
 
-namespace goniochrome::fit {
+namespace goniochrome::fit::coated_readings_test {
 namespace {
 
 const formats::Basis kBasis = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
@@ -187,4 +187,4 @@ TEST(CoatedReadings, OnlyWhatNoWeightsMeetIsLost) {
 }
 
 }  // namespace
-}  // namespace goniochrome::fit
+}  // namespace goniochrome::fit::coated_readings_test

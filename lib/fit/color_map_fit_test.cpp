@@ -16,7 +16,7 @@
 #include "base/scratch_for_test.h"
 #include "color/spectrum.h"
 
-namespace goniochrome::fit {
+namespace goniochrome::fit::color_map_fit_test {
 namespace {
 
 constexpr std::array kTreatments = {brdf::CriticalAngle::kClip, brdf::CriticalAngle::kSlide,
@@ -438,4 +438,4 @@ TEST(ColorMapFit, MeasuredBrdfsRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome::fit
+}  // namespace goniochrome::fit::color_map_fit_test

@@ -13,7 +13,7 @@
 #include "math/statistics.h"
 #include "paint/curve.h"
 
-namespace goniochrome::fit {
+namespace goniochrome::fit::held_out_angles_test {
 namespace {
 
 const formats::Basis kBasis = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
@@ -147,4 +147,4 @@ TEST(HeldOutAngles, LobesFollowTheCurveRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome::fit
+}  // namespace goniochrome::fit::held_out_angles_test

@@ -16,7 +16,7 @@
 #include "math/cosine_power.h"
 #include "math/least_squares.h"
 
-namespace goniochrome::fit {
+namespace goniochrome::fit::paint_fit_test {
 namespace {
 
 const formats::Basis kBasis = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
@@ -505,4 +505,4 @@ TEST(PaintFit, DeltaEIsNotWorseThanItsStarts) {
 }
 
 }  // namespace
-}  // namespace goniochrome::fit
+}  // namespace goniochrome::fit::paint_fit_test

@@ -12,7 +12,7 @@
 #include "base/hard_case_for_test.h"
 #include "base/random_for_test.h"
 
-namespace goniochrome::fit {
+namespace goniochrome::fit::surface_refit_test {
 namespace {
 
 using brdf::LafortuneLobe;
@@ -165,4 +165,4 @@ TEST(SurfaceRefit, IsFreeOfScaleAndPositive) {
 }
 
 }  // namespace
-}  // namespace goniochrome::fit
+}  // namespace goniochrome::fit::surface_refit_test

@@ -213,9 +213,9 @@ class View {
 };
 
 // All views, which share the lobes and differ in their weights.
-class Search {
+class TiltSearch {
  public:
-  Search(const brdf::ColorMap& map, const std::vector<double>& exponents, const TiltOptions& options)
+  TiltSearch(const brdf::ColorMap& map, const std::vector<double>& exponents, const TiltOptions& options)
       : lights_(exponents), candidates_(candidates_of(exponents)), map_(map), options_(options) {
     std::vector<std::unique_ptr<View>> made(kViews_deg.size());
     parallel_for(kViews_deg.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -407,7 +407,7 @@ TiltFit fit_tilts(const brdf::ColorMap& map, const paint::LobeFit& lobes, const 
   TiltFit fit;
   const std::vector<double> exponents = tilted_exponents(basis);
   if (map.aspecular || options.lookups.empty() || exponents.empty()) return fit;
-  Search search(map, exponents, options);
+  TiltSearch search(map, exponents, options);
   paint::LobeFit flake = lobes;
   const auto bare = [](std::vector<paint::Lobe>& of) {
     for (paint::Lobe& lobe : of) lobe.gloss = {};

@@ -14,7 +14,7 @@
 #include "fit/paint_fit.h"
 #include "formats/xml.h"
 
-namespace goniochrome::fit {
+namespace goniochrome::fit::tilt_fit_test {
 namespace {
 
 const formats::Basis kBasis = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
@@ -204,4 +204,4 @@ TEST(TiltFit, TheThreadsMakeNoDifference) {
 }
 
 }  // namespace
-}  // namespace goniochrome::fit
+}  // namespace goniochrome::fit::tilt_fit_test

@@ -8,7 +8,7 @@
 #include "base/scratch_for_test.h"
 #include "base/testdata_for_test.h"
 
-namespace goniochrome::formats {
+namespace goniochrome::formats::basis_test {
 namespace {
 
 using testing::HasSubstr;
@@ -69,4 +69,4 @@ TEST(BasisXml, WrongValuesAreNamedWithLineAndRemedy) {
 }
 
 }  // namespace
-}  // namespace goniochrome::formats
+}  // namespace goniochrome::formats::basis_test

@@ -5,7 +5,7 @@
 
 #include "base/scratch_for_test.h"
 
-namespace goniochrome::formats {
+namespace goniochrome::formats::batches_test {
 namespace {
 
 using testing::ElementsAre;
@@ -80,4 +80,4 @@ TEST_F(PaintBatchesTest, GiveThePaintsThatAnInputNames) {
 }
 
 }  // namespace
-}  // namespace goniochrome::formats
+}  // namespace goniochrome::formats::batches_test

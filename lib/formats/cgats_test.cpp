@@ -5,7 +5,7 @@
 
 #include "formats/internal/import_for_test.h"
 
-namespace goniochrome::formats {
+namespace goniochrome::formats::cgats_test {
 namespace {
 
 using Cgats = ImportTest<read_cgats>;
@@ -142,4 +142,4 @@ TEST_F(Cgats, ReadsSpectra) {
 }
 
 }  // namespace
-}  // namespace goniochrome::formats
+}  // namespace goniochrome::formats::cgats_test

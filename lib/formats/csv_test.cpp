@@ -9,7 +9,7 @@
 #include "base/testdata_for_test.h"
 #include "formats/xml.h"
 
-namespace goniochrome::formats {
+namespace goniochrome::formats::csv_test {
 namespace {
 
 using testing::ElementsAre;
@@ -441,4 +441,4 @@ TEST(PaintCsv, ReadsMeasuredPaintsRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome::formats
+}  // namespace goniochrome::formats::csv_test

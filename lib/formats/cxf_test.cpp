@@ -7,7 +7,7 @@
 
 #include "formats/internal/import_for_test.h"
 
-namespace goniochrome::formats {
+namespace goniochrome::formats::cxf_test {
 namespace {
 
 class Cxf : public ImportTest<read_cxf> {
@@ -403,4 +403,4 @@ TEST_F(Cxf, SpectraOfTheSampleGiveItsLabRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome::formats
+}  // namespace goniochrome::formats::cxf_test

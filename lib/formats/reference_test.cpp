@@ -5,7 +5,7 @@
 #include "base/scratch_for_test.h"
 #include "formats/xml.h"
 
-namespace goniochrome::formats {
+namespace goniochrome::formats::reference_test {
 namespace {
 
 TEST(PaintReference, IsAFileAndTheNameBehindTheLastHash) {
@@ -98,4 +98,4 @@ TEST(PaintReader, ReadsThePaintsThatAReferenceNames) {
 }
 
 }  // namespace
-}  // namespace goniochrome::formats
+}  // namespace goniochrome::formats::reference_test

@@ -5,7 +5,7 @@
 #include "base/file.h"
 #include "base/testdata_for_test.h"
 
-namespace goniochrome::formats {
+namespace goniochrome::formats::spectrum_table_test {
 namespace {
 
 std::string written(const std::string& text) {
@@ -46,4 +46,4 @@ TEST(SpectrumTable, NamesTheLineOfWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace goniochrome::formats
+}  // namespace goniochrome::formats::spectrum_table_test

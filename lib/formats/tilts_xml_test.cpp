@@ -7,7 +7,7 @@
 #include "base/scratch_for_test.h"
 #include "formats/xml.h"
 
-namespace goniochrome::formats {
+namespace goniochrome::formats::tilts_xml_test {
 namespace {
 
 using testing::HasSubstr;
@@ -113,4 +113,4 @@ TEST(TiltsXml, WrongOnesLoseTheirPaintAlone) {
 }
 
 }  // namespace
-}  // namespace goniochrome::formats
+}  // namespace goniochrome::formats::tilts_xml_test

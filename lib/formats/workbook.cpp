@@ -14,14 +14,14 @@ namespace goniochrome::formats {
 
 namespace {
 
-constexpr int kNone = -1;
+constexpr int kNoColumn = -1;
 // How far Lab and spectrum of one reading may lie apart. Instruments weigh their spectra by tables for their own bands,
 // which changes the color by a few hundredths.
 constexpr double kAgrees_de00 = 0.2;
 // Three columns of L*, a* and b* under one viewing condition.
 struct LabColumns {
   color::ViewingCondition condition;
-  std::array<int, 3> at = {kNone, kNone, kNone};
+  std::array<int, 3> at = {kNoColumn, kNoColumn, kNoColumn};
 };
 
 // A column of sparkle, graininess or the like.
@@ -32,18 +32,18 @@ struct TextureColumn {
 
 // What the columns below a row of headings mean.
 struct Table {
-  int name = kNone, date = kNone, geometry = kNone;
+  int name = kNoColumn, date = kNoColumn, geometry = kNoColumn;
   std::vector<LabColumns> colors;
   std::vector<WavelengthColumn> wavelengths;
   std::vector<TextureColumn> textures;
 
   bool has_values() const {
-    return !colors.empty() || wavelengths.size() >= kFewestWavelengths || (geometry != kNone && !textures.empty());
+    return !colors.empty() || wavelengths.size() >= kFewestWavelengths || (geometry != kNoColumn && !textures.empty());
   }
 };
 
 // A heading in lower case without blanks, asterisks and colons, up to a bracket.
-std::string plain_heading(std::string_view heading) {
+std::string plain_column(std::string_view heading) {
   std::string text = lower(heading.substr(0, heading.find_first_of("([")));
   std::erase_if(text, [](char c) { return std::string_view(" *_:.").find(c) != std::string_view::npos; });
   return text;
@@ -93,7 +93,7 @@ std::optional<LabHeading> lab_heading(std::string_view heading) {
   } else if (const auto blank = heading.find_last_of(" \t"); blank != std::string_view::npos) {
     before = heading.substr(0, blank), word = heading.substr(blank + 1);
   }
-  const std::string plain = plain_heading(word);
+  const std::string plain = plain_column(word);
   const auto channel = std::string_view("lab").find(plain);
   if (plain.size() != 1 || channel == std::string_view::npos) return std::nullopt;
   return LabHeading{channel, condition_in(before)};
@@ -170,22 +170,22 @@ Table WorkbookReader::table_below(const Sheet& sheet, std::size_t heading) const
   Table table;
   const SheetRow& row = sheet.rows[heading];
   for (const SheetCell& cell : row.cells) {
-    const std::string word = plain_heading(cell.text);
-    if (table.name == kNone && is_one_of(word, kNameHeadings)) table.name = cell.column;
-    if (table.date == kNone && is_one_of(word, kDateHeadings)) table.date = cell.column;
-    if (table.geometry == kNone && is_one_of(word, kGeometryHeadings)) table.geometry = cell.column;
+    const std::string word = plain_column(cell.text);
+    if (table.name == kNoColumn && is_one_of(word, kNameHeadings)) table.name = cell.column;
+    if (table.date == kNoColumn && is_one_of(word, kDateHeadings)) table.date = cell.column;
+    if (table.geometry == kNoColumn && is_one_of(word, kGeometryHeadings)) table.geometry = cell.column;
     if (const auto nm = wavelength_in(cell.text)) table.wavelengths.push_back({*nm, cell.column});
     if (auto texture = texture_heading(cell.text, cell.column)) table.textures.push_back(std::move(*texture));
     if (const auto lab = lab_heading(cell.text)) {
       const auto open = std::ranges::find_if(table.colors, [&](const LabColumns& columns) {
-        return columns.condition == lab->condition && columns.at[lab->channel] == kNone;
+        return columns.condition == lab->condition && columns.at[lab->channel] == kNoColumn;
       });
       LabColumns& columns = open != table.colors.end() ? *open : table.colors.emplace_back(LabColumns{lab->condition});
       columns.at[lab->channel] = cell.column;
     }
   }
-  std::erase_if(table.colors, [](const LabColumns& columns) { return std::ranges::count(columns.at, kNone) > 0; });
-  if (table.geometry == kNone && table.has_values() && heading + 1 < sheet.rows.size())
+  std::erase_if(table.colors, [](const LabColumns& columns) { return std::ranges::count(columns.at, kNoColumn) > 0; });
+  if (table.geometry == kNoColumn && table.has_values() && heading + 1 < sheet.rows.size())
     for (const SheetCell& cell : sheet.rows[heading + 1].cells)
       if (!parse_number(cell.text) && paint::parse_geometry(cell.text).ok()) table.geometry = cell.column;
   return table;
@@ -265,12 +265,12 @@ Result<void> WorkbookReader::read_textures(const Sheet& sheet, const SheetRow& r
 }
 
 Result<void> WorkbookReader::read_row(const Sheet& sheet, const SheetRow& row, const Table& table) {
-  const std::string name(table.name == kNone ? stated_name_ : row.at(table.name));
-  const std::string_view geometry_text = table.geometry == kNone ? std::string_view() : row.at(table.geometry);
+  const std::string name(table.name == kNoColumn ? stated_name_ : row.at(table.name));
+  const std::string_view geometry_text = table.geometry == kNoColumn ? std::string_view() : row.at(table.geometry);
   if (name.empty() && geometry_text.empty()) return {};  // a remark, a sum
   if (name.empty()) return error(sheet, row, "has no name of a sample: give it one");
   if (geometry_text.empty()) return error(sheet, row, fmt::format("\"{}\" has no geometry: write 45as15", shown(name)));
-  Gathered& paint = gathered(name, std::string(table.date == kNone ? "" : row.at(table.date)));
+  Gathered& paint = gathered(name, std::string(table.date == kNoColumn ? "" : row.at(table.date)));
   GONIO_TRY(read_textures(sheet, row, table, geometry_text, paint.open));
   if (table.colors.empty() && table.wavelengths.empty()) return {};  // textures have geometries of their own
   const auto geometry = paint::parse_geometry(geometry_text);
@@ -289,7 +289,7 @@ Result<void> WorkbookReader::read(const Sheet& sheet) {
     const SheetRow& row = sheet.rows[i];
     if (Table below = table_below(sheet, i); below.has_values()) {
       table = std::move(below);
-      if (table.geometry != kNone) continue;
+      if (table.geometry != kNoColumn) continue;
       remarks_.note("a table without a column of geometries was left out", sheet.name);
       table = {};
     } else if (table.has_values()) {
@@ -297,7 +297,7 @@ Result<void> WorkbookReader::read(const Sheet& sheet) {
       if (!read.ok() && !options_.keep_going) return read;
       if (!read.ok()) result_.skipped.push_back(read.error().message);
     } else if (row.cells.size() >= 2) {  // `STANDARD: | name` and the like
-      const std::string word = plain_heading(row.cells[0].text);
+      const std::string word = plain_column(row.cells[0].text);
       if (is_one_of(word, kNameHeadings)) stated_name_ = row.cells[1].text;
       if (word.find("illum") != std::string::npos || word.find("lichtart") != std::string::npos)
         stated_ = condition_in(row.cells[1].text);

@@ -11,7 +11,7 @@
 #include "formats/internal/spreadsheet.h"
 #include "paint/spectra.h"
 
-namespace goniochrome::formats {
+namespace goniochrome::formats::workbook_test {
 namespace {
 
 using Parts = std::map<std::string, std::string>;
@@ -295,4 +295,4 @@ TEST_F(Workbook, OfTheInstrumentRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome::formats
+}  // namespace goniochrome::formats::workbook_test

@@ -18,7 +18,7 @@
 #include "formats/imported.h"
 #include "formats/xml.h"
 
-namespace goniochrome::formats {
+namespace goniochrome::formats::xml_hostile_test {
 namespace {
 
 using testing::HasSubstr;
@@ -319,4 +319,4 @@ TEST(PaintReader, ALongStreamTakesConstantMemory) {
 }
 
 }  // namespace
-}  // namespace goniochrome::formats
+}  // namespace goniochrome::formats::xml_hostile_test

@@ -13,7 +13,7 @@
 #include "base/testdata_for_test.h"
 #include "formats/basis.h"
 
-namespace goniochrome::formats {
+namespace goniochrome::formats::xml_test {
 namespace {
 
 using testing::ElementsAre;
@@ -458,4 +458,4 @@ TEST(PaintXml, WrongSpectraAreToldWhereTheyStand) {
 }
 
 }  // namespace
-}  // namespace goniochrome::formats
+}  // namespace goniochrome::formats::xml_test

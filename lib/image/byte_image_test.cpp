@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "base/scratch_for_test.h"
 
-namespace goniochrome::image {
+namespace goniochrome::image::byte_image_test {
 namespace {
 
 using testing::HasSubstr;
@@ -66,4 +66,4 @@ TEST(ByteImage, RoundsToTheNearestAndClamps) {
 }
 
 }  // namespace
-}  // namespace goniochrome::image
+}  // namespace goniochrome::image::byte_image_test

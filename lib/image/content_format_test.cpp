@@ -5,7 +5,7 @@
 
 #include "image/internal/content_format.h"
 
-namespace goniochrome::image {
+namespace goniochrome::image::content_format_test {
 namespace {
 
 using testing::HasSubstr;
@@ -29,4 +29,4 @@ TEST(ContentFormat, AFileThatEndsWithinItsHeaderIsNamedOrRefused) {
 }
 
 }  // namespace
-}  // namespace goniochrome::image
+}  // namespace goniochrome::image::content_format_test

@@ -7,7 +7,7 @@
 #include "image/exr.h"
 #include "image/internal/exr_header.h"
 
-namespace goniochrome::image {
+namespace goniochrome::image::exr_header_test {
 namespace {
 
 using namespace std::string_literals;
@@ -76,4 +76,4 @@ TEST(ExrHeader, ThatIsDamagedIsToldByTheFile) {
 }
 
 }  // namespace
-}  // namespace goniochrome::image
+}  // namespace goniochrome::image::exr_header_test

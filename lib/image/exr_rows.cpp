@@ -65,13 +65,13 @@ float float_of_half(std::uint32_t half) {
 }
 
 // The bytes of a block at even places, and those at odd ones. Zip parts them; else both lie in one array.
-struct Bytes {
+struct SplitBytes {
   const std::uint8_t *even, *odd;
 };
 
 // The bytes of a kind are `kStep` apart.
 template <std::size_t kStep>
-void put_channel(const Bytes& bytes, const Channel& channel, std::size_t first_byte, std::size_t width,
+void put_channel(const SplitBytes& bytes, const Channel& channel, std::size_t first_byte, std::size_t width,
                  std::size_t channels, float* to) {
   const std::size_t first = (first_byte + channel.offset) / 2;
   const std::uint8_t *even = bytes.even + first * kStep, *odd = bytes.odd + first * kStep;
@@ -99,7 +99,7 @@ struct Block {
 };
 
 template <std::size_t kStep>
-void put_lines(const Bytes& bytes, const Block& block, const Layout& layout, Image& image) {
+void put_lines(const SplitBytes& bytes, const Block& block, const Layout& layout, Image& image) {
   for (int line = 0; line < block.lines; ++line) {
     float* to = image.pixel(0, block.first_line + line);
     for (std::size_t c = 0; c < layout.channels.size(); ++c)

@@ -16,7 +16,7 @@
 #include "base/scratch_for_test.h"
 #include "image/exr.h"
 
-namespace goniochrome::image {
+namespace goniochrome::image::exr_rows_test {
 namespace {
 
 using testing::HasSubstr;
@@ -91,4 +91,4 @@ TEST_F(ExrRows, DamagedBlocksAreRefused) {
 }
 
 }  // namespace
-}  // namespace goniochrome::image
+}  // namespace goniochrome::image::exr_rows_test

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace goniochrome::image {
+namespace goniochrome::image::frames_test {
 namespace {
 
 // The codes of ITU-R BT.709's color bars of 100 %, as SMPTE RP 219 prints them.
@@ -36,4 +36,4 @@ TEST(Frames, BeginAsTheirFormatSays) {
 }
 
 }  // namespace
-}  // namespace goniochrome::image
+}  // namespace goniochrome::image::frames_test

@@ -8,7 +8,7 @@
 
 #include "base/scratch_for_test.h"
 
-namespace goniochrome::image {
+namespace goniochrome::image::hdr_test {
 namespace {
 
 using testing::HasSubstr;
@@ -131,4 +131,4 @@ TEST_F(HdrFile, TheOtherFormatsAreNotLoaded) {
 }
 
 }  // namespace
-}  // namespace goniochrome::image
+}  // namespace goniochrome::image::hdr_test

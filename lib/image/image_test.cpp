@@ -17,7 +17,7 @@
 #include "base/hard_case_for_test.h"
 #include "base/scratch_for_test.h"
 
-namespace goniochrome::image {
+namespace goniochrome::image::image_test {
 namespace {
 
 using testing::HasSubstr;
@@ -268,4 +268,4 @@ TEST_F(ImageFile, HardCase_InterruptedAFullDiskLeavesTheOldFile) {
 }
 
 }  // namespace
-}  // namespace goniochrome::image
+}  // namespace goniochrome::image::image_test

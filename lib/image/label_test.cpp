@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace goniochrome::image {
+namespace goniochrome::image::label_test {
 namespace {
 
 int lit(const Image& image) {
@@ -34,4 +34,4 @@ TEST(Label, SmallLettersAreCapitalsAndMissingOnesAreSeen) {
 }
 
 }  // namespace
-}  // namespace goniochrome::image
+}  // namespace goniochrome::image::label_test

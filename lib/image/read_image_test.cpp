@@ -14,7 +14,7 @@
 #include "image/color_space.h"
 #include "image/image.h"
 
-namespace goniochrome::image {
+namespace goniochrome::image::read_image_test {
 namespace {
 
 using testing::HasSubstr;
@@ -100,4 +100,4 @@ TEST_F(CmykJpeg, ACutFileIsAnError) {
 }
 
 }  // namespace
-}  // namespace goniochrome::image
+}  // namespace goniochrome::image::read_image_test

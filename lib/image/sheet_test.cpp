@@ -7,7 +7,7 @@
 
 #include "image/label.h"
 
-namespace goniochrome::image {
+namespace goniochrome::image::sheet_test {
 namespace {
 
 ByteImage plain(int width, int height, std::uint8_t value) {
@@ -76,4 +76,4 @@ TEST(Sheet, HasAPaintInTheMiddleOfItsVariations) {
 }
 
 }  // namespace
-}  // namespace goniochrome::image
+}  // namespace goniochrome::image::sheet_test

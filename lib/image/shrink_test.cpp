@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace goniochrome::image {
+namespace goniochrome::image::shrink_test {
 namespace {
 
 TEST(Shrink, TakesTheMeanOfEachSquare) {
@@ -26,4 +26,4 @@ TEST(Shrink, ByOneKeepsThePicture) {
 }
 
 }  // namespace
-}  // namespace goniochrome::image
+}  // namespace goniochrome::image::shrink_test

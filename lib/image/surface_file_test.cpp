@@ -9,7 +9,7 @@
 #include "base/scratch_for_test.h"
 #include "base/testdata_for_test.h"
 
-namespace goniochrome::image {
+namespace goniochrome::image::surface_file_test {
 namespace {
 
 TEST(ColorMapFile, ReadsBackWhatWasWritten) {
@@ -196,4 +196,4 @@ TEST_F(SbrdfFile, ReadsTheTexturesOfTheTestData) {
 }
 
 }  // namespace
-}  // namespace goniochrome::image
+}  // namespace goniochrome::image::surface_file_test

@@ -15,7 +15,7 @@
 #include "library/internal/random_paints_for_test.h"
 #include "library/search.h"
 
-namespace goniochrome::library {
+namespace goniochrome::library::index_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -136,4 +136,4 @@ TEST_F(LibraryIndexFile, TellsWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace goniochrome::library
+}  // namespace goniochrome::library::index_test

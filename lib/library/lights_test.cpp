@@ -11,7 +11,7 @@
 #include "formats/xml.h"
 #include "paint/spectra.h"
 
-namespace goniochrome::library {
+namespace goniochrome::library::lights_test {
 namespace {
 
 constexpr int kPaints = 200;
@@ -118,4 +118,4 @@ TEST_F(Lights, AQueryWithoutSpectraIsRefused) {
 }
 
 }  // namespace
-}  // namespace goniochrome::library
+}  // namespace goniochrome::library::lights_test

@@ -7,7 +7,7 @@
 
 #include "library/internal/random_paints_for_test.h"
 
-namespace goniochrome::library {
+namespace goniochrome::library::search_test {
 namespace {
 
 using testing::HasSubstr;
@@ -169,4 +169,4 @@ TEST_F(Searching, RefusesWhatHasNothingInCommon) {
 }
 
 }  // namespace
-}  // namespace goniochrome::library
+}  // namespace goniochrome::library::search_test

@@ -11,7 +11,7 @@ namespace goniochrome::materials {
 
 namespace {
 
-std::string written(const OneLobe& p, const Naming& naming, const Shown& shown) {
+std::string enterprise_text(const OneLobe& p, const Naming& naming, const Shown& shown) {
   // The index of refraction reflects as the strongest channel does, and the tint has the ratios of the channels.
   color::Rgb tint = enterprise_normal_reflectance(p);
   const double strongest = std::max({tint.x, tint.y, tint.z});
@@ -49,7 +49,7 @@ Result<Material> enterprise_material(const paint::Paint& fitted, const Naming& n
     });
     if (!nearest || now.de00_mean < least.de00_mean) nearest = p, least = now;
   }
-  return Material{written(*nearest, naming, least), least};
+  return Material{enterprise_text(*nearest, naming, least), least};
 }
 
 }  // namespace

@@ -16,18 +16,13 @@ namespace goniochrome::materials {
 
 namespace {
 
-constexpr double kSharpest = 1e-4;  // a roughness of 0 as evaluated, alpha
-constexpr double kLeastGain = 0.1;  // of a film, in the mean difference
-
-double square(double x) {
-  return x * x;
-}
+constexpr double kLeastGainByFilm = 0.1;  // of a film, in the mean difference
 
 // The specification's model, its Appendix B and those of the extensions: the coat lies over the base by the reflectance
 // that the viewer's angle has, and the base mixes a diffuse and a microfacet part by the largest channel of Fresnel's.
-color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
+color::Rgb seen_by_gltf(const OneLobe& p, const Vec3& light, const Vec3& view) {
   const double grazing = schlick(half_cosine(light, view));
-  const double facets = ggx(std::max(square(p.roughness), kSharpest), light, view);
+  const double facets = ggx(std::max(p.roughness * p.roughness, kSharpestAlpha), light, view);
   color::Rgb fresnel;
   for (int c = 0; c < 3; ++c) fresnel[c] = std::lerp(std::min(p.specular[c], 1.0) * p.strength, p.strength, grazing);
   if (p.film > 0) {
@@ -40,11 +35,11 @@ color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
   const color::Rgb base = diffuse * p.base + facets * fresnel;
   if (p.clearcoat == 0) return base;
   const double coat = p.clearcoat * std::lerp(0.04, 1.0, schlick(view.z));
-  const double shine = coat * ggx(std::max(square(p.clearcoat_roughness), kSharpest), light, view);
+  const double shine = coat * ggx(std::max(p.clearcoat_roughness * p.clearcoat_roughness, kSharpestAlpha), light, view);
   return (1 - coat) * base + color::Rgb{shine, shine, shine};
 }
 
-std::string written(const OneLobe& p, const Naming& naming, const Shown& shown) {
+std::string gltf_text(const OneLobe& p, const Naming& naming, const Shown& shown) {
   Json material = {
       {"name", naming.display},
       {"pbrMetallicRoughness",
@@ -73,20 +68,21 @@ std::string written(const OneLobe& p, const Naming& naming, const Shown& shown) 
 Result<Material> gltf_material(const paint::Paint& fitted, const Naming& naming) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
   const auto shown_of = [&paint](const OneLobe& p) {
-    return shown(paint,
-                 [&](const Vec3& light, const Vec3& view) { return color::rec2020_from_rec709(seen(p, light, view)); });
+    return shown(paint, [&](const Vec3& light, const Vec3& view) {
+      return color::rec2020_from_rec709(seen_by_gltf(p, light, view));
+    });
   };
-  OneLobe p = rounded(nearest_one_lobe(paint, seen, Searched::kStrengthToo));
+  OneLobe p = rounded(nearest_one_lobe(paint, seen_by_gltf, Searched::kStrengthToo));
   Material material;
   material.shown = shown_of(p);
   // A film costs every viewer time, and what does not turn its hue has no use for it.
-  if (material.shown.de00_mean > kLeastGain) {
-    const OneLobe with_film = rounded(nearest_with_film(paint, seen, p));
+  if (material.shown.de00_mean > kLeastGainByFilm) {
+    const OneLobe with_film = rounded(nearest_with_film(paint, seen_by_gltf, p));
     const Shown shown_with_film = shown_of(with_film);
-    if (shown_with_film.de00_mean < material.shown.de00_mean - kLeastGain)
+    if (shown_with_film.de00_mean < material.shown.de00_mean - kLeastGainByFilm)
       p = with_film, material.shown = shown_with_film;
   }
-  material.bytes = written(p, naming, material.shown);
+  material.bytes = gltf_text(p, naming, material.shown);
   return material;
 }
 

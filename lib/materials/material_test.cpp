@@ -4,7 +4,7 @@
 
 #include "materials/internal/paints_for_test.h"
 
-namespace goniochrome::materials {
+namespace goniochrome::materials::material_test {
 namespace {
 
 TEST(Identifiers, HoldNothingThatAFormatOrAFileSystemMinds) {
@@ -123,4 +123,4 @@ TEST(Material, AGraphIsNearerThanTheParametersOfOneLobe) {
 }
 
 }  // namespace
-}  // namespace goniochrome::materials
+}  // namespace goniochrome::materials::material_test

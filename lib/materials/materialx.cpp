@@ -190,7 +190,7 @@ std::vector<std::string> write_node(Document& document, const ViewNodes& view, c
   return tinted;
 }
 
-std::string written(const LobeGraph& graph, const Naming& naming) {
+std::string materialx_text(const LobeGraph& graph, const Naming& naming) {
   Document document(naming, graph.space);
   std::string top;
   std::size_t sums = 0;
@@ -230,7 +230,7 @@ std::string written(const LobeGraph& graph, const Naming& naming) {
 Result<Material> materialx_material(const paint::Paint& fitted, const Naming& naming) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
   const LobeGraph graph = nearest_graph(paint);
-  return Material{written(graph, naming), shown(paint, seen_of(graph))};
+  return Material{materialx_text(graph, naming), shown(paint, seen_of(graph))};
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace goniochrome::materials {
 
 namespace {
 
-constexpr double kCoatIndex = 1.5, kSharpest = 1e-4;
+constexpr double kOpenPbrCoat = 1.5;
 
 double power4(double x) {
   return x * x * x * x;
@@ -28,15 +28,15 @@ struct Specular {
   double index, weight;
 };
 Specular specular_of(const OneLobe& p) {
-  const double share = (1 - p.clearcoat) + p.clearcoat / kCoatIndex, wanted = index_of(p.strength);
-  const double least = share * kCoatIndex, root = (least - 1) / (least + 1);
+  const double share = (1 - p.clearcoat) + p.clearcoat / kOpenPbrCoat, wanted = index_of(p.strength);
+  const double least = share * kOpenPbrCoat, root = (least - 1) / (least + 1);
   if (wanted >= least) return {wanted / share, 1};
-  return {kCoatIndex, p.strength / (root * root)};
+  return {kOpenPbrCoat, p.strength / (root * root)};
 }
 
 // Schlick's reflectance of a metal, less what lowers it to a share `at82` of that at 82 deg [Kutz2021].
 constexpr double kEdgeCosine = 1.0 / 7;
-double rising(double normal, double cosine) {
+double schlick_rise(double normal, double cosine) {
   return std::lerp(normal, 1.0, schlick(cosine));
 }
 double edge_shape(double cosine) {
@@ -44,7 +44,7 @@ double edge_shape(double cosine) {
   return cosine * rest * schlick(cosine) / (kEdgeCosine * (1 - kEdgeCosine) * schlick(kEdgeCosine));
 }
 double metal_reflectance(double normal, double at82, double cosine) {
-  return rising(normal, cosine) - rising(normal, kEdgeCosine) * (1 - at82) * edge_shape(cosine);
+  return schlick_rise(normal, cosine) - schlick_rise(normal, kEdgeCosine) * (1 - at82) * edge_shape(cosine);
 }
 
 // The least share at 82 deg with which a metal of that color reflects nothing below 0 at any angle.
@@ -55,7 +55,8 @@ double least_at82(double normal) {
     for (std::size_t i = 0; i < kColors; ++i)
       for (std::size_t j = 1; j < kCosines; ++j) {
         const double color = static_cast<double>(i) / (kColors - 1), cosine = static_cast<double>(j) / kCosines;
-        least[i] = std::max(least[i], 1 - rising(color, cosine) / (rising(color, kEdgeCosine) * edge_shape(cosine)));
+        least[i] = std::max(least[i],
+                            1 - schlick_rise(color, cosine) / (schlick_rise(color, kEdgeCosine) * edge_shape(cosine)));
       }
     return least;
   }();
@@ -72,16 +73,16 @@ color::Rgb specular_color(const OneLobe& p) {
   return color;
 }
 
-color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
+color::Rgb seen_by_openpbr(const OneLobe& p, const Vec3& light, const Vec3& view) {
   const double coated = std::pow(std::min(1.0, 2 * power4(p.clearcoat_roughness) + power4(p.roughness)), 0.25);
   const double roughness = std::lerp(p.roughness, coated, p.clearcoat), alpha = roughness * roughness;
   const DielectricLayer lobe = dielectric_layer(1, index_of(p.strength), alpha, light, view);
   const DielectricLayer coat =
       p.clearcoat > 0
-          ? dielectric_layer(p.clearcoat, kCoatIndex, p.clearcoat_roughness * p.clearcoat_roughness, light, view)
+          ? dielectric_layer(p.clearcoat, kOpenPbrCoat, p.clearcoat_roughness * p.clearcoat_roughness, light, view)
           : DielectricLayer();
   const double cosine = half_cosine(light, view), all = quick_facet_albedo(alpha, view.z).all;
-  const double facets = specular_of(p).weight * ggx(std::max(alpha, kSharpest), light, view);
+  const double facets = specular_of(p).weight * ggx(std::max(alpha, kSharpestAlpha), light, view);
   const color::Rgb tint = specular_color(p);
   color::Rgb f;
   for (int c = 0; c < 3; ++c) {
@@ -107,7 +108,7 @@ ShaderInputs inputs_of(const OneLobe& p) {
           {"specular_ior", {specular.index}},
           {"coat_weight", {p.clearcoat}},
           {"coat_roughness", {p.clearcoat_roughness}},
-          {"coat_ior", {kCoatIndex}},
+          {"coat_ior", {kOpenPbrCoat}},
           {"coat_darkening", {0}}};  // the colors are those below the coat already
 }
 
@@ -116,9 +117,10 @@ Result<Material> openpbr_material(const paint::Paint& fitted, const Naming& nami
   std::optional<OneLobe> nearest;
   Shown least;
   for (const Searched searched : {Searched::kStrengthToo, Searched::kMetalnessToo}) {
-    const OneLobe p = rounded(nearest_one_lobe(paint, seen, searched));
-    const Shown now = shown(
-        paint, [&](const Vec3& light, const Vec3& view) { return color::rec2020_from_rec709(seen(p, light, view)); });
+    const OneLobe p = rounded(nearest_one_lobe(paint, seen_by_openpbr, searched));
+    const Shown now = shown(paint, [&](const Vec3& light, const Vec3& view) {
+      return color::rec2020_from_rec709(seen_by_openpbr(p, light, view));
+    });
     if (!nearest || now.de00_mean < least.de00_mean) nearest = p, least = now;
   }
   const ShaderInputs inputs = inputs_of(*nearest);

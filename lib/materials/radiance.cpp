@@ -37,9 +37,9 @@ std::vector<color::Rgb> mirror_weights(const paint::LobeFit& lobes) {
 }
 
 // f with the widened mirror, in the working space.
-class SeenPaint {
+class PaintInRadiance {
  public:
-  explicit SeenPaint(const paint::LobeFit& lobes) : lobes_(lobes), weights_(mirror_weights(lobes)) {}
+  explicit PaintInRadiance(const paint::LobeFit& lobes) : lobes_(lobes), weights_(mirror_weights(lobes)) {}
 
   color::Rgb operator()(const Vec3& light, const Vec3& view) const {
     color::Rgb f = brdf::coated_brdf(lobes_, light, view, {0, 0, 1});
@@ -86,7 +86,7 @@ std::string document(const TensorTree& tree, const Naming& naming) {
 
 Result<Material> radiance_material(const paint::Paint& fitted, const Naming& naming) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
-  const SeenPaint seen(*paint.lobes);
+  const PaintInRadiance seen(*paint.lobes);
   const color::Xyz white = white_of_space();
   const TensorTree tree([&](const Vec3& light, const Vec3& view) {
     return color::adapted(color::xyz_d65_from_rgb(seen(light, view)), white, kEqualEnergy);

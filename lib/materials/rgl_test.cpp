@@ -11,7 +11,7 @@
 #include "materials/internal/shown.h"
 #include "materials/material.h"
 
-namespace goniochrome::materials {
+namespace goniochrome::materials::rgl_test {
 namespace {
 
 std::unique_ptr<brdf::MeasuredBrdf> table_of(const paint::Paint& paint) {
@@ -133,4 +133,4 @@ TEST(Rgl, KeepsTheLightOfAGlossLobeTowardGrazingViews) {
 }
 
 }  // namespace
-}  // namespace goniochrome::materials
+}  // namespace goniochrome::materials::rgl_test

@@ -10,13 +10,13 @@ namespace goniochrome::materials {
 
 namespace {
 
-constexpr double kCoatIndex = 1.5;
+constexpr double kStandardCoat = 1.5;
 
-color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
+color::Rgb seen_by_standard(const OneLobe& p, const Vec3& light, const Vec3& view) {
   const DielectricLayer lobe = dielectric_layer(1, index_of(p.strength), p.roughness * p.roughness, light, view);
   const DielectricLayer coat =
       p.clearcoat > 0
-          ? dielectric_layer(p.clearcoat, kCoatIndex, p.clearcoat_roughness * p.clearcoat_roughness, light, view)
+          ? dielectric_layer(p.clearcoat, kStandardCoat, p.clearcoat_roughness * p.clearcoat_roughness, light, view)
           : DielectricLayer();
   color::Rgb f;
   for (int c = 0; c < 3; ++c)
@@ -24,7 +24,7 @@ color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
   return f;
 }
 
-std::string written(const OneLobe& p, const Naming& naming) {
+std::string standard_text(const OneLobe& p, const Naming& naming) {
   return mtlx_of_shader("standard_surface", "1.38",
                         {{"base", {1}},
                          {"base_color", {p.base.x, p.base.y, p.base.z}},
@@ -34,15 +34,15 @@ std::string written(const OneLobe& p, const Naming& naming) {
                          {"specular_IOR", {index_of(p.strength)}},
                          {"coat", {p.clearcoat}},
                          {"coat_roughness", {p.clearcoat_roughness}},
-                         {"coat_IOR", {kCoatIndex}}},
+                         {"coat_IOR", {kStandardCoat}}},
                         naming);
 }
 
 Result<Material> standard_surface_material(const paint::Paint& fitted, const Naming& naming) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
-  const OneLobe p = rounded(nearest_one_lobe(paint, seen, Searched::kStrengthToo));
-  return Material{written(p, naming), shown(paint, [&](const Vec3& light, const Vec3& view) {
-                    return color::rec2020_from_rec709(seen(p, light, view));
+  const OneLobe p = rounded(nearest_one_lobe(paint, seen_by_standard, Searched::kStrengthToo));
+  return Material{standard_text(p, naming), shown(paint, [&](const Vec3& light, const Vec3& view) {
+                    return color::rec2020_from_rec709(seen_by_standard(p, light, view));
                   })};
 }
 

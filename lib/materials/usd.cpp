@@ -24,7 +24,7 @@ double facets(double roughness, const Vec3& light, const Vec3& view) {
   return alpha * alpha / (kPi * d * d) / (4 * masking);
 }
 
-color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
+color::Rgb seen_by_usd(const OneLobe& p, const Vec3& light, const Vec3& view) {
   const double grazing = schlick(half_cosine(light, view));
   const double lobe = facets(p.roughness, light, view);
   const double coat =
@@ -37,7 +37,7 @@ color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
   return f;
 }
 
-std::string written(const OneLobe& p, const Naming& naming) {
+std::string usd_text(const OneLobe& p, const Naming& naming) {
   return usda_of_shader("UsdPreviewSurface", "surface", "        int inputs:useSpecularWorkflow = 1\n",
                         {{"diffuseColor", {p.base.x, p.base.y, p.base.z}},
                          {"specularColor", {p.specular.x, p.specular.y, p.specular.z}},
@@ -50,9 +50,9 @@ std::string written(const OneLobe& p, const Naming& naming) {
 
 Result<Material> usd_material(const paint::Paint& fitted, const Naming& naming) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
-  const OneLobe p = rounded(nearest_one_lobe(paint, seen, Searched::kColorsAndRoughness));
-  return Material{written(p, naming), shown(paint, [&](const Vec3& light, const Vec3& view) {
-                    return color::rec2020_from_rec709(seen(p, light, view));
+  const OneLobe p = rounded(nearest_one_lobe(paint, seen_by_usd, Searched::kColorsAndRoughness));
+  return Material{usd_text(p, naming), shown(paint, [&](const Vec3& light, const Vec3& view) {
+                    return color::rec2020_from_rec709(seen_by_usd(p, light, view));
                   })};
 }
 

@@ -8,7 +8,7 @@
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome::math {
+namespace goniochrome::math::cosine_power_test {
 namespace {
 
 // cos^E of the double `angle`, whose cosine is taken in long double: sin^2 by the half angle keeps 1 - cos.
@@ -76,4 +76,4 @@ TEST(CosinePower, HoldsAtTheEndsOfItsDomain) {
 }
 
 }  // namespace
-}  // namespace goniochrome::math
+}  // namespace goniochrome::math::cosine_power_test

@@ -12,9 +12,7 @@ namespace goniochrome::math {
 
 namespace {
 
-constexpr double kToInteger = 0x1.8p52;  // added and taken away again, it leaves the nearest integer
-
-constexpr Twice kPi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
+constexpr Twice kTwicePi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
 constexpr Twice kHalfPi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 constexpr double kFarthest_rad = 1e7;
 
@@ -130,8 +128,8 @@ double acos(double x) {
   }
   const Twice arc = half_arc(0.5 * (1 - std::abs(x)));
   if (x > 0) return 2 * (arc.high + arc.low);
-  const Twice from_half = ordered_sum_of(kPi.high, -2 * arc.high);
-  return from_half.high + (from_half.low + (kPi.low - 2 * arc.low));
+  const Twice from_half = ordered_sum_of(kTwicePi.high, -2 * arc.high);
+  return from_half.high + (from_half.low + (kTwicePi.low - 2 * arc.low));
 }
 
 namespace {
@@ -184,7 +182,7 @@ double atan2(double y, double x) {
     angle = arc.high + arc.low;
   } else {
     // From a quarter or a half turn: pi/2 - arc, pi/2 + arc or pi - arc.
-    const Twice& from = steep ? kHalfPi : kPi;
+    const Twice& from = steep ? kHalfPi : kTwicePi;
     const double sign = steep && x < 0 ? 1 : -1;
     const Twice sum = ordered_sum_of(from.high, sign * arc.high);
     angle = sum.high + (sum.low + (from.low + sign * arc.low));

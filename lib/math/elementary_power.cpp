@@ -18,10 +18,6 @@ namespace goniochrome::math {
 namespace {
 
 constexpr int kPlaces = 128;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Added to a number and taken away again, this leaves the nearest integer (ties to even), for |x| < 2^51.
-constexpr double kToInteger = 0x1.8p52;
 
 // log 2: the first part has 32 bits, so that its product with an exponent of 2 times 128 is exact.
 constexpr double kLn2High = 0x1.62e42feep-1, kLn2Low = 0x1.a39ef35793c76p-33;
@@ -161,14 +157,14 @@ constexpr std::array<double, 15> inverse_factorials() {
 constexpr std::array<double, 15> kInverseFactorials = inverse_factorials();
 
 bool ordinary(double x) {  // positive, normal and finite
-  return x >= std::numeric_limits<double>::min() && x < kInfinity;
+  return x >= std::numeric_limits<double>::min() && x < HUGE_VAL;
 }
 
 }  // namespace
 
 double exp(double x) {
   if (!(x > -746)) return x < 0 ? 0 : x;  // NaN stays
-  if (x > 710) return kInfinity;
+  if (x > 710) return HUGE_VAL;
   const Exponential e = exponential(x, 0);
   return scaled(e.high + e.low, e.exponent);
 }
@@ -193,7 +189,7 @@ namespace {
 
 // (e^x + sign e^-x)/2 for x >= 1/2, or for any x >= 0 where the sign is positive.
 double hyperbolic(double x, double sign) {
-  if (x > 711) return kInfinity;
+  if (x > 711) return HUGE_VAL;
   const Exponential up = exponential(x, 0);
   if (x > 40) return scaled(up.high + up.low, up.exponent - 1);
   const Exponential down = exponential(-x, 0);
@@ -218,14 +214,14 @@ double cosh(double x) {
 
 double log(double x) {
   if (ordinary(x)) return log_of(reduced(x, 0, 0));
-  if (x > 0 && x < kInfinity) return log_of(reduced(x * 0x1p54, 0, -54));
+  if (x > 0 && x < HUGE_VAL) return log_of(reduced(x * 0x1p54, 0, -54));
   return std::log(x);
 }
 
 // Near 0 the series alone. Elsewhere 1 + x and its rounding error, which the reduction takes.
 double log1p(double x) {
   if (std::abs(x) < 1.0 / 256) return x + log_series(x);
-  if (!(x > -1 && x < kInfinity)) return std::log1p(x);
+  if (!(x > -1 && x < HUGE_VAL)) return std::log1p(x);
   const Twice sum = sum_of(1, x);
   return log_of(reduced(sum.high, sum.high < 0x1p1000 ? sum.low : 0, 0));
 }
@@ -238,14 +234,14 @@ double pow(double x, double y) {
     const double value = pow(-x, y);
     return std::fmod(y, 2) != 0 ? -value : value;
   }
-  if (!(x > 0 && x < kInfinity) || !std::isfinite(y)) return std::pow(x, y);
+  if (!(x > 0 && x < HUGE_VAL) || !std::isfinite(y)) return std::pow(x, y);
   const Twice log = log_twice(ordinary(x) ? reduced(x, 0, 0) : reduced(x * 0x1p54, 0, -54));
   const double product = log.high * y;
-  if (!(std::abs(product) < 800)) return product > 0 ? kInfinity : 0;
+  if (!(std::abs(product) < 800)) return product > 0 ? HUGE_VAL : 0;
   if (std::abs(product) < 0x1p-60) return 1 + product;
   const Twice exact = product_of(log.high, y);
   const Exponential e = exponential(exact.high, exact.low + log.low * y);
-  if (e.exponent > 1024) return kInfinity;
+  if (e.exponent > 1024) return HUGE_VAL;
   if (e.exponent < -1080) return 0;
   return scaled(e.high + e.low, e.exponent);
 }

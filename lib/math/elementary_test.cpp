@@ -14,7 +14,7 @@
 
 #include "base/random_for_test.h"
 
-namespace goniochrome::math {
+namespace goniochrome::math::elementary_test {
 namespace {
 
 using Function = std::function<double(double)>;
@@ -281,4 +281,4 @@ TEST(Elementary, SpecialValuesAreThoseOfTheCLibrary) {
 }
 
 }  // namespace
-}  // namespace goniochrome::math
+}  // namespace goniochrome::math::elementary_test

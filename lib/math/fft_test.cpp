@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace goniochrome::math {
+namespace goniochrome::math::fft_test {
 namespace {
 
 TEST(Fft, OfEveryLengthEqualsTheSum) {
@@ -36,4 +36,4 @@ TEST(Fft, OfEveryLengthEqualsTheSum) {
 }
 
 }  // namespace
-}  // namespace goniochrome::math
+}  // namespace goniochrome::math::fft_test

@@ -11,7 +11,7 @@
 #include "math/internal/problems_for_test.h"
 #include "math/least_squares.h"
 
-namespace goniochrome::math {
+namespace goniochrome::math::l1_fit_test {
 namespace {
 
 using problems::Problem;
@@ -221,4 +221,4 @@ TEST(L1Fit, IgnoresOutliersThatPullLeastSquares) {
 }
 
 }  // namespace
-}  // namespace goniochrome::math
+}  // namespace goniochrome::math::l1_fit_test

@@ -10,7 +10,7 @@
 #include "math/internal/problems_for_test.h"
 #include "math/least_squares.h"
 
-namespace goniochrome::math {
+namespace goniochrome::math::nnls_test {
 namespace {
 
 using problems::Problem;
@@ -255,4 +255,4 @@ TEST(Nnls, ErrorNeverRisesWithAnotherLobe) {
 }
 
 }  // namespace
-}  // namespace goniochrome::math
+}  // namespace goniochrome::math::nnls_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace goniochrome::math {
+namespace goniochrome::math::quadrature_test {
 namespace {
 
 TEST(Quadrature, GaussLegendreIsExactToItsDegree) {
@@ -46,4 +46,4 @@ TEST(Quadrature, GaussRuleIsExactUpToItsDegree) {
 }
 
 }  // namespace
-}  // namespace goniochrome::math
+}  // namespace goniochrome::math::quadrature_test

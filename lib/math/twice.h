@@ -8,6 +8,9 @@ struct Twice {
   double high = 0, low = 0;
 };
 
+// Added to a number and taken away again, this leaves the nearest integer (ties to even), for |x| < 2^51.
+inline constexpr double kToInteger = 0x1.8p52;
+
 // a + b and its rounding error, exactly.
 constexpr Twice sum_of(double a, double b) {
   const double s = a + b, bb = s - a;

@@ -10,7 +10,7 @@
 #include "base/scratch_for_test.h"
 #include "mesh/mesh.h"
 
-namespace goniochrome::mesh {
+namespace goniochrome::mesh::gltf_test {
 namespace {
 
 using testing::HasSubstr;
@@ -245,4 +245,4 @@ TEST_F(GltfFiles, HardCase_MeshInstancesAreBounded) {
 }
 
 }  // namespace
-}  // namespace goniochrome::mesh
+}  // namespace goniochrome::mesh::gltf_test

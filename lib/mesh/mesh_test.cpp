@@ -15,7 +15,7 @@
 #include "base/scratch_for_test.h"
 #include "mesh/internal/polygons.h"
 
-namespace goniochrome::mesh {
+namespace goniochrome::mesh::mesh_test {
 namespace {
 
 using testing::HasSubstr;
@@ -406,4 +406,4 @@ TEST_F(MeshFiles, HardCase_LibraryCrashADamagedFileIsAnError) {
 }
 
 }  // namespace
-}  // namespace goniochrome::mesh
+}  // namespace goniochrome::mesh::mesh_test

@@ -8,7 +8,7 @@
 #include "base/angles.h"
 #include "base/testdata_for_test.h"
 
-namespace goniochrome::mesh {
+namespace goniochrome::mesh::seam_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -149,4 +149,4 @@ TEST(Seam, TheBumperOfTheSpeedShapeIsEightDegreesOut) {
 }
 
 }  // namespace
-}  // namespace goniochrome::mesh
+}  // namespace goniochrome::mesh::seam_test

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace goniochrome::mesh {
+namespace goniochrome::mesh::unit_test {
 namespace {
 
 // A box of the proportions of a car that is `length` long.
@@ -29,4 +29,4 @@ TEST(Unit, PanelsInMillimetersAndSmallThingsInMetersAreRecognized) {
 }
 
 }  // namespace
-}  // namespace goniochrome::mesh
+}  // namespace goniochrome::mesh::unit_test

@@ -8,7 +8,7 @@
 
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome::paint {
+namespace goniochrome::paint::curve_test {
 namespace {
 
 double difference(const color::Lab& x, const color::Lab& y) {
@@ -355,4 +355,4 @@ TEST(TargetCurve, FallsBackOnWhatThePaintHas) {
 }
 
 }  // namespace
-}  // namespace goniochrome::paint
+}  // namespace goniochrome::paint::curve_test

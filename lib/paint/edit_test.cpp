@@ -10,7 +10,7 @@
 #include "base/hard_case_for_test.h"
 #include "paint/curve.h"
 
-namespace goniochrome::paint {
+namespace goniochrome::paint::edit_test {
 namespace {
 
 using testing::ElementsAre;
@@ -575,4 +575,4 @@ TEST(Between, KeepsTheConditionWithoutCommonGeometries) {
 }
 
 }  // namespace
-}  // namespace goniochrome::paint
+}  // namespace goniochrome::paint::edit_test

@@ -9,7 +9,7 @@
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome::paint {
+namespace goniochrome::paint::geometry_test {
 namespace {
 
 void expect_near(const Vec3& v, const Vec3& expected, double tolerance) {
@@ -203,4 +203,4 @@ TEST(HardCase, AngleAcosOfUnitVectors) {
 }
 
 }  // namespace
-}  // namespace goniochrome::paint
+}  // namespace goniochrome::paint::geometry_test

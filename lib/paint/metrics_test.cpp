@@ -10,7 +10,7 @@
 #include "base/hard_case_for_test.h"
 #include "paint/curve.h"
 
-namespace goniochrome::paint {
+namespace goniochrome::paint::metrics_test {
 namespace {
 
 using testing::HasSubstr;
@@ -312,4 +312,4 @@ TEST(MetricRange, BoundsAreIncludedAndErrorsAreTold) {
 }
 
 }  // namespace
-}  // namespace goniochrome::paint
+}  // namespace goniochrome::paint::metrics_test

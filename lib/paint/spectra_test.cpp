@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "color/spectrum.h"
 
-namespace goniochrome::paint {
+namespace goniochrome::paint::spectra_test {
 namespace {
 
 SpectrumReading band(double center_nm, double width_nm, double height) {
@@ -197,4 +197,4 @@ TEST(Spectra, IlluminantAIsItsBlackBody) {
 }
 
 }  // namespace
-}  // namespace goniochrome::paint
+}  // namespace goniochrome::paint::spectra_test

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace goniochrome::panels {
+namespace goniochrome::panels::geometry_sets_test {
 namespace {
 
 TEST(GeometrySets, TakeListsRangesNamesAndAspecularViews) {
@@ -42,4 +42,4 @@ TEST(GeometrySets, ErrorsNameOptionValueAndRemedy) {
 }
 
 }  // namespace
-}  // namespace goniochrome::panels
+}  // namespace goniochrome::panels::geometry_sets_test

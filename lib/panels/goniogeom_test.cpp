@@ -10,7 +10,7 @@
 #include "base/hard_case_for_test.h"
 #include "panels/geometry_sets.h"
 
-namespace goniochrome::panels {
+namespace goniochrome::panels::goniogeom_test {
 namespace {
 
 constexpr DifferenceMetric k76 = DifferenceMetric::kDe76, k00 = DifferenceMetric::kDe00;
@@ -350,4 +350,4 @@ TEST(Coat, FirstCrossingsAreThoseOfADenseScan) {
 }
 
 }  // namespace
-}  // namespace goniochrome::panels
+}  // namespace goniochrome::panels::goniogeom_test

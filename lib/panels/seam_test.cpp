@@ -7,7 +7,7 @@
 
 #include "base/angles.h"
 
-namespace goniochrome::panels {
+namespace goniochrome::panels::seam_test {
 namespace {
 
 // One place of a seam along x: the first panel faces up, the second one falls away beyond it by `fold_deg`.
@@ -152,4 +152,4 @@ TEST(EnvironmentPanels, ShowAMattPaintThroughItsCoat) {
 }
 
 }  // namespace
-}  // namespace goniochrome::panels
+}  // namespace goniochrome::panels::seam_test

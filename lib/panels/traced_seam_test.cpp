@@ -7,7 +7,7 @@
 #include "base/angles.h"
 #include "base/parallel.h"
 
-namespace goniochrome::panels {
+namespace goniochrome::panels::traced_seam_test {
 namespace {
 
 using testing::HasSubstr;
@@ -208,4 +208,4 @@ TEST(TracedSeam, WhatCannotBeTracedIsNamed) {
 }
 
 }  // namespace
-}  // namespace goniochrome::panels
+}  // namespace goniochrome::panels::traced_seam_test

@@ -9,7 +9,7 @@
 #include "base/hard_case_for_test.h"
 #include "panels/geometry_sets.h"
 
-namespace goniochrome::panels {
+namespace goniochrome::panels::trompe_test {
 namespace {
 
 using ::testing::Contains;
@@ -197,4 +197,4 @@ TEST(Trompe, ViewsUnderACoatAreThoseOfTheCurve) {
 }
 
 }  // namespace
-}  // namespace goniochrome::panels
+}  // namespace goniochrome::panels::trompe_test

@@ -18,7 +18,6 @@ namespace {
 constexpr double kRelative = 1e-8;    // of the pieces that need recursion
 constexpr double kEdgeShare = 1e-10;  // of the flux; some 1e3 texels on an edge err at random
 constexpr double kCoarse = 0.05;      // rad: texels beyond this are no small patches
-constexpr double kFloor = 1e-3;       // of the mean: see LobeError
 
 // As many nodes across a texel as a lobe sqrt(E) times narrower than a radian wants: with v = texel sqrt(E), two points
 // err by v^4/4320, three by v^6/2e6, four by v^8/1.8e9 times Hermite polynomials of the distance in lobe widths; 5
@@ -346,7 +345,7 @@ LobeError map_error(const envmap::PrefilteredLobe& lobe, const envmap::SphereGri
       const int column = static_cast<int>(index % width), row = static_cast<int>(index / width);
       const Vec3 wanted = truth(column, row);
       for (int c = 0; c < 3; ++c) {
-        const double scale = std::max({wanted[c], kFloor * mean[c], kFloor * kFloor * gray, 1e-300});
+        const double scale = std::max({wanted[c], kErrorFloor * mean[c], kErrorFloor * kErrorFloor * gray, 1e-300});
         errors[i] = std::max(errors[i], std::fabs(map.texels[3 * index + c] - wanted[c]) / scale);
       }
     }

@@ -23,6 +23,9 @@ Vec3 reference_lobe(const envmap::Environment& env, const Vec3& d, const ZonalKe
 Vec3 reference_mirror(const envmap::Environment& env, const envmap::SphereGrid& grid, const envmap::Rotation& turn,
                       int column, int row);
 
+// The share of a map's mean below which errors are no longer relative to the value itself: see LobeError.
+inline constexpr double kErrorFloor = 1e-3;
+
 // How far a lobe's map, in the scene that `turn` brings the environment to, is from the reference on `count` random
 // texels, `extremes` of its brightest and as many of its darkest: relative, per channel, to the larger of the local
 // value and 1e-3 of the channel's mean over the map (1e-6 of the largest channel's mean, where a channel is almost

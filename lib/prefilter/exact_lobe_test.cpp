@@ -10,7 +10,7 @@
 #include "math/cosine_power.h"
 #include "prefilter/internal/lobe_patch.h"
 
-namespace goniochrome::prefilter {
+namespace goniochrome::prefilter::exact_lobe_test {
 namespace {
 
 using BadPixels = envmap::Environment::BadPixels;
@@ -142,4 +142,4 @@ TEST(ExactLobe, RecursionConverges) {
 }
 
 }  // namespace
-}  // namespace goniochrome::prefilter
+}  // namespace goniochrome::prefilter::exact_lobe_test

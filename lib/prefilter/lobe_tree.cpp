@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "prefilter/exact_lobe.h"
 #include "prefilter/internal/kernel.h"
 #include "prefilter/internal/lobe_patch.h"
 
@@ -20,7 +21,6 @@ namespace goniochrome::prefilter {
 
 namespace {
 
-constexpr double kFloor = 1e-3;            // errors are relative to no less than this of the mean
 constexpr double kCoarseTolerance = 0.05;  // of the first walk
 
 Vec3 vec(const float* v) {
@@ -101,8 +101,9 @@ Vec3 LobeTree::lobe(const Vec3& d, const ZonalKernel& kernel, double tolerance) 
   // The least C that matters: P = scale C at the floor of the mean.
   Vec3 floor;
   for (int c = 0; c < 3; ++c)
-    floor[c] = std::max({kFloor * flux_[c], kFloor * kFloor * std::max({flux_.x, flux_.y, flux_.z}), 1e-300}) /
-               (4 * kPi * scale);
+    floor[c] =
+        std::max({kErrorFloor * flux_[c], kErrorFloor * kErrorFloor * std::max({flux_.x, flux_.y, flux_.z}), 1e-300}) /
+        (4 * kPi * scale);
   const auto inverse = [](const Vec3& c) { return Vec3{1 / c.x, 1 / c.y, 1 / c.z}; };
   Walk walk = {d, kernel, kCoarseTolerance, inverse(floor)};
   if (tolerance < kCoarseTolerance) {

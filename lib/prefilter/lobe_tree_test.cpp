@@ -10,7 +10,7 @@
 #include "prefilter/exact_lobe.h"
 #include "prefilter/internal/environments_for_test.h"
 
-namespace goniochrome::prefilter {
+namespace goniochrome::prefilter::lobe_tree_test {
 namespace {
 
 Vec3 random_direction(std::mt19937_64& random) {
@@ -85,4 +85,4 @@ TEST(LobeTree, SharpLobesOnLatLongMapsKeepTheTolerance) {
 }
 
 }  // namespace
-}  // namespace goniochrome::prefilter
+}  // namespace goniochrome::prefilter::lobe_tree_test

@@ -9,6 +9,7 @@
 #include "base/angles.h"
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "prefilter/exact_lobe.h"
 #include "prefilter/internal/arc_sums.h"
 #include "prefilter/internal/bright_texels.h"
 #include "prefilter/internal/harmonic_grid.h"
@@ -23,8 +24,6 @@ namespace goniochrome::prefilter {
 
 namespace {
 
-// Errors are relative to no less than this of the mean: what LobeError and the man page say.
-constexpr double kFloor = 1e-3;
 // Of harmonics. At the degree L their grid and its rows take 24 bytes at 4 L x 2 L samples and 48 at 2 L x L, which are
 // 288 L^2 bytes: 300 MB here.
 constexpr int kMostDegree = 1024;
@@ -104,7 +103,7 @@ LobePlan lobe_plan(const envmap::Environment& env, const PrefilterRequest& reque
   plan.lookup_error = lookup_error(plan.exponent, plan.size);
   const double tolerance = method_tolerance(request.tolerance);
   // Half of the method's share goes to the degrees left out, relative to the floor.
-  plan.degree = sufficient_degree(*plan.kernel, 0.5 * tolerance * kFloor, kMostDegree);
+  plan.degree = sufficient_degree(*plan.kernel, 0.5 * tolerance * kErrorFloor, kMostDegree);
   plan.predicted_error = rounding_error(request.tolerance) + tolerance;
   const bool arcs = arcs_serve(env, *plan.kernel, tolerance);
   if (plan.degree >= 0) return plan;
@@ -273,7 +272,7 @@ void for_each_texel(const envmap::SphereGrid& grid, const envmap::Rotation& turn
 // The share of a lobe that local sums leave out: a tenth of the tolerance at the floor, were it the brightest texel's.
 double left_out_by_local_sums(const Vec3& flux, double most, double tolerance) {
   const double mean = std::max({flux.x, flux.y, flux.z}) / (4 * kPi);
-  return 0.1 * tolerance * kFloor * kFloor * (mean > 0 ? std::min(1.0, mean / most) : 1);
+  return 0.1 * tolerance * kErrorFloor * kErrorFloor * (mean > 0 ? std::min(1.0, mean / most) : 1);
 }
 
 // How many taps keep the interpolation below a tenth of the tolerance at the floor: the largest value of a lobe map is
@@ -282,7 +281,7 @@ int taps(const Vec3& flux, double most, const ZonalKernel& kernel, double tolera
   const double mean = std::max({flux.x, flux.y, flux.z}) / (4 * kPi);
   if (!(mean > 0)) return taps_for(1);
   const double peak = std::min(most / mean, 4 * kPi * kernel.scale());
-  return taps_for(0.1 * tolerance * kFloor / std::max(peak, 1.0));
+  return taps_for(0.1 * tolerance * kErrorFloor / std::max(peak, 1.0));
 }
 
 // A lobe whose kernel bends at its edge: harmonics of the rest to the degree that the darkest texels need, and the
@@ -368,8 +367,8 @@ class WideLobe {
 
   // What a texel of that value may be off by in a channel.
   double allowed(double value, int channel) const {
-    const double gray = kFloor * kFloor * std::max({mean_.x, mean_.y, mean_.z});
-    return 0.8 * tolerance_ * std::max({value, kFloor * mean_[channel], gray});
+    const double gray = kErrorFloor * kErrorFloor * std::max({mean_.x, mean_.y, mean_.z});
+    return 0.8 * tolerance_ * std::max({value, kErrorFloor * mean_[channel], gray});
   }
 
   bool fits(const Vec3& value, const Vec3& bound) const {

@@ -15,7 +15,7 @@
 #include "prefilter/internal/bright_texels.h"
 #include "prefilter/internal/mirror.h"
 
-namespace goniochrome::prefilter {
+namespace goniochrome::prefilter::prefilter_test {
 namespace {
 
 using BadPixels = envmap::Environment::BadPixels;
@@ -374,4 +374,4 @@ TEST(Prefilter, ProbesKeepToleranceAndEnergyRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome::prefilter
+}  // namespace goniochrome::prefilter::prefilter_test

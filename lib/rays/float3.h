@@ -8,7 +8,7 @@
 
 namespace goniochrome::rays {
 
-inline constexpr float kFloatPi = static_cast<float>(kPi);
+inline constexpr float kFloatPi = static_cast<float>(kPi), kInversePi = 1 / kFloatPi;
 
 struct Float3 {
   float x = 0, y = 0, z = 0;

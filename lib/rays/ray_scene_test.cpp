@@ -13,7 +13,7 @@
 #include "base/hard_case_for_test.h"
 #include "base/parallel.h"
 
-namespace goniochrome::rays {
+namespace goniochrome::rays::ray_scene_test {
 namespace {
 
 // A sphere with its exact normals; triangles bend away from it by (pi/rows)^2/8 of the radius.
@@ -371,4 +371,4 @@ TEST(RayScene, VerticesThatAreNoNumbersAreRefusedByTheReader) {
 }
 
 }  // namespace
-}  // namespace goniochrome::rays
+}  // namespace goniochrome::rays::ray_scene_test

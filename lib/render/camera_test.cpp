@@ -5,7 +5,7 @@
 #include "base/angles.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::camera_test {
 namespace {
 
 TEST(Camera, OrbitTurnsFromFrontToRightAndUp) {
@@ -103,4 +103,4 @@ TEST(Camera, SilliesAreRefused) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::camera_test

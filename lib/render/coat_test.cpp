@@ -17,7 +17,7 @@
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::coat_test {
 namespace {
 
 envmap::Environment even_sky() {
@@ -303,4 +303,4 @@ TEST(Coat, IsInTheColumnsOfATransportAndInPaths) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::coat_test

@@ -8,7 +8,7 @@
 #include "base/testdata_for_test.h"
 #include "render/renderer.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::colored_light_test {
 namespace {
 
 image::Image box_picture(Renderer& renderer, const mesh::Mesh& mesh, const color::Rgb& light,
@@ -55,4 +55,4 @@ TEST(ColoredLight, ARedWallStaysRedInCyanLight) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::colored_light_test

@@ -15,7 +15,7 @@
 #include "render/path/transport.h"
 #include "render/scene.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::disc_lamps_test {
 namespace {
 
 paint::LobeFit glossy(double exponent) {
@@ -337,4 +337,4 @@ TEST(DiscLamps, SoftShadowsAreUnbiasedAllAlong) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::disc_lamps_test

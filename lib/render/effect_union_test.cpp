@@ -6,7 +6,7 @@
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::effect_union_test {
 namespace {
 
 paint::LobeFit paint_of(std::initializer_list<double> exponents, bool gloss) {
@@ -74,4 +74,4 @@ TEST_F(EffectUnion, TakesTheLobesOfAnEnvironmentAsTheBasisHasThem) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::effect_union_test

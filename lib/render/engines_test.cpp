@@ -8,7 +8,7 @@
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::engines_test {
 namespace {
 
 color::Lab lab_of(const float* pixel) {
@@ -151,4 +151,4 @@ TEST(Engines, AgreeOnEveryOperator) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::engines_test

@@ -7,7 +7,7 @@
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::estimates_test {
 namespace {
 
 // A room: a bright strip in the ceiling, a blue window, a dark floor.
@@ -171,4 +171,4 @@ TEST(HorizonAndCosine, LightComesFromWhereTheLobeGathersIt) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::estimates_test

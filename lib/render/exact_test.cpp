@@ -10,7 +10,7 @@
 #include "math/cosine_power.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::exact_test {
 namespace {
 
 envmap::Environment lat_long(int width, int height, const std::function<Vec3(int column, int row)>& radiance) {
@@ -202,4 +202,4 @@ TEST(PictureError, IsNothingForTheReferenceItselfAndTellsTheWorstPixel) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::exact_test

@@ -17,7 +17,7 @@
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::furnace_test {
 namespace {
 
 const formats::Basis& basis() {
@@ -103,4 +103,4 @@ TEST(Furnace, NoPixelOfAnyPaintByAnyEngineIsBrighterThanTheSky) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::furnace_test

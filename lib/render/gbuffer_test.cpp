@@ -7,7 +7,7 @@
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::gbuffer_test {
 namespace {
 
 View slanted_view(const mesh::Mesh& mesh, int samples = 1) {
@@ -100,4 +100,4 @@ TEST(MeshPoint, StaysOnTheTriangleThatTheRayMissesOrRunsAlong) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::gbuffer_test

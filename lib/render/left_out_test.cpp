@@ -7,7 +7,7 @@
 #include "render/internal/seen.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::left_out_test {
 namespace {
 
 constexpr int kSize = 64;
@@ -85,4 +85,4 @@ TEST(LeftOut, IsNothingWhereAllIsDrawn) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::left_out_test

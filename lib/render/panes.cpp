@@ -12,7 +12,7 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 8;
+constexpr std::size_t kPaneRowsAtOnce = 8;
 constexpr std::size_t kMostPanes = 64;  // one behind the other; ten let less than half of the light through
 
 struct Rectangle {
@@ -56,7 +56,7 @@ std::optional<BehindPanes> one_deeper(const rays::RayScene& whole, const Scene& 
   g.data.assign(4 * pixels, 0.0F), g.triangles.assign(pixels, kNoTriangle);
   deeper.passed.assign(pixels, 0.0F);
   const rays::Float3 eye = whole.local(g.rays.eye);
-  parallel_for(static_cast<std::size_t>(g.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(g.height), kPaneRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < g.width; ++x) {
         const int u = box.left + x, v = box.top + y, part = before.part(u, v);

@@ -11,7 +11,7 @@
 #include "render/path/scenes_for_paths_for_test.h"
 #include "render/renderer.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::panes_test {
 namespace {
 
 void add_square(const std::string& name, double z, double half, mesh::Mesh& mesh) {
@@ -236,4 +236,4 @@ TEST(Panes, CostNothingWhereThereAreNone) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::panes_test

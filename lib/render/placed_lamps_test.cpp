@@ -14,7 +14,7 @@
 #include "render/scenes_for_test.h"
 #include "render/surface_layer.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::placed_lamps_test {
 namespace {
 
 // Two columns of a turned brush, of two lobes.
@@ -204,4 +204,4 @@ TEST_F(PlacedLamps, WhatCannotBeDrawnIsRefused) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::placed_lamps_test

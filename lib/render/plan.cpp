@@ -28,7 +28,7 @@ namespace goniochrome::render {
 namespace {
 
 // The probe sees 95 % of some hundred points; the picture's own percentile is that far off at most times.
-constexpr double kSafety = 0.8;
+constexpr double kSafetyOfMaps = 0.8;
 
 // Visible points that a plan is made from.
 constexpr std::size_t kProbe = 512;
@@ -178,7 +178,7 @@ void drop_unseen(Prober& prober, const std::vector<EffectSwitch>& switches, cons
     const std::vector<bool> before = choice.on;
     choice.on[i] = false;
     settle(switches, choice.on);
-    if (prober.seen(wanted, prober.colors(choice.on)) > kSafety * tolerance) choice.on = before;
+    if (prober.seen(wanted, prober.colors(choice.on)) > kSafetyOfMaps * tolerance) choice.on = before;
   }
 }
 

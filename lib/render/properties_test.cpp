@@ -17,7 +17,7 @@
 #include "render/exact.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::properties_test {
 namespace {
 
 std::uint64_t seed() {
@@ -310,4 +310,4 @@ TEST_F(Property, PaintXmlKeepsEveryBit) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::properties_test

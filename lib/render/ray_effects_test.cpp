@@ -10,7 +10,7 @@
 #include "render/renderer.h"
 #include "render/truth.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::ray_effects_test {
 namespace {
 
 struct World {
@@ -283,4 +283,4 @@ TEST(RayEffects, AFloorNeedsShadow) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::ray_effects_test

@@ -7,7 +7,7 @@
 #include "brdf/lobe_model.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::renderer_test {
 namespace {
 
 using testing::HasSubstr;
@@ -373,4 +373,4 @@ TEST(Renderer, ShadingRefusesWhatNeedsTheMesh) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::renderer_test

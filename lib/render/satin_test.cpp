@@ -17,7 +17,7 @@
 #include "render/exact.h"
 #include "render/path/traced_paint.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::satin_test {
 namespace {
 
 using brdf::TrueCoat;
@@ -344,4 +344,4 @@ TEST(Satin, PicturesAreNearTheRoughDielectricRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::satin_test

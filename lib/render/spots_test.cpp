@@ -15,7 +15,7 @@
 #include "render/path/scenes_for_paths_for_test.h"
 #include "render/renderer.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::spots_test {
 namespace {
 
 const std::vector<double> kExponents = {1.3, 6, 20, 900};
@@ -209,4 +209,4 @@ TEST(Spots, RaysFindTheSameLightWithASunOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::spots_test

@@ -14,7 +14,7 @@
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::stretch_test {
 namespace {
 
 const std::vector<double> kBasis = {1.3, 6, 20, 70, 250, 900, 3000};
@@ -129,4 +129,4 @@ TEST(Stretch, IsPlanned) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::stretch_test

@@ -8,7 +8,7 @@
 #include "brdf/lobe_model.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::surface_layer_test {
 namespace {
 
 // A G-buffer of one row: the points of a sphere from the middle to the right, seen from +Z.
@@ -113,4 +113,4 @@ TEST(SurfaceLayer, BitsDoNotDependOnTheThreads) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::surface_layer_test

@@ -16,7 +16,7 @@
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::tilts_test {
 namespace {
 
 using testing::HasSubstr;
@@ -274,4 +274,4 @@ TEST(Tilts, AMapOfALobeThatIsMissingIsNamed) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::tilts_test

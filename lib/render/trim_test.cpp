@@ -5,7 +5,7 @@
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::trim_test {
 namespace {
 
 double albedo(const char* name, const char* material = "") {
@@ -32,4 +32,4 @@ TEST(Trim, MirrorsOnlyWhereThatIsWanted) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::trim_test

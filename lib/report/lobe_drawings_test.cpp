@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace goniochrome::report {
+namespace goniochrome::report::lobe_drawings_test {
 namespace {
 
 std::size_t count(const std::string& text, const std::string& word) {
@@ -68,4 +68,4 @@ TEST(Plot, RowsAndColumnsAddUp) {
 }
 
 }  // namespace
-}  // namespace goniochrome::report
+}  // namespace goniochrome::report::lobe_drawings_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace goniochrome::report {
+namespace goniochrome::report::plot_test {
 namespace {
 
 TEST(Plot, TicksAreRoundNumbersInsideTheAxis) {
@@ -78,4 +78,4 @@ TEST(Plot, SheetHoldsEveryPlot) {
 }
 
 }  // namespace
-}  // namespace goniochrome::report
+}  // namespace goniochrome::report::plot_test

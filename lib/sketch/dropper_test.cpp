@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::dropper_test {
 namespace {
 
 // sRGB signals and the CIELAB under D65 and the 2 deg observer that is published for them; the working space is seen by
@@ -26,4 +26,4 @@ TEST(Dropper, LightIsAveragedAndNotSignals) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::dropper_test

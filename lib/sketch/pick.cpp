@@ -19,7 +19,7 @@ constexpr std::size_t kMostPixels = 20000;  // looked at
 constexpr double kLightnessPart = 0.35;     // of L* against a* and b*: a color's shadow is that color
 constexpr double kEnd = 0.15;               // the part of a group's pixels that is its light, and its dark, end
 constexpr double kGlint = 0.02;             // the lightest pixels are reflections
-constexpr int kRounds = 25;
+constexpr int kMeanRounds = 25;
 
 // Every step-th pixel of every step-th row from (x0, y0) up to (x1, y1), exclusive.
 image::ImagePart piece_of(const image::ImagePart& image, int x0, int y0, int x1, int y1, int step) {
@@ -79,7 +79,7 @@ std::vector<color::Lab> centers_of(std::vector<Pixel>& pixels, int count) {
     while (chosen + 1 < pixels.size() && (place -= nearest[chosen]) > 0) ++chosen;
     centers.push_back(pixels[chosen].lab);
   }
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kMeanRounds; ++round) {
     std::vector<color::Lab> sum(centers.size());
     std::vector<double> members(centers.size(), 0);
     for (Pixel& pixel : pixels) {

@@ -5,7 +5,7 @@
 
 #include "sketch/sketch_picture.h"
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::pick_test {
 namespace {
 
 using testing::HasSubstr;
@@ -103,4 +103,4 @@ TEST(Pick, APalettePairsTheLightAndTheDarkOfEachColor) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::pick_test

@@ -7,7 +7,7 @@
 
 #include "base/angles.h"
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::probe_test {
 namespace {
 
 // One pixel that looks along -Z at a surface whose normal is turned by 20 degrees toward +X, and one beside it.
@@ -67,4 +67,4 @@ TEST(Probe, OutsideOrWithoutBuffersIsAnError) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::probe_test

@@ -14,7 +14,7 @@ namespace goniochrome::sketch {
 
 namespace {
 
-constexpr double kLeastScale = 0.75, kMostScale = 1.15;  // of the scale at which the buffers just fit
+constexpr double kSmallestFit = 0.75, kLargestFit = 1.15;  // of the scale at which the buffers just fit
 constexpr int kCoarse = 64;     // pixels along the longer side where the whole domain is searched
 constexpr int kLeastSide = 24;  // pixels along the shorter side there
 constexpr std::size_t kCoarseEdges = 400, kFineEdges = 4000;
@@ -184,13 +184,13 @@ using Pose = std::array<double, 4>;
 
 bool is_in_domain(const Pose& pose) {
   constexpr double kRoom = 0.02;  // so that a pose at the edge of the domain can be climbed to
-  return pose[0] > kLeastScale - kRoom && pose[0] < kMostScale + kRoom &&
+  return pose[0] > kSmallestFit - kRoom && pose[0] < kLargestFit + kRoom &&
          std::abs(pose[1]) < kMostTurn_deg * kDegree + kRoom;
 }
 
 // The correlation of the edges at the samples that lie in the scan; -1 where fewer than 3 in 4 do.
 double score(const Level& level, const Pose& pose) {
-  constexpr double kLeastShare = 0.75;
+  constexpr double kLeastSeen = 0.75;
   if (!is_in_domain(pose)) return -1;
   const double c = pose[0] * std::cos(pose[1]), s = pose[0] * std::sin(pose[1]);
   const double mx = level.scan.middle_x + pose[2], my = level.scan.middle_y + pose[3];
@@ -202,7 +202,7 @@ double score(const Level& level, const Pose& pose) {
     n += 1, a += p, b += q, aa += p * p, bb += q * q, ab += p * q;
   }
   const double spread = (n * aa - a * a) * (n * bb - b * b);
-  return spread > 0 && n >= kLeastShare * static_cast<double>(level.samples.size())
+  return spread > 0 && n >= kLeastSeen * static_cast<double>(level.samples.size())
              ? (n * ab - a * b) / std::sqrt(spread)
              : -1;
 }
@@ -211,14 +211,14 @@ double score(const Level& level, const Pose& pose) {
 Pose coarse_pose(const Level& level) {
   const double radius = 0.5 * std::hypot(level.buffers.width, level.buffers.height);
   const int turns = static_cast<int>(std::ceil(kMostTurn_deg * kDegree * radius)),
-            scales = static_cast<int>((kMostScale - kLeastScale) * radius);
+            scales = static_cast<int>((kLargestFit - kSmallestFit) * radius);
   std::vector<std::pair<double, Pose>> best(static_cast<std::size_t>((2 * turns + 1) * (scales + 1)),
                                             {-1, Pose{1, 0, 0, 0}});
   parallel_for(best.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const int turn = static_cast<int>(i) % (2 * turns + 1) - turns, scale = static_cast<int>(i) / (2 * turns + 1);
-      Pose pose = {kLeastScale + (kMostScale - kLeastScale) * scale / scales, kMostTurn_deg * kDegree * turn / turns, 0,
-                   0};
+      Pose pose = {kSmallestFit + (kLargestFit - kSmallestFit) * scale / scales, kMostTurn_deg * kDegree * turn / turns,
+                   0, 0};
       // The buffers stay within the scan but for a rim of 8 % that may be cut off.
       const int reach_x =
           static_cast<int>(0.5 * std::abs(level.scan.width - pose[0] * level.buffers.width) + 0.08 * level.scan.width);

@@ -9,7 +9,7 @@
 
 #include "sketch/internal/sketch_scene_for_test.h"
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::registration_test {
 namespace {
 
 using namespace sketch_scene;
@@ -180,4 +180,4 @@ TEST(Registration, APaintIsFoundInAScan) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::registration_test

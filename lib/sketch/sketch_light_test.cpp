@@ -11,7 +11,7 @@
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::sketch_light_test {
 namespace {
 
 using testing::ElementsAre;
@@ -197,4 +197,4 @@ TEST(SketchLight, TellsTheEffectsThatItLacks) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::sketch_light_test

@@ -15,7 +15,7 @@ constexpr double kLeastChangedShare = 0.005;  // fewer changed pixels are noise
 // If more are touched, the whole paint is meant, unless so many are as they were and most of those touched are edited:
 // compression and noise touch far more pixels than they edit, and a new paint leaves few as they were.
 constexpr double kRepaintedShare = 0.5, kKeptShare = 0.1, kPlainlyEdited = 0.8;
-constexpr std::size_t kRows = 16;
+constexpr std::size_t kPixelRows = 16;
 
 // Where the buffers stand in a pixel.
 struct Channels {
@@ -114,7 +114,7 @@ class Sorter {
 
 template <class Function>
 void for_places(const image::Image& image, Function&& function) {
-  parallel_for(static_cast<std::size_t>(image.height), kRows, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(image.height), kPixelRows, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
       for (int x = 0; x < image.width; ++x) function(x, y, static_cast<std::size_t>(y) * image.width + x);
   });
@@ -134,7 +134,7 @@ struct Changes {
 void drop_scattered(const image::Image& image, std::vector<std::uint8_t>& changed) {
   const std::vector<std::uint8_t> was = changed;
   const std::size_t width = static_cast<std::size_t>(image.width);
-  parallel_for(static_cast<std::size_t>(image.height), kRows, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(image.height), kPixelRows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y)
       for (std::size_t x = 0; x < width; ++x) {
         if (was[y * width + x] != kEdited) continue;

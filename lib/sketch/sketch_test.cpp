@@ -9,7 +9,7 @@
 #include "sketch/internal/sketch_curve.h"
 #include "sketch/internal/sketch_scene_for_test.h"
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::sketch_test {
 namespace {
 
 using namespace sketch_scene;
@@ -591,4 +591,4 @@ TEST(IsPaintColor, RefusesAColorBeyondAllLight) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::sketch_test

@@ -13,7 +13,7 @@
 #include "sketch/pick.h"
 #include "sketch/sketch_light.h"
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::traced_light_test {
 namespace {
 
 using testing::HasSubstr;
@@ -245,4 +245,4 @@ TEST(TracedLight, APictureOfAnotherSizeAndAPixelWithoutLightAreRefused) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::traced_light_test

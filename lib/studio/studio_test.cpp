@@ -18,7 +18,7 @@
 #include "render/page_weights.h"
 #include "studio/paint_json.h"
 
-namespace goniochrome::studio {
+namespace goniochrome::studio::studio_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -371,4 +371,4 @@ TEST(Studio, AnswersNonsenseWithAnError) {
 }
 
 }  // namespace
-}  // namespace goniochrome::studio
+}  // namespace goniochrome::studio::studio_test

@@ -12,7 +12,7 @@
 #include "studio/paint_json.h"
 #include "studio/studio.h"
 
-namespace goniochrome::studio {
+namespace goniochrome::studio::view_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -165,4 +165,4 @@ TEST(TracedViews, RefuseWhatTheyCannotShow) {
 }
 
 }  // namespace
-}  // namespace goniochrome::studio
+}  // namespace goniochrome::studio::view_test

@@ -11,7 +11,7 @@ namespace goniochrome::tool {
 
 namespace {
 
-constexpr int kWarningsShown = 5, kModelsTold = 5;
+constexpr int kMapWarningsShown = 5, kModelsTold = 5;
 
 bool is_plain(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
@@ -60,7 +60,7 @@ Result<std::optional<brdf::ColorMap>> ColorMaps::add(paint::Paint& paint, const 
   if (paint.color_map) asked.index = paint.color_map->index;
   const auto fit = fitted(paint, brdf, asked);
   if (!fit.ok()) {
-    if (++without_ <= kWarningsShown)
+    if (++without_ <= kMapWarningsShown)
       session_.warn(fmt::format("{}: paint \"{}\" gets no color map: {}", where, paint.name, fit.error().message));
     return std::optional<brdf::ColorMap>();
   }
@@ -114,8 +114,8 @@ void ColorMaps::tell_model(const fit::ColorMapFit& fit, const std::string& name)
 void ColorMaps::finish() {
   if (options_.color_map.empty()) return;
   session_.results()["without_color_map"] = without_;
-  if (without_ > kWarningsShown)
-    session_.warn(fmt::format("{} more paints get no color map", without_ - kWarningsShown));
+  if (without_ > kMapWarningsShown)
+    session_.warn(fmt::format("{} more paints get no color map", without_ - kMapWarningsShown));
   session_.say(
       fmt::format("{}: {} color maps, {} of them by the aspecular angle alone, mean dE76 of a reading predicted from "
                   "the others {:.2f}",

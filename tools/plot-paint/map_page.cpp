@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kGlare_deg = 10, kGrazing_deg = 75;
 constexpr auto kTreatment = brdf::CriticalAngle::kSlide;
-constexpr int kWidth = 1080;
+constexpr int kMapWidth = 1080;
 
 Vec3 direction(double angle_deg) {
   return {std::sin(angle_deg * kDegree), 0, std::cos(angle_deg * kDegree)};
@@ -25,24 +25,21 @@ double angle_between_deg(const Vec3& a, const Vec3& b) {
   return std::atan2(length(cross(a, b)), dot(a, b)) / kDegree;
 }
 
-double luminance(const color::Rgb& rgb) {
-  return color::xyz_d65_from_rgb(rgb).Y;
-}
-
 // The exposure at which a twentieth of the covered directions in plane is clipped.
 double exposure_of(const brdf::ColorMap& map) {
   std::vector<double> values;
   for (double light = 0; light < 85; light += 2.5)
     for (double view = -85; view < 85; view += 2.5)
       if (is_covered(map, direction(light), direction(view)))
-        values.push_back(luminance(brdf::reflectance_factor(map, direction(light), direction(view), kTreatment)));
+        values.push_back(
+            color::xyz_d65_from_rgb(brdf::reflectance_factor(map, direction(light), direction(view), kTreatment)).Y);
   if (values.empty()) return 1;
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 19 / 20);
   std::nth_element(values.begin(), at, values.end());
   return 0.8 / std::max(*at, 1e-4);
 }
 
-std::string css(const color::Rgb& scene) {
+std::string css_of_scene(const color::Rgb& scene) {
   const color::Rgb rgb = color::rec709_from_rec2020(scene);
   int bytes[3];
   for (int c = 0; c < 3; ++c)
@@ -66,7 +63,7 @@ std::string cells(const brdf::ColorMap& map, double exposure, int columns, int r
       fills += fmt::format(
           "<rect shape-rendering=\"crispEdges\" x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" "
           "fill=\"{}\"/>\n",
-          x, y, w + 0.3, h + 0.3, css(color));
+          x, y, w + 0.3, h + 0.3, css_of_scene(color));
       if (!is_covered(map, light, view)) strokes += fmt::format("M{:.2f} {:.2f}l{:.2f} {:.2f}", x, y + h, w, -h);
     }
   }
@@ -98,7 +95,7 @@ report::Drawing in_plane(const brdf::ColorMap& map, double exposure) {
       "<text x=\"20\" y=\"{0:.1f}\" text-anchor=\"middle\" transform=\"rotate(-90 20 {0:.1f})\">angle of the light "
       "(deg)</text>\n",
       kTop + kHigh / 2);
-  return {kWidth, static_cast<int>(kTop + kHigh + 46), out};
+  return {kMapWidth, static_cast<int>(kTop + kHigh + 46), out};
 }
 
 // The hemisphere of viewers as a square, the light from the left.
@@ -151,12 +148,12 @@ report::Drawing map_page(const std::string& paint, const brdf::ColorMap& map,
                                                      : fmt::format("isolines in a coat of index {:g}", map.index),
                                        100 * covered_share(map));
   std::vector<report::Drawing> rows = {
-      {kWidth, 54,
+      {kMapWidth, 54,
        fmt::format("<text x=\"12\" y=\"24\" style=\"font-size:18px;font-weight:bold\">{}, color map</text>\n"
                    "<text x=\"12\" y=\"44\">{}</text>\n",
                    xml_escaped(paint, ""), xml_escaped(told, ""))},
       in_plane(map, exposure)};
-  const int side = std::clamp(kWidth / std::max<int>(1, static_cast<int>(incidence_deg.size())), 120, 360);
+  const int side = std::clamp(kMapWidth / std::max<int>(1, static_cast<int>(incidence_deg.size())), 120, 360);
   std::vector<report::Drawing> squares;
   for (const double incidence : incidence_deg) squares.push_back(hemisphere(map, exposure, incidence, side));
   rows.push_back(report::row_of(squares));

@@ -9,7 +9,7 @@
 #include "capture/internal/truth_for_test.h"
 #include "math/statistics.h"
 
-namespace goniochrome::capture {
+namespace goniochrome::capture::texel_fit_test {
 namespace {
 
 struct Spoiling {
@@ -128,4 +128,4 @@ TEST(TexelFit, ErrorFallsWithPhotographsAndLobes) {
 }
 
 }  // namespace
-}  // namespace goniochrome::capture
+}  // namespace goniochrome::capture::texel_fit_test

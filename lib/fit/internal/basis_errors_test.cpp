@@ -11,7 +11,7 @@
 #include "math/cosine_power.h"
 #include "math/least_squares.h"
 
-namespace goniochrome::fit {
+namespace goniochrome::fit::basis_errors_test {
 namespace {
 
 // Targets with noise, weights of their own, and either of two lists of angles; every third one has a coat.
@@ -95,4 +95,4 @@ TEST(BasisErrors, DoNotDependOnThreadsNorOnTheOtherTargets) {
 }
 
 }  // namespace
-}  // namespace goniochrome::fit
+}  // namespace goniochrome::fit::basis_errors_test

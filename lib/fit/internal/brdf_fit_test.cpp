@@ -12,7 +12,7 @@
 #include "fit/paint_fit.h"
 #include "math/statistics.h"
 
-namespace goniochrome::fit {
+namespace goniochrome::fit::brdf_fit_test {
 namespace {
 
 const formats::Basis kBasis = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
@@ -394,4 +394,4 @@ TEST(BrdfFit, RglFilesComeOutBetterThanAGgxLobeRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome::fit
+}  // namespace goniochrome::fit::brdf_fit_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace goniochrome::fit {
+namespace goniochrome::fit::color_floor_test {
 namespace {
 
 using color::Lab;
@@ -125,4 +125,4 @@ TEST(ColorFloor, OfTwoGraysIsTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace goniochrome::fit
+}  // namespace goniochrome::fit::color_floor_test

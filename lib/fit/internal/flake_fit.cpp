@@ -185,9 +185,9 @@ double stationarity(const Residuals& residuals, const std::vector<double>& x) {
 //
 // so that weights enter and leave the bounds many at a time. It is stationary to rounding after 10 to 30 steps; Ceres'
 // trust region, whose steps are projected onto the bounds, was still on its way after 400.
-class Search {
+class FlakeSearch {
  public:
-  Search(const Residuals& residuals, const Deadline& deadline)
+  FlakeSearch(const Residuals& residuals, const Deadline& deadline)
       : residuals_(residuals),
         deadline_(deadline),
         rows_(residuals.rows()),
@@ -267,7 +267,7 @@ FlakeFit deltae_fit(const DeltaEProblem& problem, const std::vector<std::vector<
                     const Deadline& deadline) {
   FlakeFit best;
   const Residuals residuals(problem);
-  Search search(residuals, deadline);
+  FlakeSearch search(residuals, deadline);
   std::vector<double> best_x;
   double best_value = 0;
   for (const std::vector<color::Rgb>& start : starts) {
@@ -324,11 +324,11 @@ Differences differences(const FlakeTarget& target, const FlakeModel& model, cons
 // between the two are non-negative too. Returns whether the weights had to go back.
 bool bound_by(const std::vector<color::Rgb>& l1, const FlakeTarget& target, const FlakeModel& model,
               std::vector<color::Rgb>& x) {
-  constexpr int kSteps = 16;
+  constexpr int kBacks = 16;
   const Differences bound = differences(target, model, l1);
   const std::vector<color::Rgb> free = x;
-  for (int back = 0; back <= kSteps; ++back) {
-    const double share = static_cast<double>(back) / kSteps;
+  for (int back = 0; back <= kBacks; ++back) {
+    const double share = static_cast<double>(back) / kBacks;
     for (std::size_t j = 0; j < x.size(); ++j) x[j] = (1 - share) * free[j] + share * l1[j];
     if (differences(target, model, x).no_worse_than(bound)) return back > 0;
   }

@@ -49,18 +49,18 @@ std::vector<Vec3> half_sphere(int count) {
 
 // The integral of two normalized cosine lobes at an angle: the second one at the middle of equal parts of the first.
 double overlap(double lamp, double lobe, double angle_rad) {
-  constexpr int kRings = 40, kSides = 32;
+  constexpr int kLampRings = 40, kSides = 32;
   const Vec3 axis{std::sin(angle_rad), 0, std::cos(angle_rad)};
   double sum = 0;
-  for (int i = 0; i < kRings; ++i) {
-    const double cosine = std::pow((i + 0.5) / kRings, 1 / (lamp + 1)), sine = std::sqrt(1 - cosine * cosine);
+  for (int i = 0; i < kLampRings; ++i) {
+    const double cosine = std::pow((i + 0.5) / kLampRings, 1 / (lamp + 1)), sine = std::sqrt(1 - cosine * cosine);
     for (int j = 0; j < kSides; ++j) {
       const double phi = kPi * (j + 0.5) / kSides;
       const double c = dot(axis, {sine * std::cos(phi), sine * std::sin(phi), cosine});
       if (c > 0) sum += std::pow(c, lobe);
     }
   }
-  return normalization(lobe) * sum / (kRings * kSides);
+  return normalization(lobe) * sum / (kLampRings * kSides);
 }
 
 const color::Xyz& white() {

@@ -8,7 +8,7 @@ namespace goniochrome::formats {
 
 namespace {
 
-constexpr std::size_t kChunk = 1 << 16;
+constexpr std::size_t kReadAtOnce = 1 << 16;
 constexpr std::size_t kLongestRecord = 1 << 20;  // in a longer one a quotation mark was left open
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
@@ -63,7 +63,7 @@ bool looks_like_formula(std::string_view text) {
 Result<bool> CsvRecords::fill() {
   buffer_.erase(0, at_);
   at_ = 0;
-  GONIO_ASSIGN(const std::size_t count, input_.read(buffer_, kChunk));
+  GONIO_ASSIGN(const std::size_t count, input_.read(buffer_, kReadAtOnce));
   return count > 0;
 }
 

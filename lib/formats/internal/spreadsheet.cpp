@@ -16,11 +16,11 @@ namespace goniochrome::formats {
 
 namespace {
 
-constexpr std::size_t kLargestFile = std::size_t{1} << 30;
+constexpr std::size_t kLargestBook = std::size_t{1} << 30;
 // A part that unpacks to more than this, and to more than so many times its packed size, is no table that anybody made.
 constexpr std::size_t kAnySize = std::size_t{16} << 20, kMostGrowth = 200;
 constexpr std::size_t kMostCells = std::size_t{1} << 22;
-constexpr int kMostColumns = 1 << 14, kMostRows = 1 << 20;  // of the format
+constexpr int kMostColumns = 1 << 14, kMostSheetRows = 1 << 20;  // of the format
 constexpr std::size_t kMostSheets = 1000;
 
 // Knows of each element that is open, and gathers its text.
@@ -190,7 +190,7 @@ class SheetHandler : public PartHandler {
       const auto number = parse_integer(attribute(tag, "r"));
       const int last = sheet.rows.empty() ? 0 : sheet.rows.back().number;
       const std::int64_t own = number.value_or(last + 1);
-      if (own <= last || own > kMostRows) return input_error("row {} stands behind row {}", own, last);
+      if (own <= last || own > kMostSheetRows) return input_error("row {} stands behind row {}", own, last);
       sheet.rows.push_back({static_cast<int>(own), {}});
       column_ = -1;
     } else if (in("row", "c") && !sheet.rows.empty()) {
@@ -269,7 +269,7 @@ Result<CellPlace> cell_place(std::string_view reference) {
   for (; i < reference.size() && reference[i] >= 'A' && reference[i] <= 'Z' && place.column < kMostColumns; ++i)
     place.column = 26 * (place.column + 1) + (reference[i] - 'A');
   const auto row = parse_integer(reference.substr(i));
-  if (place.column < 0 || place.column >= kMostColumns || !row || *row < 1 || *row > kMostRows)
+  if (place.column < 0 || place.column >= kMostColumns || !row || *row < 1 || *row > kMostSheetRows)
     return input_error("a cell is called \"{}\": the workbook is damaged", shown(reference));
   place.row = static_cast<int>(*row);
   return place;
@@ -362,7 +362,7 @@ Spreadsheet::~Spreadsheet() = default;
 Result<Spreadsheet> Spreadsheet::open(InputFile input) {
   auto state = std::make_unique<State>();
   state->name = input.name();
-  GONIO_ASSIGN(state->bytes, input.rest(kLargestFile));
+  GONIO_ASSIGN(state->bytes, input.rest(kLargestBook));
   if (state->bytes.starts_with("\xd0\xcf\x11\xe0"))
     return input_error(
         "{}: is an old workbook (XLS), or one that is encrypted: save it as XLSX (Office Open XML), without a password",

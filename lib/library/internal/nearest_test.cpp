@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "library/internal/random_paints_for_test.h"
 
-namespace goniochrome::library {
+namespace goniochrome::library::nearest_test {
 namespace {
 
 struct Library {
@@ -291,4 +291,4 @@ TEST_F(Bound, De00BreaksTheTriangleInequality) {
 }
 
 }  // namespace
-}  // namespace goniochrome::library
+}  // namespace goniochrome::library::nearest_test

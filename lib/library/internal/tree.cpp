@@ -35,9 +35,9 @@ float rounded_down(double value) {
   return rounded > value ? std::nextafter(rounded, -std::numeric_limits<float>::infinity()) : rounded;
 }
 
-class Builder {
+class TreeBuilder {
  public:
-  Builder(std::span<const double> rows, std::size_t channels)
+  TreeBuilder(std::span<const double> rows, std::size_t channels)
       : rows_(rows), channels_(channels), items_(rows.size() / channels) {
     for (std::size_t i = 0; i < items_.size(); ++i) items_[i] = {0, static_cast<std::uint32_t>(i)};
   }
@@ -130,7 +130,7 @@ Tree build_tree(std::span<const double> rows, std::size_t channels, std::span<co
   tree.channels = channels;
   tree.size = labels.size();
   if (tree.size == 0) return tree;
-  Builder builder(rows, channels);
+  TreeBuilder builder(rows, channels);
   builder.sort();
 
   const std::size_t leaves = TreeView::leaf_count(tree.size);

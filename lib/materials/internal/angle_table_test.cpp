@@ -11,7 +11,7 @@
 #include "materials/internal/paints_for_test.h"
 #include "materials/internal/shown.h"
 
-namespace goniochrome::materials {
+namespace goniochrome::materials::angle_table_test {
 namespace {
 
 color::BandObserver eye() {
@@ -88,4 +88,4 @@ TEST(AngleTable, KeepsTheLightOfTheMirror) {
 }
 
 }  // namespace
-}  // namespace goniochrome::materials
+}  // namespace goniochrome::materials::angle_table_test

@@ -8,11 +8,7 @@
 
 namespace goniochrome::materials {
 
-namespace {
-
-constexpr double kSharpest = 1e-4;  // alpha of a smooth node, as it is evaluated
-
-}  // namespace
+namespace {}  // namespace
 
 double index_of(double strength) {
   const double r = std::sqrt(std::clamp(strength, 0.0, 0.9));
@@ -24,7 +20,7 @@ DielectricLayer dielectric_layer(double weight, double index, double alpha, cons
   const double normal = (index - 1) / (index + 1), f0 = normal * normal;
   const double fresnel = brdf::fresnel_dielectric(half_cosine(light, view), index);
   const double more = 1 + fresnel * (1 - albedo.all) / albedo.all;
-  return {weight * fresnel * more * ggx(std::max(alpha, kSharpest), light, view),
+  return {weight * fresnel * more * ggx(std::max(alpha, kSharpestAlpha), light, view),
           1 - weight * more * (f0 * (albedo.all - albedo.grazing) + albedo.grazing)};
 }
 

@@ -10,7 +10,6 @@ namespace goniochrome::materials {
 
 namespace {
 
-constexpr double kSharpest = 1e-4;   // a roughness of 0 as evaluated, alpha
 constexpr double kLeastLost = 1e-4;  // share of light that facets lose, which a quotient has below the line
 constexpr double kMostFresnel = 0.9;
 
@@ -40,7 +39,7 @@ color::Rgb enterprise_seen(const OneLobe& p, const Vec3& light, const Vec3& view
   const double alpha = p.roughness * p.roughness, cosine = half_cosine(light, view);
   const FacetAlbedo at_light = quick_facet_albedo(alpha, light.z), at_view = quick_facet_albedo(alpha, view.z),
                     mean = quick_facet_average(alpha);
-  const double facets = ggx(std::max(alpha, kSharpest), light, view);
+  const double facets = ggx(std::max(alpha, kSharpestAlpha), light, view);
   const double several = (1 - at_light.all) * (1 - at_view.all) / (kPi * std::max(1 - mean.all, kLeastLost));
   const color::Rgb tinted = enterprise_normal_reflectance(p);
   const double strongest = std::max({tinted.x, tinted.y, tinted.z});
@@ -56,7 +55,7 @@ color::Rgb enterprise_seen(const OneLobe& p, const Vec3& light, const Vec3& view
   }
   if (p.clearcoat == 0) return f;
   const double shine = p.clearcoat * coat_fresnel(cosine) *
-                       ggx(std::max(p.clearcoat_roughness * p.clearcoat_roughness, kSharpest), light, view);
+                       ggx(std::max(p.clearcoat_roughness * p.clearcoat_roughness, kSharpestAlpha), light, view);
   return (1 - p.clearcoat * coat_fresnel(std::min(light.z, view.z))) * f + color::Rgb{shine, shine, shine};
 }
 

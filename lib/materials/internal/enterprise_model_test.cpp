@@ -6,7 +6,7 @@
 
 #include "base/angles.h"
 
-namespace goniochrome::materials {
+namespace goniochrome::materials::enterprise_model_test {
 namespace {
 
 // The share of even light that goes to a viewer, by midpoints of 1 deg by 2 deg.
@@ -55,4 +55,4 @@ TEST(EnterpriseModel, IsReciprocal) {
 }
 
 }  // namespace
-}  // namespace goniochrome::materials
+}  // namespace goniochrome::materials::enterprise_model_test

@@ -6,6 +6,9 @@
 
 namespace goniochrome::materials {
 
+// Stands for an alpha of 0 where the models are evaluated.
+inline constexpr double kSharpestAlpha = 1e-4;
+
 // D G / (4 cos_i cos_o) in 1/sr, for unit directions above the surface and a roughness alpha > 0.
 double ggx(double alpha, const Vec3& to_light, const Vec3& to_viewer);
 

@@ -7,7 +7,7 @@
 #include "base/angles.h"
 #include "materials/internal/shown.h"
 
-namespace goniochrome::materials {
+namespace goniochrome::materials::ggx_test {
 namespace {
 
 // The sum over all lights, midpoints of 1 deg by 2 deg, which resolves a roughness of 0.25 and more to 1e-3.
@@ -64,4 +64,4 @@ TEST(Ggx, SharpFacetsAreAMirror) {
 }
 
 }  // namespace
-}  // namespace goniochrome::materials
+}  // namespace goniochrome::materials::ggx_test

@@ -13,7 +13,7 @@ namespace goniochrome::materials {
 
 namespace {
 
-constexpr std::array kAlphas = {0.02, 0.03, 0.045, 0.065, 0.09, 0.12, 0.16, 0.21, 0.28, 0.37, 0.5, 0.7, 1.0};
+constexpr std::array kLobeAlphas = {0.02, 0.03, 0.045, 0.065, 0.09, 0.12, 0.16, 0.21, 0.28, 0.37, 0.5, 0.7, 1.0};
 
 constexpr Facets kEven = {1, 1, 5}, kFalling = {1, 0, 0.5}, kGlossy = {0.04, 1, 5};
 // Facets for paints that the others leave farther away.
@@ -135,12 +135,12 @@ Offered offers_at(const std::vector<FitSample>& samples, bool glossy) {
   list.nodes.push_back({BaseNode::Kind::kBurley, 0, {}, false, {}});
   for (const bool widened : {false, true})
     for (const Facets& facets : {kEven, kFalling, kGlossy})
-      for (const double alpha : kAlphas)
+      for (const double alpha : kLobeAlphas)
         if (glossy || facets.color0 > 0.5) list.nodes.push_back({BaseNode::Kind::kLobe, alpha, facets, widened, {}});
   list.usual = list.nodes.size();
   for (const bool widened : {false, true})
     for (const Facets& facets : kMoreFacets)
-      for (const double alpha : kAlphas) list.nodes.push_back({BaseNode::Kind::kLobe, alpha, facets, widened, {}});
+      for (const double alpha : kLobeAlphas) list.nodes.push_back({BaseNode::Kind::kLobe, alpha, facets, widened, {}});
   for (const FitSample& sample : samples)
     for (const BaseNode& node : list.nodes) list.values.push_back(node.value(sample.light, sample.view));
   return list;

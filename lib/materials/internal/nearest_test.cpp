@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace goniochrome::materials {
+namespace goniochrome::materials::nearest_test {
 namespace {
 
 // Rosenbrock's valley, whose floor bends: the least sum, 0, is at (1, 1).
@@ -29,4 +29,4 @@ TEST(Nearest, StaysInItsBoxAndGoesOnAlongItsWall) {
 }
 
 }  // namespace
-}  // namespace goniochrome::materials
+}  // namespace goniochrome::materials::nearest_test

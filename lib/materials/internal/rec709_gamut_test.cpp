@@ -8,7 +8,7 @@
 
 #include "base/angles.h"
 
-namespace goniochrome::materials {
+namespace goniochrome::materials::rec709_gamut_test {
 namespace {
 
 const color::Xyz kWhite{0.95047, 1, 1.08883};
@@ -70,4 +70,4 @@ TEST(NearestInRec709, LeavesWhatIsInside) {
 }
 
 }  // namespace
-}  // namespace goniochrome::materials
+}  // namespace goniochrome::materials::rec709_gamut_test

@@ -30,23 +30,23 @@ constexpr double kNearMirror_rad = 6 * kDegree;
 
 // The concentric map [ShirleyChiu1997] between the unit disc and the unit square; the x axis of the disc goes to the
 // middle of a side.
-struct Place {
+struct DiscPlace {
   double x, y;
 };
-Place disc_of(const Place& square) {
+DiscPlace disc_of(const DiscPlace& square) {
   const double a = 2 * square.x - 1, b = 2 * square.y - 1;
   if (a == 0 && b == 0) return {0, 0};
   const bool across = std::abs(a) > std::abs(b);
   const double radius = across ? a : b, angle = across ? kPi / 4 * b / a : kPi / 2 - kPi / 4 * a / b;
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
-Place square_of(const Place& disc) {
+DiscPlace square_of(const DiscPlace& disc) {
   const double radius = std::hypot(disc.x, disc.y);
   double angle = std::atan2(disc.y, disc.x);
   if (angle < -kPi / 4) angle += 2 * kPi;
   const int side = std::min(static_cast<int>((angle + kPi / 4) / (kPi / 2)), 3);
   const double along = radius * (angle - side * kPi / 2) / (kPi / 4);
-  const Place sides[] = {{radius, along}, {-along, radius}, {-radius, -along}, {along, -radius}};
+  const DiscPlace sides[] = {{radius, along}, {-along, radius}, {-radius, -along}, {along, -radius}};
   return {(sides[side].x + 1) / 2, (sides[side].y + 1) / 2};
 }
 
@@ -59,7 +59,7 @@ struct Pair {
   Vec3 light, view;
 };
 Pair pair_at(double incidence, double x, double y) {
-  const Place out = disc_of({x, y});
+  const DiscPlace out = disc_of({x, y});
   return {above(-(1 - 2 * incidence), 0), above(out.x, out.y)};
 }
 
@@ -202,7 +202,7 @@ color::Xyz TensorTree::at(const Vec3& to_light, const Vec3& to_viewer) const {
   constexpr double kTiny = 1e-6;  // of Radiance, by which the normal stays in the used half
   const double sine = std::hypot(to_light.x, to_light.y);
   const double c = sine > 0 ? -to_light.x / sine : 1, s = sine > 0 ? -to_light.y / sine : 0;
-  const Place out = square_of({c * to_viewer.x + s * to_viewer.y, std::abs(c * to_viewer.y - s * to_viewer.x)});
+  const DiscPlace out = square_of({c * to_viewer.x + s * to_viewer.y, std::abs(c * to_viewer.y - s * to_viewer.x)});
   std::array<double, 3> place = {0.5 - kTiny - sine / 2, out.x, out.y};
   std::size_t node = 0, hue = 0;
   while (!ends(node, 0)) {

@@ -9,7 +9,7 @@
 #include "base/angles.h"
 #include "materials/internal/shown.h"
 
-namespace goniochrome::materials {
+namespace goniochrome::materials::tensor_tree_test {
 namespace {
 
 // A color that changes with all that it may change with: the incidence, the exit, and the angle between both.
@@ -68,4 +68,4 @@ TEST(TensorTree, AnEvenColorIsAFewLeaves) {
 }
 
 }  // namespace
-}  // namespace goniochrome::materials
+}  // namespace goniochrome::materials::tensor_tree_test

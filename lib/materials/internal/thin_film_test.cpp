@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace goniochrome::materials {
+namespace goniochrome::materials::thin_film_test {
 namespace {
 
 // Waves of a film that is much thicker than light is coherent do not interfere: what is left is the series of
@@ -38,4 +38,4 @@ TEST(ThinFilm, ReflectsAllAtGrazingAngles) {
 }
 
 }  // namespace
-}  // namespace goniochrome::materials
+}  // namespace goniochrome::materials::thin_film_test

@@ -9,7 +9,7 @@
 #include "prefilter/exact_lobe.h"
 #include "prefilter/internal/bright_texels.h"
 
-namespace goniochrome::prefilter {
+namespace goniochrome::prefilter::arc_sums_test {
 namespace {
 
 envmap::Environment noise(int height, float most) {
@@ -87,4 +87,4 @@ TEST(ArcSums, LeaveOutWhatIsClipped) {
 }
 
 }  // namespace
-}  // namespace goniochrome::prefilter
+}  // namespace goniochrome::prefilter::arc_sums_test

@@ -21,8 +21,8 @@ namespace goniochrome::prefilter {
 
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 16;   // 48 real series, two to a complex one
-constexpr std::size_t kOrdersAtOnce = 8;  // 24 complex series
+constexpr std::size_t kTransformedAtOnce = 16;  // 48 real series, two to a complex one
+constexpr std::size_t kOrdersAtOnce = 8;        // 24 complex series
 
 double sinc(double x) {
   return std::fabs(x) < 1e-8 ? 1 : std::sin(x) / x;
@@ -43,8 +43,8 @@ UnsetArray<double> row_moments(const envmap::Environment& env, int degree, const
   const std::size_t width = static_cast<std::size_t>(env.width()), height = static_cast<std::size_t>(env.height());
   UnsetArray<double> moments(static_cast<std::size_t>(degree + 1) * height * 6);
   const math::Fft fft(width);
-  parallel_for(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    constexpr std::size_t kReals = 3 * kRowsAtOnce;
+  parallel_for(height, kTransformedAtOnce, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t kReals = 3 * kTransformedAtOnce;
     math::Block block(width, kReals / 2);
     // Step 1: the channels of the rows, two to a complex series.
     for (std::size_t row = begin; row < end; ++row)

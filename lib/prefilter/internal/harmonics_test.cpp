@@ -8,7 +8,7 @@
 #include "prefilter/exact_lobe.h"
 #include "prefilter/internal/harmonic_grid.h"
 
-namespace goniochrome::prefilter {
+namespace goniochrome::prefilter::harmonics_test {
 namespace {
 
 envmap::Environment random_environment(int width, int height, unsigned seed) {
@@ -98,4 +98,4 @@ TEST(Harmonics, TapsKeepTheirError) {
 }
 
 }  // namespace
-}  // namespace goniochrome::prefilter
+}  // namespace goniochrome::prefilter::harmonics_test

@@ -10,7 +10,7 @@
 #include "prefilter/internal/harmonic_grid.h"
 #include "prefilter/internal/harmonics.h"
 
-namespace goniochrome::prefilter {
+namespace goniochrome::prefilter::horizon_band_test {
 namespace {
 
 using Layout = envmap::SphereGrid::Layout;
@@ -199,4 +199,4 @@ TEST(HorizonBand, OfAHalfSphereIsThePublishedIntegral) {
 }
 
 }  // namespace
-}  // namespace goniochrome::prefilter
+}  // namespace goniochrome::prefilter::horizon_band_test

@@ -12,7 +12,7 @@
 #include "prefilter/lobe_tree.h"
 #include "prefilter/prefilter.h"
 
-namespace goniochrome::prefilter {
+namespace goniochrome::prefilter::kernel_test {
 namespace {
 
 using BadPixels = envmap::Environment::BadPixels;
@@ -127,4 +127,4 @@ TEST(Kernel, OfValuesAloneServesEveryMethod) {
 }
 
 }  // namespace
-}  // namespace goniochrome::prefilter
+}  // namespace goniochrome::prefilter::kernel_test

@@ -7,7 +7,7 @@
 #include "prefilter/exact_lobe.h"
 #include "prefilter/internal/environments_for_test.h"
 
-namespace goniochrome::prefilter {
+namespace goniochrome::prefilter::mirror_test {
 namespace {
 
 envmap::CubeMap mirror_map(const envmap::Environment& env, int n) {
@@ -46,4 +46,4 @@ TEST(Mirror, EqualsASearchAlongTheEdges) {
 }
 
 }  // namespace
-}  // namespace goniochrome::prefilter
+}  // namespace goniochrome::prefilter::mirror_test

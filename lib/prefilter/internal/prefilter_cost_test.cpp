@@ -4,7 +4,7 @@
 
 #include "base/parallel.h"
 
-namespace goniochrome::prefilter {
+namespace goniochrome::prefilter::prefilter_cost_test {
 namespace {
 
 envmap::Environment gray(int height) {
@@ -87,4 +87,4 @@ TEST(PrefilterCost, EveryMethodHasItsPrice) {
 }
 
 }  // namespace
-}  // namespace goniochrome::prefilter
+}  // namespace goniochrome::prefilter::prefilter_cost_test

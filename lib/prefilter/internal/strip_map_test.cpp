@@ -10,7 +10,7 @@
 #include "prefilter/exact_lobe.h"
 #include "prefilter/internal/local_sums.h"
 
-namespace goniochrome::prefilter {
+namespace goniochrome::prefilter::strip_map_test {
 namespace {
 
 envmap::Environment noise(int height, float sun = 0) {
@@ -103,4 +103,4 @@ TEST(LocalSums, AreTheReference) {
 }
 
 }  // namespace
-}  // namespace goniochrome::prefilter
+}  // namespace goniochrome::prefilter::strip_map_test

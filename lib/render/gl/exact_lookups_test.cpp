@@ -10,7 +10,7 @@
 #include "render/gl/gl.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::exact_lookups_test {
 namespace {
 
 constexpr int kSide = 64;  // directions in a row, and rows
@@ -109,4 +109,4 @@ TEST(ExactLookups, ReplaceEveryLookup) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::exact_lookups_test

@@ -8,7 +8,7 @@
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::gl_drivers_test {
 namespace {
 
 // Half of a unit in the last place of a half float of this value. Halves have 11 bits, and none is smaller than 2^-24.
@@ -175,4 +175,4 @@ TEST(SoftwareDrivers, AgreeInEveryBit) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::gl_drivers_test

@@ -4,7 +4,7 @@
 
 #include <map>
 
-namespace goniochrome::render {
+namespace goniochrome::render::layer_shader_test {
 namespace {
 
 Effects page_like_effects() {
@@ -55,4 +55,4 @@ TEST(LightLayers, TheMostLobesOfAPageHaveRoom) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::layer_shader_test

@@ -6,7 +6,7 @@
 #include "base/angles.h"
 #include "render/integral/gatherer.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::patch_test {
 namespace {
 
 constexpr double kVariance = 0.02;  // along each axis: as blocks have it for the widest lobe at a usual tolerance
@@ -121,4 +121,4 @@ TEST(Patch, ReachesToTheEndOfALobe) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::patch_test

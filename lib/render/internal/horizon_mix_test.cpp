@@ -12,7 +12,7 @@
 #include "brdf/lobe_model.h"
 #include "render/internal/lobe_curves.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::horizon_mix_test {
 namespace {
 
 constexpr int kSegments = 64;
@@ -61,7 +61,9 @@ std::vector<Light> lights() {
           Light([](const Vec3& w) { return w.x + 0.3 * w.y > 0.2 ? 1.0 : 0.1; }), Light([](const Vec3& w) {
             return dot(w, normalized({0.3, 1, 0.2})) > 0.9 ? 3.0 : w.y > 0 ? 0.3 : 0.15;
           }),
-          Light([](const Vec3& w) { return dot(w, normalized({1, 0.3, -0.4})) > 0.85 ? 3.0 : 0.2; })};
+          Light([](const Vec3& w) {
+            return dot(w, normalized({1, 0.3, -0.4})) > 0.85 ? 3.0 : 0.2;
+          })};
 }
 
 // The root mean square error of one lobe over random normals and views, relative to its mean: by the mix, and by its
@@ -149,4 +151,4 @@ TEST(HorizonMix, ALoneLobeIsItsOwnMap) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::horizon_mix_test

@@ -9,7 +9,7 @@
 #include "base/vec3.h"
 #include "brdf/lobe_model.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::lobe_curves_test {
 namespace {
 
 // The whole integral over the hemisphere by a plain sum of many directions, as the failing control's yardstick.
@@ -62,4 +62,4 @@ TEST(LobeCurves, ACoatLetsInLessFromGrazingDirections) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::lobe_curves_test

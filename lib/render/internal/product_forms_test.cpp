@@ -4,7 +4,7 @@
 
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::product_forms_test {
 namespace {
 
 // The largest difference of the forms' product from the operator's, over colors of 0..1.
@@ -63,4 +63,4 @@ TEST(ProductForms, SixServeAnOperatorThatFourDoNotMake) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::product_forms_test

@@ -4,7 +4,7 @@
 #include "render/path/scenes_for_paths_for_test.h"
 #include "render/surface_layer.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::bad_shapes_test {
 namespace {
 
 // Every triangle once more, as it is or turned over.
@@ -91,4 +91,4 @@ TEST(BadShapes, PathsEndBetweenMapsThatGainLight) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::bad_shapes_test

@@ -11,7 +11,7 @@
 #include "render/path/chi_square_for_test.h"
 #include "render/path/scenes_for_paths_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::bright_places_test {
 namespace {
 
 using rays::Float3;
@@ -254,4 +254,4 @@ TEST(BrightPlaces, AWhiteCupInEvenLightIsNotSeen) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::bright_places_test

@@ -8,7 +8,7 @@
 #include "render/path/lobe_columns.h"
 #include "render/path/traced_paint.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::coated_discs_test {
 namespace {
 
 // The mean of a function over the disc, with the weights of its solid angle.
@@ -74,4 +74,4 @@ TEST(CoatedDiscs, LoseWhatTheCoatTakes) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::coated_discs_test

@@ -51,7 +51,7 @@ double azimuth_of(const Vec3& direction) {
   return std::atan2(direction.x, direction.z);
 }
 
-double mean_of(const color::Rgb& light) {
+double gray_of(const color::Rgb& light) {
   return (light.x + light.y + light.z) / 3;
 }
 
@@ -131,7 +131,7 @@ Result<LaidGround> LaidGround::create(const Ground& ground, const envmap::Enviro
     double weight = 0;
     for (int column = 0; column < environment.width(); ++column) {
       if (environment.direction_at(column + 0.5, row + 0.5).y < 0) {
-        const double mean = mean_of(texel(environment, column, row)),
+        const double mean = gray_of(texel(environment, column, row)),
                      solid_angle = environment.solid_angle(column, row);
         below += mean * solid_angle, below_squares += mean * mean * solid_angle;
       }
@@ -139,9 +139,9 @@ Result<LaidGround> LaidGround::create(const Ground& ground, const envmap::Enviro
       if (!(weight > 0)) continue;
       const color::Rgb light = weight * texel(environment, column, row);
       laid.irradiance_ += light;
-      laid.soft_rows_[static_cast<std::size_t>(row) + 1] += mean_of(light);
-      if (mean_of(texel(environment, column, row)) > 0) texels.push_back({column, row, mean_of(light)});
-      if (fine) laid.add_light(environment.direction_at(column + 0.5, row + 0.5), mean_of(light));
+      laid.soft_rows_[static_cast<std::size_t>(row) + 1] += gray_of(light);
+      if (gray_of(texel(environment, column, row)) > 0) texels.push_back({column, row, gray_of(light)});
+      if (fine) laid.add_light(environment.direction_at(column + 0.5, row + 0.5), gray_of(light));
     }
   }
   if (below_squares > 0) laid.ground_extent_sr_ = below * below / below_squares;
@@ -149,7 +149,7 @@ Result<LaidGround> LaidGround::create(const Ground& ground, const envmap::Enviro
   for (const Light& light : lights) {
     const color::Rgb lit = (kPi * brdf::disc_irradiance(light.direction.y, light.radius_rad)) * light.white;
     laid.irradiance_ += lit;
-    if (mean_of(lit) > 0) laid.add_light(light.direction, mean_of(lit));
+    if (gray_of(lit) > 0) laid.add_light(light.direction, gray_of(lit));
   }
   laid.sum_up();
   laid.find_bright(std::move(texels));
@@ -170,7 +170,7 @@ void LaidGround::gather_light(const envmap::Environment& environment) {
       const double elevation = (row + 0.5) * kRowRad, level = std::cos(elevation);
       const float* rgb =
           environment.lookup({level * std::sin(azimuth), std::sin(elevation), level * std::cos(azimuth)});
-      sums_[place_of(column + 1, row)] += static_cast<float>(cell_cosine(row) * mean_of({rgb[0], rgb[1], rgb[2]}));
+      sums_[place_of(column + 1, row)] += static_cast<float>(cell_cosine(row) * gray_of({rgb[0], rgb[1], rgb[2]}));
     }
   }
 }
@@ -235,19 +235,19 @@ LaidGround::Window LaidGround::window(const Vec3& position, const mesh::Box& box
 }
 
 double LaidGround::light_share(const Window& window) const {
-  const double light = mean_of(irradiance_);
+  const double light = gray_of(irradiance_);
   return light > 0 ? std::min(1.0, window.light[static_cast<std::size_t>(window.rows)] / light) : 0;
 }
 
 // Those that are so many times as bright as the mean, if they hold enough of the irradiance.
 void LaidGround::find_bright(std::vector<BrightTexel> texels) {
   constexpr double kTimes = 30, kPart = 0.1;
-  const double mean = mean_of(irradiance_) / kPi;
+  const double mean = gray_of(irradiance_) / kPi;
   double sum = 0;
   std::erase_if(
-      texels, [&](const BrightTexel& at) { return mean_of(texel(*environment_, at.column, at.row)) <= kTimes * mean; });
+      texels, [&](const BrightTexel& at) { return gray_of(texel(*environment_, at.column, at.row)) <= kTimes * mean; });
   for (const BrightTexel& at : texels) bright_sums_.push_back(sum += at.light);
-  if (!(sum > kPart * mean_of(irradiance_))) {
+  if (!(sum > kPart * gray_of(irradiance_))) {
     bright_sums_.clear();
     return;
   }
@@ -304,7 +304,7 @@ void LaidGround::scale_to(const color::Rgb& irradiance, std::vector<SharedRay>& 
 // Rows are drawn by what light they hold, columns by that within the row, and places within a texel evenly.
 std::vector<LaidGround::SharedRay> LaidGround::soft_rays(std::uint32_t count) const {
   const double total = soft_rows_.back();
-  if (!(total > 1e-9 * mean_of(irradiance_))) return {};
+  if (!(total > 1e-9 * gray_of(irradiance_))) return {};
   const auto width = static_cast<std::size_t>(environment_->width());
   const Sequence sequence(0x50F7, count);
   std::vector<std::array<double, 4>> draws;
@@ -321,7 +321,7 @@ std::vector<LaidGround::SharedRay> LaidGround::soft_rays(std::uint32_t count) co
         const int at = static_cast<int>(column);
         const bool bright = !is_bright_.empty() && is_bright_[static_cast<std::size_t>(row) * width + column];
         const double light =
-            bright ? 0 : upward_weight(*environment_, at, row) * mean_of(texel(*environment_, at, row));
+            bright ? 0 : upward_weight(*environment_, at, row) * gray_of(texel(*environment_, at, row));
         sums[column + 1] = sums[column] + light;
       }
       in_sums = row;
@@ -333,7 +333,7 @@ std::vector<LaidGround::SharedRay> LaidGround::soft_rays(std::uint32_t count) co
     Vec3 direction = environment_->direction_at(column + draw[2], row + draw[3]);
     if (!(direction.y > 0)) direction = environment_->direction_at(column + 0.5, row + 0.5);
     if (!(direction.y > 0)) continue;
-    rays.push_back({direction, (1 / mean_of(light)) * share_of(light)});
+    rays.push_back({direction, (1 / gray_of(light)) * share_of(light)});
   }
   scale_to(soft_irradiance_, rays);
   return rays;
@@ -347,7 +347,7 @@ std::vector<LaidGround::SharedRay> LaidGround::bright_rays(std::uint32_t count) 
     const std::array<double, 4> draw = sequence.point(i, 0);
     const BrightSample sample = drawn_bright(draw[0], draw[1], draw[2]);
     if (sample.pdf > 0 && sample.direction.y > 0)
-      rays.push_back({sample.direction, (1 / mean_of(sample.radiance)) * share_of(sample.radiance)});
+      rays.push_back({sample.direction, (1 / gray_of(sample.radiance)) * share_of(sample.radiance)});
   }
   scale_to(bright_irradiance_, rays);
   return rays;

@@ -8,7 +8,7 @@
 #include "base/angles.h"
 #include "render/path/scenes_for_paths_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::laid_ground_test {
 namespace {
 
 // A dim sky with a sun of one texel.
@@ -112,4 +112,4 @@ TEST(LaidGround, TellsWhereAMeshChangesNothing) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::laid_ground_test

@@ -27,7 +27,7 @@ constexpr int kSequences = 8;
 constexpr double kNeighborhood = 4;
 // Directions at a probe; scaling is judged by ratios, in which the noise of a probe stands on both sides.
 constexpr int kProbeSequences = 4, kProbeDirections = 256;
-constexpr int kReach = 2;  // pixels to each side of the neighborhood
+constexpr int kNeighborReach = 2;  // pixels to each side of the neighborhood
 
 class Tracing {
  public:
@@ -249,8 +249,8 @@ class Tracing {
     const int x = static_cast<int>(t.places[i]) % t.width, y = static_cast<int>(t.places[i]) / t.width;
     double around[2 * kMostTracedLobes + 2] = {};
     int count = 0;
-    for (int v = std::max(0, y - kReach); v <= std::min(t.height - 1, y + kReach); ++v) {
-      for (int u = std::max(0, x - kReach); u <= std::min(t.width - 1, x + kReach); ++u) {
+    for (int v = std::max(0, y - kNeighborReach); v <= std::min(t.height - 1, y + kNeighborReach); ++v) {
+      for (int u = std::max(0, x - kNeighborReach); u <= std::min(t.width - 1, x + kNeighborReach); ++u) {
         const std::int32_t number = number_[static_cast<std::size_t>(v) * static_cast<std::size_t>(t.width) + u];
         const auto other = static_cast<std::size_t>(number);
         if (number < 0 || other == i || batches_[other] < 2) continue;

@@ -14,7 +14,7 @@
 #include "render/path/path_tracer.h"
 #include "render/path/transport_stage_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::lobe_transport_test {
 namespace {
 
 using namespace transport_stage;
@@ -451,4 +451,4 @@ TEST(LobeTransport, NamesALobeThatItLacks) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::lobe_transport_test

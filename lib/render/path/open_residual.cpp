@@ -22,7 +22,7 @@ constexpr double kOfSums = 0.2;
 // Beyond so many sums those of other views are forgotten, and beyond so many surfaces those of other paints.
 constexpr std::size_t kMostSums = std::size_t{1} << 19, kMostSurfaces = 64;
 
-constexpr std::size_t kRowsAtOnce = 8, kSumsAtOnce = 16;
+constexpr std::size_t kCellRowsAtOnce = 8, kSumsAtOnce = 16;
 
 int finer(int cells, double tolerance_de00) {
   const double scale = std::clamp(std::sqrt(kUsual_de00 / tolerance_de00), 0.5, 1.5);
@@ -140,9 +140,9 @@ std::size_t OpenResidual::count() const {
 // Each cell that a pixel lies in, once, in ascending order.
 std::vector<OpenResidual::Cell> OpenResidual::cells_of(const Gbuffer& seen) const {
   const auto rows = static_cast<std::size_t>(seen.height);
-  std::vector<std::vector<Cell>> parts((rows + kRowsAtOnce - 1) / kRowsAtOnce);
-  parallel_for(rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    std::vector<Cell>& cells = parts[begin / kRowsAtOnce];
+  std::vector<std::vector<Cell>> parts((rows + kCellRowsAtOnce - 1) / kCellRowsAtOnce);
+  parallel_for(rows, kCellRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<Cell>& cells = parts[begin / kCellRowsAtOnce];
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < seen.width; ++x) {
         const Wear* wear = wear_of(seen.part(x, y));
@@ -258,7 +258,7 @@ color::Rgb OpenResidual::told(const Wear& wear, const ViewGrid::Place& place) co
 
 void OpenResidual::add(const Gbuffer& seen, float gain, image::Image& picture) {
   fill(cells_of(seen));
-  parallel_for(static_cast<std::size_t>(seen.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(seen.height), kCellRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < seen.width; ++x) {
         const Wear* wear = wear_of(seen.part(x, y));

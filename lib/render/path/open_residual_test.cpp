@@ -17,7 +17,7 @@
 #include "render/plan.h"
 #include "render/renderer.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::open_residual_test {
 namespace {
 
 const std::vector<double> kExponents = {1.3, 6, 20, 70, 900};
@@ -307,4 +307,4 @@ TEST(OpenResidual, FollowsEditsOfPaints) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::open_residual_test

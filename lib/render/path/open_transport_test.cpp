@@ -7,7 +7,7 @@
 #include "render/path/transport_stage_for_test.h"
 #include "render/renderer.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::open_transport_test {
 namespace {
 
 using namespace transport_stage;
@@ -60,4 +60,4 @@ TEST(OpenTransport, TakesTheMeanOfItsSamples) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::open_transport_test

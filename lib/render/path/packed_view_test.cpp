@@ -8,7 +8,7 @@
 #include "render/path/transport_file.h"
 #include "render/path/transport_stage_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::packed_view_test {
 namespace {
 
 using namespace transport_stage;
@@ -205,4 +205,4 @@ TEST(ShownPaints, TellsOfCoatsAndRefusesOtherBrushing) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::packed_view_test

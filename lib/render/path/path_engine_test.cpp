@@ -10,7 +10,7 @@
 #include "render/path/scenes_for_paths_for_test.h"
 #include "render/renderer.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::path_engine_test {
 namespace {
 
 using testing::HasSubstr;
@@ -292,4 +292,4 @@ TEST(Tracing, ShowsTheEngineCpuWhatOpenGlShows) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::path_engine_test

@@ -20,13 +20,13 @@ constexpr std::size_t kTogether = 64;
 // round takes as many as tell a variance.
 constexpr int kOfFour = kHalfFan, kFirstFours = 2;
 // No round draws more than so many times the fours that a point has.
-constexpr int kGrowth = 3;
+constexpr int kRoundGrowth = 3;
 // A round draws no less than this part of all fours so far: after each the noise of every point is judged anew, which
 // takes the time of a fan for every twenty points.
 constexpr double kLeastRound = 1.0 / 16;
 // A point's own variance counts by its freedom, that of its neighborhood as so many.
 constexpr double kNeighborhood = 4;
-constexpr int kReach = 2;  // pixels to each side of the neighborhood
+constexpr int kPixelReach = 2;  // pixels to each side of the neighborhood
 
 std::uint64_t seed_of(std::uint64_t seed, std::uint64_t point, int batch) {
   return mixed(mixed(seed, point), static_cast<std::uint64_t>(batch));
@@ -349,8 +349,10 @@ class Picture {
     Covariance around{};
     color::Rgb light;
     int count = 0;
-    for (int y = std::max(0, point.y - kReach); y <= std::min(surface_.gbuffer.height - 1, point.y + kReach); ++y) {
-      for (int x = std::max(0, point.x - kReach); x <= std::min(surface_.gbuffer.width - 1, point.x + kReach); ++x) {
+    for (int y = std::max(0, point.y - kPixelReach); y <= std::min(surface_.gbuffer.height - 1, point.y + kPixelReach);
+         ++y) {
+      for (int x = std::max(0, point.x - kPixelReach); x <= std::min(surface_.gbuffer.width - 1, point.x + kPixelReach);
+           ++x) {
         const std::int32_t number = number_[place(x, y)];
         const auto other = static_cast<std::size_t>(number);
         if (number < 0 || other == i || states_[other].sums.fours() == 0) continue;
@@ -402,7 +404,7 @@ class Picture {
       bool limited = true;
       for (std::size_t i = 0; i < points_.size(); ++i) {
         const double n = states_[i].sums.fours(), wanted = std::min(std::ceil(scale * states_[i].needed), most) - n;
-        more[i] = static_cast<int>(std::clamp(wanted, 0.0, kGrowth * n));
+        more[i] = static_cast<int>(std::clamp(wanted, 0.0, kRoundGrowth * n));
         asked += more[i];
         limited = limited && (n == 0 || states_[i].needed == 0 || n >= limit);
       }

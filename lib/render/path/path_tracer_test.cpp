@@ -12,7 +12,7 @@
 #include "render/internal/seen.h"
 #include "render/path/scenes_for_paths_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::path_tracer_test {
 namespace {
 
 paint::LobeFit glossy() {
@@ -355,4 +355,4 @@ TEST(Noise, IsTheSpreadOfSmallErrors) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::path_tracer_test

@@ -14,7 +14,7 @@ using rays::Float3;
 using rays::Hit;
 using rays::Spot;
 
-constexpr float kInversePi = 1 / static_cast<float>(kPi);
+using rays::kInversePi;
 // The least chance that a direction that is drawn from the environment comes from below the horizon, where a floor is
 // all that changes the light of most points: of an upright surface, and of any.
 constexpr double kUprightBelowChance = 0.4, kMostBelowChance = 0.6;

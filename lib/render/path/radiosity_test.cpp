@@ -8,7 +8,7 @@
 #include "base/testdata_for_test.h"
 #include "render/path/scenes_for_paths_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::radiosity_test {
 namespace {
 
 using rays::Float3;
@@ -282,4 +282,4 @@ TEST_F(CornellBox, RedStaysRedInCyanLight) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::radiosity_test

@@ -8,12 +8,15 @@
 
 namespace goniochrome::render {
 
+namespace {
+constexpr std::size_t kCorrectedRowsAtOnce = 8;
+}
+
 VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer) {
   VisibleSurface surface;
   surface.gbuffer = gbuffer;
   surface.hits.resize(static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height));
-  constexpr std::size_t kRowsAtOnce = 8;
-  parallel_for(static_cast<std::size_t>(gbuffer.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(gbuffer.height), kCorrectedRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < gbuffer.width; ++x) {
         if (gbuffer.part(x, y) < 0) continue;
@@ -27,8 +30,6 @@ VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer) {
 }
 
 namespace {
-
-constexpr std::size_t kRowsAtOnce = 8;
 
 // The place of the floor that a pixel sees, or nothing above the horizon.
 rays::Hit floor_hit(const rays::RayScene& scene, const rays::Float3& eye, const rays::Float3& direction) {
@@ -48,7 +49,7 @@ void add_surroundings(const Transport& transport, const Gbuffer& g, const Backdr
     if (backdrop.background == Background::kNone || backdrop.environment == nullptr) return color::Rgb{};
     return smooth_radiance(*backdrop.environment, rays::vec3(direction));
   };
-  parallel_for(static_cast<std::size_t>(g.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(g.height), kCorrectedRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < g.width; ++x) {
         if (g.part(x, y) >= 0) continue;

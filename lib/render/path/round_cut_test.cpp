@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace goniochrome::render {
+namespace goniochrome::render::round_cut_test {
 namespace {
 
 int by_fours(int n) {
@@ -52,4 +52,4 @@ TEST(RoundCut, DrawsNothingWhereNothingIsLeft) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::round_cut_test

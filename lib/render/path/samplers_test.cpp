@@ -14,7 +14,7 @@
 #include "render/path/traced_paint.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::samplers_test {
 namespace {
 
 using rays::Float3;
@@ -313,4 +313,4 @@ TEST(TracedPaint, TellsWhetherItGainsLight) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::samplers_test

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-namespace goniochrome::render {
+namespace goniochrome::render::sequence_test {
 namespace {
 
 // Every elementary box of area 2^-k holds one of the first 2^k points in the first two dimensions.
@@ -103,4 +103,4 @@ TEST(Sequence, IntegratesBetterThanChance) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::sequence_test

@@ -19,7 +19,7 @@ constexpr unsigned kFanRays = 8;
 constexpr std::uint32_t kFew = 8, kMany = 64;
 // The grid is even about the mesh, to this part of its length beyond it. From there on cells grow by this factor, as
 // far as so many lengths.
-constexpr double kMargin = 0.1, kGrowth = 1.08, kReach = 16;
+constexpr double kGridMargin = 0.1, kGridGrowth = 1.08, kGridReach = 16;
 constexpr std::size_t kBounceStep = 6;
 
 float mean_of(const Float3& a) {
@@ -27,13 +27,13 @@ float mean_of(const Float3& a) {
 }
 
 std::vector<float> lines(double low, double high, double cell, double length) {
-  const double first = low - kMargin * length, last = high + kMargin * length;
+  const double first = low - kGridMargin * length, last = high + kGridMargin * length;
   const auto count = static_cast<int>(std::ceil((last - first) / cell));
   std::vector<float> inner, outer;
   for (int i = 0; i <= count; ++i) inner.push_back(static_cast<float>(first + i * (last - first) / count));
   double step = cell, beyond = 0;
-  while (beyond < kReach * length) {
-    step *= kGrowth, beyond += step;
+  while (beyond < kGridReach * length) {
+    step *= kGridGrowth, beyond += step;
     outer.push_back(static_cast<float>(beyond));
   }
   std::vector<float> all;

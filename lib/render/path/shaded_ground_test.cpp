@@ -9,7 +9,7 @@
 #include "render/internal/seen.h"
 #include "render/path/scenes_for_paths_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::shaded_ground_test {
 namespace {
 
 // A sky with a sun, and ground of many colors.
@@ -190,4 +190,4 @@ TEST(ShadedGround, IsWholeUnderTheBodyAndFarFromIt) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::shaded_ground_test

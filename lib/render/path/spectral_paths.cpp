@@ -20,8 +20,6 @@ using Floats = std::array<float, kBands>;
 constexpr int kRouletteFrom = 3, kEndlessFrom = 64, kMostBounces = 4096;
 constexpr float kEndlessChance = 0.9F, kLeastChance = 0.05F;
 
-constexpr float kInversePi = 1 / static_cast<float>(kPi);
-
 Floats floats(const color::Bands& bands, double scale = 1) {
   Floats result;
   for (std::size_t b = 0; b < result.size(); ++b) result[b] = static_cast<float>(scale * bands[b]);
@@ -158,13 +156,13 @@ class SpectralPaths::Vertex {
   }
   // Matt white.
   Vertex(const Spot& at, const Float3& to_viewer)
-      : spot(at), painted(Float3{kInversePi, kInversePi, kInversePi}, at.shading, to_viewer) {}
+      : spot(at), painted(Float3{rays::kInversePi, rays::kInversePi, rays::kInversePi}, at.shading, to_viewer) {}
 
   // f cos_i.
   Carrier reflected(const PaintedPoint::Shares& shares) const {
     Carrier sum{};
     if (paint_ == nullptr) {
-      sum.fill(kInversePi * shares.diffuse);
+      sum.fill(rays::kInversePi * shares.diffuse);
       return sum;
     }
     sum.fill(shares.coat);

@@ -12,7 +12,7 @@
 #include "formats/xml.h"
 #include "render/path/scenes_for_paths_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::spectral_paths_test {
 namespace {
 
 using color::Bands;
@@ -245,4 +245,4 @@ TEST(SpectralPaths, AskForSpectraOfEverything) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::spectral_paths_test

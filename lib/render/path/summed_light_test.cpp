@@ -10,7 +10,7 @@
 #include "render/exact.h"
 #include "render/integral/integral_engine.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::summed_light_test {
 namespace {
 
 const LobeColumns kColumns{{1.3, 20, 300}};  // the last lobe is none of the wide ones
@@ -81,4 +81,4 @@ TEST(SummedLight, IsWhatTheEngineIntegralSums) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::summed_light_test

@@ -13,7 +13,7 @@
 #include "render/path/transport_shading.h"
 #include "render/path/transport_stage_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::ten_paints_test {
 namespace {
 
 using namespace transport_stage;
@@ -163,4 +163,4 @@ TEST(TenPaints, AreScaledAsEachAlone) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::ten_paints_test

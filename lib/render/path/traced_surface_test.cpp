@@ -14,7 +14,7 @@
 #include "render/renderer.h"
 #include "render/surface_layer.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::traced_surface_test {
 namespace {
 
 using rays::Float3;
@@ -470,4 +470,4 @@ TEST(TracedSurface, WhiteMapsAndTexturesInEvenLightShowThatLight) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::traced_surface_test

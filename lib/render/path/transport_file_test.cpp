@@ -9,7 +9,7 @@
 #include "render/path/transport_shading.h"
 #include "render/path/transport_stage_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::transport_file_test {
 namespace {
 
 using namespace transport_stage;
@@ -176,4 +176,4 @@ TEST(TransportFile, WithoutASampleCountIsThatOfTheCenters) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::transport_file_test

@@ -11,7 +11,7 @@
 #include "render/exact.h"
 #include "render/path/scenes_for_paths_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::transport_test {
 namespace {
 
 // Beyond so many standard errors of some ten independent figures an estimate is wrong; the errors are of 64 batches and
@@ -416,4 +416,4 @@ TEST(Transport, RefusesWhatItCannotTrace) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::transport_test

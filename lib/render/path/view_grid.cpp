@@ -26,10 +26,10 @@ std::size_t face_of(const Vec3& direction) {
 }
 
 // The frame about a direction: it turns with the direction, within a face without a jump.
-struct Frame {
+struct TangentFrame {
   Vec3 x, y;
 };
-Frame frame_of(const Face& face, const Vec3& direction) {
+TangentFrame frame_of(const Face& face, const Vec3& direction) {
   const Vec3 x = normalized(face.right - dot(face.right, direction) * direction);
   return {x, cross(direction, x)};
 }
@@ -59,7 +59,7 @@ ViewGrid::Place ViewGrid::place(const Vec3& normal, const Vec3& to_viewer) const
   Place place;
   const int a = cell_of(dot(face.right, to_viewer) / depth, views_, place.along[0]);
   const int b = cell_of(dot(face.up, to_viewer) / depth, views_, place.along[1]);
-  const Frame frame = frame_of(face, to_viewer);
+  const TangentFrame frame = frame_of(face, to_viewer);
   const double x = dot(normal, frame.x), y = dot(normal, frame.y);
   const double longer = std::max(std::abs(x), std::abs(y));
   const double radius = std::sqrt(std::clamp(1 - dot(normal, to_viewer), 0.0, 1.0));
@@ -98,7 +98,7 @@ ViewGrid::Facing ViewGrid::facing(const Node& node) const {
   const Face& face = kFaces[node.view / (row * row)];
   const double a = coordinate_of(node.view % row, views_), b = coordinate_of(node.view / row % row, views_);
   const Vec3 to_viewer = normalized(face.axis + a * face.right + b * face.up);
-  const Frame frame = frame_of(face, to_viewer);
+  const TangentFrame frame = frame_of(face, to_viewer);
   const double s = coordinate_of(node.normal % row_of_normals, normals_),
                t = coordinate_of(node.normal / row_of_normals, normals_);
   const double radius = std::max(std::abs(s), std::abs(t));

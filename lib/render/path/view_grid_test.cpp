@@ -10,7 +10,7 @@
 #include "base/angles.h"
 #include "base/random_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::view_grid_test {
 namespace {
 
 // A normal and a viewer on one side, evenly drawn.
@@ -83,4 +83,4 @@ TEST(ViewGrid, ErrsByTheSquareOfItsSpacing) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::view_grid_test

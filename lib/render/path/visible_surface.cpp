@@ -8,7 +8,7 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 8;
+constexpr std::size_t kSurfaceRowsAtOnce = 8;
 
 rays::Float3 pixel_direction(const Rays& rays, int x, int y) {
   return rays::float3(rays.direction(x + 0.5, y + 0.5));
@@ -24,7 +24,7 @@ VisibleSurface visible_surface(const rays::RayScene& scene, const Rays& rays, in
   g.data.assign(4 * pixels, 0.0F);
   surface.hits.resize(pixels);
   const rays::Float3 eye = scene.local(rays.eye);
-  parallel_for(static_cast<std::size_t>(height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(height), kSurfaceRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < width; x += 8) {
         rays::Fan fan;
@@ -68,7 +68,7 @@ Coverage coverage(const rays::RayScene& scene, const Rays& rays, int width, int 
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   Coverage result{std::vector<std::uint16_t>(pixels, 0), std::vector<std::uint16_t>(pixels, 0)};
   const rays::Float3 eye = scene.local(rays.eye);
-  parallel_for(static_cast<std::size_t>(height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(height), kSurfaceRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t job = begin * shifts.size(); job < end * shifts.size(); ++job) {
       const std::size_t y = job / shifts.size(), sample = job % shifts.size();
       for (int x = 0; x < width; x += 8) {

@@ -9,7 +9,7 @@
 #include "render/camera.h"
 #include "render/path/scenes_for_paths_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::visible_white_test {
 namespace {
 
 // Of a rectangle a x b parallel to an element at the distance c, one corner on its normal.
@@ -59,4 +59,4 @@ TEST(VisibleWhite, IsNothingWhereAllThatIsSeenShines) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::visible_white_test

@@ -13,7 +13,7 @@
 #include "render/plan/floor_probe.h"
 #include "render/spots.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::path_price_test {
 namespace {
 
 constexpr int kWidth = 60, kHeight = 40, kBounces = 4;
@@ -168,4 +168,4 @@ TEST(PathPrice, NothingCostsNothing) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::path_price_test

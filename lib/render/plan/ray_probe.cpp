@@ -31,7 +31,7 @@ constexpr double kDoubt = 2;
 // Points that are traced once more without light that is passed on, for the time of that.
 constexpr std::size_t kTimed = 64;
 
-constexpr RayEffects kAll{true, true, true};
+constexpr RayEffects kAllEffects{true, true, true};
 
 constexpr RayEffects kNoSelf{true, false, true}, kNoBounce{true, true, false};
 
@@ -73,9 +73,9 @@ RayProbe RayProbe::traced(const ProbeSetting& setting, const std::vector<RayPoin
   const double first_round_ms = 1000 * clock.elapsed_s();
   if (probe.free() && probe.without_floor_.empty()) return probe;
   probe.refine(setting);
-  for (const RayEffects& effects : {kAll, kNoSelf, kNoBounce, RayEffects{true, false, false}})
+  for (const RayEffects& effects : {kAllEffects, kNoSelf, kNoBounce, RayEffects{true, false, false}})
     probe.needs_[number_of(effects)] = probe.needs(probe.drawn_, 1, effects);
-  probe.needs_without_floor_ = probe.needs(probe.without_floor_, probe.floor_step_, kAll);
+  probe.needs_without_floor_ = probe.needs(probe.without_floor_, probe.floor_step_, kAllEffects);
   probe.time(setting, first_round_ms / static_cast<double>(probe.size() + probe.without_floor_.size()));
   return probe;
 }
@@ -217,8 +217,8 @@ std::vector<std::size_t> RayProbe::in_doubt() const {
 
 // The three comparisons that a plan makes, and that of the floor.
 void RayProbe::compare() {
-  compared_ = {changes({kAll, {}}), changes({kAll, kNoSelf}), changes({kAll, kNoBounce})};
-  if (!without_floor_.empty()) compared_.push_back(changes({kAll, kAll, true}));
+  compared_ = {changes({kAllEffects, {}}), changes({kAllEffects, kNoSelf}), changes({kAllEffects, kNoBounce})};
+  if (!without_floor_.empty()) compared_.push_back(changes({kAllEffects, kAllEffects, true}));
 }
 
 double RayProbe::change(std::size_t i, const Comparison& comparison) const {
@@ -235,7 +235,7 @@ double RayProbe::change(std::size_t i, const Comparison& comparison) const {
 }
 
 double RayProbe::noise(std::size_t i, const Comparison& comparison) const {
-  const Covariance noise = comparison.floor ? covariance(of_floor_[i / floor_step_], kAll, {})
+  const Covariance noise = comparison.floor ? covariance(of_floor_[i / floor_step_], kAllEffects, {})
                                             : covariance(drawn_[i], comparison.with, comparison.without);
   return noise_de00(base_[i] + drawn_[i].told.shown(comparison.with), noise, white_);
 }
@@ -362,7 +362,7 @@ RayCost RayProbe::cost(const RayEffects& effects, double tolerance_de00, double 
 
 RayCost RayProbe::cost_without_floor(double tolerance_de00, double visible_points, int samples,
                                      const RayLimits& limits) const {
-  return cost_of(without_floor_, needs_without_floor_, kAll, tolerance_de00, visible_points, samples, limits);
+  return cost_of(without_floor_, needs_without_floor_, kAllEffects, tolerance_de00, visible_points, samples, limits);
 }
 
 }  // namespace goniochrome::render

@@ -16,7 +16,7 @@
 #include "render/path/scenes_for_paths_for_test.h"
 #include "render/plan/spread_pixels.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::ray_probe_test {
 namespace {
 
 constexpr RayEffects kAll{true, true, true}, kNoSelf{true, false, true}, kNoBounce{true, true, false};
@@ -306,4 +306,4 @@ TEST(RayProbe, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::ray_probe_test

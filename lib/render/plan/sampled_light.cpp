@@ -11,7 +11,7 @@ namespace goniochrome::render {
 namespace {
 
 // Points that are alike are looked for among so many of the list to either side.
-constexpr std::size_t kReach = 48;
+constexpr std::size_t kReachInOrder = 48;
 
 using Share = color::Rgb LightShares::*;
 constexpr std::array<Share, 3> kShares = {&LightShares::direct, &LightShares::into_lobes, &LightShares::into_diffuse};
@@ -37,7 +37,8 @@ void find_alike(const std::vector<RayPoint>& points, std::size_t step, std::vect
   SampledLight& of = lights[light];
   std::array<float, kAlike> distances{};
   of.alike_count = 0;
-  const std::size_t first = light - std::min(light, kReach), last = std::min(lights.size() - 1, light + kReach);
+  const std::size_t first = light - std::min(light, kReachInOrder),
+                    last = std::min(lights.size() - 1, light + kReachInOrder);
   for (std::size_t j = first; j <= last; ++j) {
     if (!comparable(points[light * step], of, points[j * step], lights[j])) continue;
     const float distance = apart(points[light * step], points[j * step]);

@@ -9,7 +9,7 @@
 
 #include "render/internal/seen.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::sampled_light_test {
 namespace {
 
 constexpr int kSide = 32;
@@ -125,4 +125,4 @@ TEST(SampledLight, ItsNoiseIsTold) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::sampled_light_test

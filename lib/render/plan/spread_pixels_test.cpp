@@ -10,7 +10,7 @@
 #include <set>
 #include <tuple>
 
-namespace goniochrome::render {
+namespace goniochrome::render::spread_pixels_test {
 namespace {
 
 std::shared_ptr<const Gbuffer> picture(int width, int height, const std::function<bool(int, int)>& seen) {
@@ -77,4 +77,4 @@ TEST(SpreadPixels, FollowThePicture) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::spread_pixels_test

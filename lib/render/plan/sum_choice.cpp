@@ -12,7 +12,7 @@ namespace goniochrome::render {
 namespace {
 
 // The same allowance for the choice of points as for other effects.
-constexpr double kSafety = 0.8;
+constexpr double kSafetyOfSums = 0.8;
 // Sums are worth their time where they leave at most this part of what maps miss in the mean: else it is sharp lobes
 // that miss it. Sharp lobes alone may decide the 95th percentile, which therefore need not fall; but since the
 // tolerance is of it, it may grow to no more than this multiple.
@@ -64,7 +64,7 @@ Result<SumChoice> sum_choice(const OpenTruth& truth, const std::vector<color::Rg
   item.needed = true, item.de00_p95 = by_maps.p95, item.cost_ms = std::numeric_limits<double>::quiet_NaN();
   const bool off = forced == std::optional(false) || (words.start == Start::kNone && !forced);
   item.decision = forced == std::optional(false) ? Decision::kForcedOff : Decision::kDropped;
-  const double most = kSafety * request.tolerance_de00;
+  const double most = kSafetyOfSums * request.tolerance_de00;
   if (off || (!forced && by_maps.p95 <= most)) return Result(std::move(choice));
   if (!OpenResidual::applies(effects) || lacks_what_sums_have(words)) {
     item.reason += "; sums have the effects horizon and fresnel, which are not drawn";

@@ -8,7 +8,7 @@
 
 #include "render/textures/textured_scene_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::layings_test {
 namespace {
 
 struct Way {
@@ -94,4 +94,4 @@ TEST_F(TexturedScene, EnginesAgreeOverAllLayings) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::layings_test

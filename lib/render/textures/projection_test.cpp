@@ -11,7 +11,7 @@
 #include "render/scenes_for_test.h"
 #include "render/textures/texture_places.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::projection_test {
 namespace {
 
 Vec3 tangent_of(const TexturePlace& place) {
@@ -202,4 +202,4 @@ TEST(Projection, PlacesOfPixelsAreThoseOfPoints) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::projection_test

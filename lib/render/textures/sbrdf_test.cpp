@@ -10,7 +10,7 @@
 #include "brdf/lobe_model.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::sbrdf_test {
 namespace {
 
 // P_n of radiance 1 + d.y for any n: the lobe pulls d.y toward 0 by (n+1)/(n+2).
@@ -318,4 +318,4 @@ TEST(SbrdfShader, AMeanTexelKeepsEnergyAndTheCommonDirection) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::sbrdf_test

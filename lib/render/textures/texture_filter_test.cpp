@@ -8,7 +8,7 @@
 #include "base/angles.h"
 #include "base/random_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::texture_filter_test {
 namespace {
 
 constexpr int kWidth = 7, kHeight = 5;
@@ -97,4 +97,4 @@ TEST(TextureFilter, ProbesAreBounded) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::texture_filter_test

@@ -43,7 +43,7 @@ namespace {
 using Uv = std::array<double, 2>;
 
 // So many rows are done at a time.
-constexpr std::size_t kRowsAtOnce = 16;
+constexpr std::size_t kPlaceRowsAtOnce = 16;
 
 // The nearest shares within the triangle, as mesh_point() has them.
 std::array<double, 3> within(std::array<double, 3> shares) {
@@ -206,7 +206,7 @@ TexturePlace TextureLayout::place(const Gbuffer& gbuffer, int x, int y) const {
 template <class PlaceAt>
 std::vector<TexturePlace> TextureLayout::each_pixel(const Gbuffer& gbuffer, const PlaceAt& place_at) const {
   std::vector<TexturePlace> places(gbuffer.triangles.size());
-  parallel_for(static_cast<std::size_t>(gbuffer.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(gbuffer.height), kPlaceRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     SeenPlane plane;
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < gbuffer.width; ++x) {

@@ -7,7 +7,7 @@
 #include "base/angles.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::texture_places_test {
 namespace {
 
 TEST(TexturePlaces, OwnCoordinatesAndThoseMadeAroundTheAxis) {
@@ -51,4 +51,4 @@ TEST(TexturePlaces, AreThoseOfTexturedPartsAlone) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::texture_places_test

@@ -17,7 +17,7 @@
 #include "render/surface_layer.h"
 #include "render/textures/textured_scene_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::textured_scene_test {
 namespace {
 
 TEST_F(TexturedScene, EnginesAgree) {
@@ -345,4 +345,4 @@ TEST_F(TexturedScene, OneTexelIsAPaint) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::textured_scene_test

@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "render/textures/textured_scene_for_test.h"
 
-namespace goniochrome::render {
+namespace goniochrome::render::tiled_floor_test {
 namespace {
 
 // Each texel has a direction, strengths, colors and exponents of its own.
@@ -153,4 +153,4 @@ TEST_F(TiledFloor, ThePlanKnowsWhatTheFilterIsWorth) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render
+}  // namespace goniochrome::render::tiled_floor_test

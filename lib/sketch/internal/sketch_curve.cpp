@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
 #include "math/statistics.h"
+#include "sketch/internal/outliers.h"
 #include "sketch/internal/sketch_lobes.h"
 #include "sketch/internal/sketch_solve.h"
 
@@ -19,9 +20,6 @@ namespace {
 constexpr int kBinsPerDegree = 4, kAngleBins = 180 * kBinsPerDegree + 1, kCosineBins = 12;
 constexpr std::size_t kMostPerCell = 256;  // samples looked at; more add nothing
 constexpr double kFullCount = 64;          // samples from which a cell has its full say
-constexpr double kSigmas = 1.4826;         // median absolute deviation to standard deviation
-constexpr double kTuning = 2.385;          // Cauchy's: 95 % as good as least squares for normal noise
-constexpr double kLeastScale = 1;          // of residuals, in L*: what a curve cannot follow is no outlier yet
 constexpr double kDarkest = 0.004;         // of a channel, for its weight; L* 4
 constexpr int kIterations = 12;
 constexpr std::size_t kScannedCells = 500;  // for the travel alone

@@ -6,7 +6,7 @@
 #include "brdf/gloss.h"
 #include "math/cosine_power.h"
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::sketch_gloss_test {
 namespace {
 
 TEST(SketchGloss, ContrastMapsTo0And100) {
@@ -47,4 +47,4 @@ TEST(SketchGloss, NoHighlightIsNoReading) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::sketch_gloss_test

@@ -27,7 +27,7 @@ namespace {
 
 constexpr color::Xyz kD50{0.9642, 1, 0.8249};  // the white of the profile connection space, ICC.1:2010 6.3.4.3
 constexpr int kTableSteps = 4096;
-constexpr std::size_t kRows = 16;
+constexpr std::size_t kConvertedRows = 16;
 
 struct CloseProfile {
   void operator()(void* profile) const { cmsCloseProfile(profile); }
@@ -136,7 +136,7 @@ image::Image rows_converted(const image::Image& from, const Row& row) {
   const auto width = static_cast<std::size_t>(from.width), channels = static_cast<std::size_t>(from.channels);
   image::Image to = {from.width, from.height, 3, {}, {}};
   to.data.resize(width * from.height * 3);
-  parallel_for(static_cast<std::size_t>(from.height), kRows, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(from.height), kConvertedRows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) row(&from.data[y * width * channels], &to.data[y * width * 3]);
   });
   return to;

@@ -14,7 +14,7 @@
 #include "color/color.h"
 #include "sketch/sketch_picture.h"
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::sketch_icc_test {
 namespace {
 
 using testing::HasSubstr;
@@ -348,4 +348,4 @@ TEST_F(CmykFile, InksWithoutAProfileAreFiltersAndAWarningSaysSo) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::sketch_icc_test

@@ -9,7 +9,7 @@
 #include "sketch/internal/sketch_scene_for_test.h"
 #include "sketch/sketch.h"
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::sketch_lobes_test {
 namespace {
 
 const brdf::GlossTable& table() {
@@ -79,4 +79,4 @@ TEST(FreeLobeFit, TheShareOfTheMirrorIsFoundToHalfAPercent) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::sketch_lobes_test

@@ -9,7 +9,7 @@
 #include "base/angles.h"
 #include "sketch/internal/sketch_scene_for_test.h"
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::sketch_regions_test {
 namespace {
 
 formats::Basis one_lobe() {
@@ -101,4 +101,4 @@ TEST(SketchRegions, WhatAllRegionsShareIsToldByTheWayTheyFace) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::sketch_regions_test

@@ -10,7 +10,7 @@
 #include "paint/paint.h"
 #include "sketch/internal/sketch_scene_for_test.h"
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::sketch_search_test {
 namespace {
 
 // A solid of hardly any travel and three readings. Under a coat no weights for all views meet them, since the coat
@@ -123,4 +123,4 @@ TEST(LobeSearch, UnderALampASolidIsFoundByItsViewsAsWell) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::sketch_search_test

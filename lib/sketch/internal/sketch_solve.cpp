@@ -7,16 +7,14 @@
 
 #include "math/least_squares.h"
 #include "math/statistics.h"
+#include "sketch/internal/outliers.h"
 
 namespace goniochrome::sketch {
 
 namespace {
 
-constexpr double kRidge = 1e-11;    // relative; above rounding, below any color
-constexpr double kUnseen = 1e-12;   // a column of less is seen by no row
-constexpr double kSigmas = 1.4826;  // median absolute deviation to standard deviation
-constexpr double kTuning = 2.385;   // Cauchy's: 95 % as good as least squares for normal noise
-constexpr double kLeastScale = 1;   // of residuals, in dE: what a paint cannot follow is no outlier yet
+constexpr double kRidge = 1e-11;   // relative; above rounding, below any color
+constexpr double kUnseen = 1e-12;  // a column of less is seen by no row
 constexpr int kMostIterations = 40;
 constexpr double kExact = 1e-3;  // of residuals, RMS; less is rounding
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::sketch_solve_test {
 namespace {
 
 TEST(NormalEquations, FindNonNegativeWeights) {
@@ -60,4 +60,4 @@ TEST(RobustSearch, ErrorsOfValuesAreThoseOfALine) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::sketch_solve_test

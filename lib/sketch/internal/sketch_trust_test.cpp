@@ -7,7 +7,7 @@
 #include "base/angles.h"
 #include "paint/curve.h"
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::sketch_trust_test {
 
 namespace {
 
@@ -38,7 +38,8 @@ SketchFit fit_at(std::initializer_list<double> angles_deg) {
 // The reflectance factor of the lobes is .1 + .5 cos^4 t, by hand.
 TEST(SketchTrust, RowsAreReadOffTheLobesWhereTheyAreTold) {
   SketchFit fit = fit_at({15, 45, 110});
-  take_shown(basis(), {weights(0.5)}, paint::kNoCoat, [](double angle) { return angle > 20; }, fit);
+  take_shown(
+      basis(), {weights(0.5)}, paint::kNoCoat, [](double angle) { return angle > 20; }, fit);
   ASSERT_EQ(fit.rows.size(), 5U);
   const double expected[] = {50, lightness(0.1 + 0.5 * 0.674675), lightness(0.1 + 0.5 * 0.25),
                              lightness(0.1 + 0.5 * 0.0044873), lightness(0.1)};
@@ -52,7 +53,8 @@ TEST(SketchTrust, RowsAreReadOffTheLobesWhereTheyAreTold) {
 TEST(SketchTrust, RowsOfTheCurveStayWhereTheLobesAgree) {
   SketchFit fit = fit_at({110});
   fit.rows.front().lab = {lightness(0.1) + 0.1, 0, 0};
-  take_shown(basis(), {weights(0.5)}, paint::kNoCoat, [](double) { return true; }, fit);
+  take_shown(
+      basis(), {weights(0.5)}, paint::kNoCoat, [](double) { return true; }, fit);
   EXPECT_EQ(fit.rows.back().lab.L, lightness(0.1) + 0.1);
 }
 
@@ -91,4 +93,4 @@ TEST(SketchTrust, ALobeLeftOutIsToldWhereItReaches) {
   EXPECT_EQ(fit.unsure[1].angle_deg, 25);
 }
 
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::sketch_trust_test
