@@ -16,7 +16,6 @@ test_packages=(
 )
 # The compiler for the page of paint-studio. Not every system has it, and everything else is built without.
 studio_packages=(clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32)
-demo_packages=(fonts-dejavu-core openimageio-tools python3)
 
 say() { printf '%s\n' "$*" >&2; }
 
