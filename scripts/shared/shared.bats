@@ -156,5 +156,18 @@ E: Unable to locate package libbad-dev" 'check the network, the mirror and the p
   ends 3 'name another folder for the results' "$scripts/demo" --wheel /dev/null/out
   ends 2 'give dev, asan or release' "$scripts/test" --preset
   ends 2 '"fast": give dev, asan or release' "$scripts/test" --preset fast
+  ends 2 'give a command: demo, test or wheel' "$scripts/fresh" trixie
+  ends 2 'sid is neither a Debian' "$scripts/fresh" sid demo
+  ends 2 'test: give one of demo, test, wheel' "$scripts/fresh" demo test
+  ends 2 '--at needs a folder' "$scripts/fresh" demo --at
+  ends 2 '--at src: give a whole path' "$scripts/fresh" demo --at src
+  ends 2 '--at /x/..: give a whole path' "$scripts/fresh" demo --at /x/..
+  ends 3 'none.whl: there is no such wheel' "$scripts/fresh" wheel none.whl
+  touch goniochrome.whl
+  ends 2 'a wheel goes with the command wheel' "$scripts/fresh" demo goniochrome.whl
+  ends 3 'there is no such folder' env GONIOCHROME_DATA=/none "$scripts/fresh" demo
+  program id 'echo 1000'
+  ends 3 'take root: run sudo scripts/fresh' "$scripts/fresh" demo
+  "$scripts/fresh" --help | grep -q 'bookworm|trixie'
   "$scripts/demo" --help | grep -q 'OUT/venv'
 }
