@@ -61,7 +61,8 @@ options() {
 }
 
 @test "FILE#NAMES names some paints of a file in every tool that reads paints" {
-  library=$top/testdata/paints.paints.xml
+  ln -s "$top/testdata" testdata
+  library=testdata/paints.paints.xml
   names() { grep -o '<paint name="[^"]*"' | cut -d'"' -f2 | paste -sd' '; }
   [ "$(paint-convert -q "$library#candy_red" | names)" = candy_red ]
   [ "$(paint-edit -q --hue-shift 1 "$library#candy_red" | names)" = candy_red ]
@@ -75,7 +76,7 @@ options() {
   fit-basis -q --lobes 2 "$library#silver_fine" -o two.basis.xml
   trompe-fit -q "$library#silver_fine" --angle 2 -o b.xml
   prefilter-envmap -q --for fitted.xml#silver_fine -s 8 "$top/testdata/studio.exr" -o o.exr
-  for tool in paint-convert "paint-edit --hue-shift 1" paint-stats goniogeom-index plot-paint "fit-paint --basis $top/testdata/b7.basis.xml" \
+  for tool in paint-convert "paint-edit --hue-shift 1" paint-stats goniogeom-index plot-paint "fit-paint --basis testdata/b7.basis.xml" \
     "fit-basis --lobes 2" "trompe-fit --angle 2"; do
     # shellcheck disable=SC2086
     run $tool "$library#nobody"

@@ -19,14 +19,14 @@ from cross_check.meshes import read_obj
 from shared import packages, pictures
 from shared.colors import de2000, lab
 from shared.files import write_whole
-from shared.tools import DATA, SCRIPTS, Failed, run_tool
+from shared.tools import DATA, SCRIPTS, Failed, builds_folder, run_tool
 
 
 class NotHere(Exception):
     """Mitsuba cannot be had; the text says why."""
 
 
-VENV = SCRIPTS.parent / "build/cross-check"
+VENV = builds_folder() / "cross-check"
 XYZ_FROM_REC2020 = ((0.636958, 0.144617, 0.168881), (0.262700, 0.677998, 0.059302), (0.0, 0.028073, 1.060985))
 REC2020_FROM_REC709 = ((0.627403896, 0.329283038, 0.043313066), (0.069097289, 0.919540395, 0.011362316),
                        (0.016391439, 0.088013308, 0.895595253))

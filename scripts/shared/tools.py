@@ -17,14 +17,20 @@ class Failed(Exception):
         self.said, self.status = said, status
 
 
+def builds_folder():
+    """The folder of all builds, as common.sh has it."""
+    return pathlib.Path(os.environ.get("GONIOCHROME_BUILD_FOLDER") or SCRIPTS.parent / "build").absolute()
+
+
 def tools_folder():
     """The folder of the tools: that which they were installed in with this script, else that of those in PATH, else that of this
     checkout's release build."""
-    prefix = SCRIPTS.parents[2]
-    if SCRIPTS == prefix / "share/goniochrome/scripts" and (prefix / "bin/render-osmesa").exists():
-        return prefix / "bin"
+    if SCRIPTS.parts[-3:] == ("share", "goniochrome", "scripts"):
+        installed = SCRIPTS.parents[2] / "bin"
+        if (installed / "render-osmesa").exists():
+            return installed
     found = shutil.which("render-osmesa")
-    return pathlib.Path(found).parent.absolute() if found else SCRIPTS.parent / "build/release/bin"
+    return pathlib.Path(found).parent.absolute() if found else builds_folder() / "release/bin"
 
 
 def put_tools_into_path():
