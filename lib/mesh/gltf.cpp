@@ -87,7 +87,7 @@ bool read_whole(std::vector<unsigned char>* bytes, std::string* error, const std
 bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
   return false;
 }
-bool find_size(std::size_t* bytes, std::string* error, const std::string& path, void*) {
+[[maybe_unused]] bool find_size(std::size_t* bytes, std::string* error, const std::string& path, void*) {
   std::error_code failure;
   *bytes = std::filesystem::file_size(path, failure);
   if (failure) *error += failure.message();

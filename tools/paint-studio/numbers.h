@@ -8,8 +8,13 @@
 #include <vector>
 
 #include "base/json.h"
+#include "base/vec3.h"
 
 namespace goniochrome::tool {
+
+inline Json vector_json(const Vec3& v) {
+  return Json::array({v.x, v.y, v.z});
+}
 
 // As browsers decompress it: a gzip member, in base64.
 std::string compressed_text(std::string_view bytes);

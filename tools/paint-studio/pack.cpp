@@ -29,10 +29,6 @@ constexpr double kLampRadius_rad = 2 * kDegree;
 // The first view of a page, which is that of render-osmesa.
 constexpr double kAzimuth_deg = 35, kElevation_deg = 12, kFov_deg = 30;
 
-Json vector_json(const Vec3& v) {
-  return Json::array({v.x, v.y, v.z});
-}
-
 // Halves reach to 65504: brighter maps are scaled down, and the page scales them up again into floats.
 Json cube_json(const render::PageCube& cube, PackedNumbers& numbers) {
   constexpr float kMost = 60000;

@@ -9,6 +9,7 @@
 #include "brdf/lobe_model.h"
 #include "fit/paint_fit.h"
 #include "image/aov_file.h"
+#include "numbers.h"
 #include "rays/ray_scene.h"
 #include "render/aov.h"
 #include "render/light_transport.h"
@@ -22,10 +23,6 @@ namespace {
 constexpr double kSameNormal = 0.999, kMostOther = 0.01;
 
 constexpr std::size_t kMostJudges = 4;  // paints that packing is judged by
-
-Json vector_json(const Vec3& v) {
-  return Json::array({v.x, v.y, v.z});
-}
 
 std::string listed(const std::vector<double>& exponents) {
   std::string text;
