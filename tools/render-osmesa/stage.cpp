@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "envmap/open_maps.h"
 #include "image/aov_file.h"
+#include "image/image.h"
 #include "mesh/unit.h"
 #include "prefilter/lobe_tree.h"
 #include "render/aov.h"
@@ -103,7 +104,7 @@ Result<Source> source_of(const Options& options, const render::Scene& scene, cli
   std::string missing = "is not there";
   for (const std::string& path : candidates) {
     const bool is_pattern = path.find("{face}") != std::string::npos;
-    const bool there = is_pattern ? envmap::face_paths(path).ok() : is_plain_file(path);
+    const bool there = is_pattern ? envmap::face_paths(path).ok() : is_plain_file(image::image_file(path));
     if (!there && options.check_source.empty()) continue;
     GONIO_ASSIGN(envmap::Environment environment,
                  envmap::Environment::read(path, envmap::Environment::BadPixels::kZero));
