@@ -64,21 +64,22 @@ Result<Space> space_of(const ImagePart& part, const std::string& file) {
     if (const auto space = named_space(id)) return *space;
     return unknown("colorInteropID", id);
   }
+  const bool whole_numbers = attribute_or(part.attributes, "goniochrome:integer", 0) != 0;
+  const std::string name = text("oiio:ColorSpace");
+  // OpenImageIO says Rec709 of PNM and DPX files, and programs that use it pass this on to PNG. Of whole numbers it
+  // means the curve of a display with these primaries, as PNM defines it, and in practice that of sRGB.
+  const auto named = name.empty()                               ? Space{}
+                     : whole_numbers && lower(name) == "rec709" ? Space{kRec709, Curve::kSrgb}
+                                                                : named_space(name);
   const auto* xy = find_attribute<std::vector<float>>(part.attributes, "chromaticities");
-  if (xy && xy->size() == 8) {
-    Space space;
-    std::copy(xy->begin(), xy->end(), space.primaries.begin());
-    return space;
-  }
-  if (const std::string name = text("oiio:ColorSpace"); !name.empty()) {
-    // OpenImageIO says Rec709 of PNM and DPX files, and programs that use it pass this on to PNG. Of whole numbers it
-    // means the curve of a display with these primaries, as PNM defines it, and in practice that of sRGB.
-    const bool whole_numbers = attribute_or(part.attributes, "goniochrome:integer", 0) != 0;
-    if (whole_numbers && lower(name) == "rec709") return Space{kRec709, Curve::kSrgb};
-    if (const auto space = named_space(name)) return *space;
-    return unknown("its color space", name);
-  }
-  return Space{};
+  const bool stated = xy && xy->size() == 8;
+  if (!named && (whole_numbers || !stated)) return unknown("its color space", name);
+  if (!stated) return *named;
+  // Chromaticities tell the primaries of floats, which are linear unless a gamma is named, and nothing of their curve.
+  Space space;
+  if (named && (whole_numbers || named->curve == Curve::kGamma)) space = *named;
+  std::copy(xy->begin(), xy->end(), space.primaries.begin());
+  return space;
 }
 
 bool same(const Primaries& a, const Primaries& b) {

@@ -65,6 +65,14 @@ bool shows(std::string_view content, const Signature& signature) {
   return content.size() >= signature.offset && content.substr(signature.offset).starts_with(signature.bytes);
 }
 
+// A Radiance picture need not begin with "#?": a line of its header tells what it is.
+bool is_radiance_header(std::string_view content) {
+  constexpr std::size_t kMostHeader = 1 << 16;
+  content = content.substr(0, kMostHeader);
+  content = content.substr(0, content.find("\n\n"));
+  return content.starts_with("FORMAT=32-bit_rle_") || content.find("\nFORMAT=32-bit_rle_") != std::string_view::npos;
+}
+
 bool is_pnm(std::string_view content) {
   return content.size() > 2 && content[0] == 'P' && std::strchr("123456fF", content[1]) && content[1] != '\0' &&
          std::strchr(" \t\r\n#", content[2]) && content[2] != '\0';
@@ -132,6 +140,7 @@ Result<std::string> content_format(std::string_view content, const std::string& 
     return format;
   }
   if (is_pnm(content)) return std::string("pnm");
+  if (is_radiance_header(content)) return std::string("hdr");
   for (const Signature& signature : kUnwanted)
     if (shows(content, signature))
       return input_error("{}: is {}, which is not read here: {}", name, signature.format, kAdvice);

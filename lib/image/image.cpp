@@ -249,10 +249,7 @@ Result<ImagePart> read_image(const std::string& path, Inks inks) {
   if (format == "openexr") return decoded_exr_picture(content, input.name(), layer);
   if (!layer.empty())
     return input_error("{}: has no layers: leave out [{}], which names one of an EXR file", file, layer);
-  if (format == "hdr") {
-    GONIO_ASSIGN(auto part, decoded_hdr(content, input.name()));
-    if (part) return std::move(*part);
-  }
+  if (format == "hdr") return decoded_hdr(content, input.name());
   return read_through_module(std::move(content), format, input.name(), inks);
 }
 
