@@ -327,18 +327,11 @@ std::vector<std::string> channel_names(const Image& image) {
 }
 
 // The type that holds every value of the part. Error: the first value that is not finite, by pixel.
-Result<PixelType> storage_type(const ImagePart& part, const std::vector<std::string>& names) {
-  const Image& image = part.image;
+Result<PixelType> storage_type(const ImagePart& part) {
+  if (auto finite = check_finite(part.image); !finite.ok())
+    return input_error("part {}: {}", part.name, finite.error().message);
   float most = 0;
-  for (std::size_t i = 0; i < image.data.size(); ++i) {
-    const float size = std::fabs(image.data[i]);
-    if (!std::isfinite(size)) {
-      const std::size_t pixel = i / image.channels;
-      return input_error("part {}: pixel {},{} channel {} is {}: only finite values are written", part.name,
-                         pixel % image.width, pixel / image.width, names[i % image.channels], image.data[i]);
-    }
-    most = std::max(most, size);
-  }
+  for (const float value : part.image.data) most = std::max(most, std::fabs(value));
   return most > kMostHalf ? PixelType::kFloat : part.type;
 }
 
@@ -442,7 +435,7 @@ Result<std::string> encoded(const std::vector<ImagePart>& given, ExrStorage stor
   std::vector<Imf::Header> headers;
   for (const ImagePart& part : parts) {
     names.push_back(channel_names(part.image));
-    GONIO_ASSIGN(const PixelType type, storage_type(part, names.back()));
+    GONIO_ASSIGN(const PixelType type, storage_type(part));
     types.push_back(type);
     headers.push_back(header_of(part, type, names.back(), display, storage));
   }
@@ -461,6 +454,15 @@ Result<std::string> encoded(const std::vector<ImagePart>& given, ExrStorage stor
 }
 
 }  // namespace
+
+Result<void> check_finite(const Image& image) {
+  const auto bad = std::ranges::find_if_not(image.data, [](float value) { return std::isfinite(value); });
+  if (bad == image.data.end()) return {};
+  const auto at = static_cast<std::size_t>(bad - image.data.begin());
+  const auto channels = static_cast<std::size_t>(image.channels), width = static_cast<std::size_t>(image.width);
+  return input_error("pixel {},{} channel {} is {}: only finite values are written", at / channels % width,
+                     at / channels / width, channel_names(image)[at % channels], *bad);
+}
 
 Result<std::string> exr_content(const std::string& name, const std::vector<ImagePart>& parts, ExrStorage storage) {
   try {

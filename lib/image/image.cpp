@@ -20,6 +20,7 @@
 #include "image/internal/content_format.h"
 #include "image/internal/exr.h"
 #include "image/internal/oiio_module.h"
+#include "image/internal/png_colors.h"
 #include "image/internal/turn.h"
 
 namespace goniochrome::image {
@@ -251,8 +252,11 @@ Result<ImagePart> read_image(const std::string& path, Inks inks) {
   if (!layer.empty())
     return input_error("{}: has no layers: leave out [{}], which names one of an EXR file", file, layer);
   if (format == "hdr") return decoded_hdr(content, input.name());
+  Attributes colors = format == "png" ? png_colors(content) : Attributes();
   const Turn turn = exif_turn(format == "webp" ? webp_orientation(content) : 1);
   GONIO_ASSIGN(ImagePart part, read_through_module(std::move(content), format, input.name(), inks));
+  if (colors.contains("oiio:ColorSpace")) part.attributes.erase("ICCProfile");
+  for (auto& [name, value] : colors) part.attributes[name] = std::move(value);
   Image& image = part.image;
   if (turn.any()) image.data = upright(image.data, image.width, image.height, image.channels, turn);
   return part;

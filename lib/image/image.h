@@ -87,8 +87,11 @@ Result<ImagePart> read_image(const std::string& path, Inks inks = Inks::kAsRgb);
 // The file that a path of read_image() names, without its layer.
 std::string image_file(const std::string& path);
 
-// Writes display-referred values 0..1, rounded and clamped, as a PNG of 8 bits and RGB, with text entries for
-// provenance. One channel is gray; channels after the third are left out.
+// Error: the first value that is not finite, by pixel and channel.
+Result<void> check_finite(const Image& image);
+
+// Writes sRGB signals 0..1, rounded and clamped, as a PNG of 8 bits and RGB that says so, with text entries for
+// provenance. One channel is gray; channels after the third are left out. NaN and infinity are refused.
 Result<void> write_png(const std::string& path, const Image& image, const Attributes& text = {});
 
 // The bytes of that PNG; `name` is what errors call it.
