@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "color/color.h"
+#include "image/icc.h"
 
 namespace goniochrome::image {
 
@@ -121,9 +122,18 @@ double decoded(double value, const Space& space) {
   return value;
 }
 
+// The ICC profile that tells the colors of the channels. Where inks have become RGB, that of the inks does not.
+std::string profile_of(const ImagePart& part) {
+  const bool was_inks = part.attributes.contains("goniochrome:inks") && color_channels(part.image) != 4;
+  const bool has_id = !text_attribute(part, "colorInteropID").empty();
+  return was_inks || has_id ? "" : text_attribute(part, "ICCProfile");
+}
+
 }  // namespace
 
 Result<Image> working_space_rgb(ImagePart part, const std::string& name) {
+  if (const std::string profile = profile_of(part); !profile.empty())
+    return image_through_icc(part.image, profile, name, attribute_or(part.attributes, "goniochrome:integer", 0) != 0);
   GONIO_ASSIGN(const Space space, space_of(part, name));
   GONIO_ASSIGN(const Columns columns, to_working_space(space.primaries, name));
   const bool convert = !same(space.primaries, kRec2020);
