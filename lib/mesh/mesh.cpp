@@ -264,6 +264,13 @@ Box bounding_box(const Mesh& mesh) {
   return box;
 }
 
+// Up to 8 sizes from the origin a float is within 2^-24 8 = 5e-7 sizes.
+Vec3 float_origin(const Box& box) {
+  constexpr double kNear = 8;
+  const Vec3 middle = 0.5 * (box.low + box.high);
+  return length(middle) > kNear * length(box.high - box.low) ? middle : Vec3{};
+}
+
 namespace {
 
 // The keyword of an OFF file: OFF, behind letters for what else each vertex has (ST, C, N, 4, n).

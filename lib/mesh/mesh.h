@@ -41,6 +41,10 @@ struct Box {
 };
 Box bounding_box(const Mesh& mesh);
 
+// The middle of a box that lies so far from the origin, as in surveyors' coordinates, that floats are coarser there
+// than 1e-6 of its size; else the origin. Whatever narrows positions to floats subtracts it before.
+Vec3 float_origin(const Box& box);
+
 // Reads OBJ, whose parts are its objects (`o`) or else its groups (`g`; a name that comes twice is one part); glTF 2.0
 // or GLB, whose parts are the nodes of the scene with meshes, by their own names or those of the meshes, so that nodes
 // of one name and material are one part (of one name in another material they are a part NAME.MATERIAL), and whose
