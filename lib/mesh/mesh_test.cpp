@@ -83,6 +83,13 @@ TEST_F(MeshFiles, VertexColorsAndStrangersArePassedOver) {
   EXPECT_EQ(mesh->triangles.size(), 1u);
 }
 
+TEST_F(MeshFiles, FreeFormSurfacesAreRemarked) {
+  const std::string form = "cstype bezier\nsurf 0 1 0 1 1 2 3 4\nend\n";
+  EXPECT_THAT(obj(kSquare + "f 1 2 3 4\n" + form)->remarks, testing::ElementsAre(HasSubstr("1 free-form surfaces")));
+  EXPECT_THAT(obj(kSquare + "f 1 2 3 4\n")->remarks, testing::IsEmpty());
+  EXPECT_THAT(obj_error(kSquare + form), HasSubstr("no faces (f lines), but free-form surfaces"));
+}
+
 TEST_F(MeshFiles, ErrorsNameLineValueAndRemedy) {
   EXPECT_EQ(obj_error("v 0 0,5 0\n"),
             "t.obj:1: vertex coordinate 2 is \"0,5\": write a finite number with a decimal point");

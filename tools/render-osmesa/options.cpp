@@ -22,8 +22,8 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
           "A name without an ending, such as that of a pipe, leaves it to the content to tell the format. Of glTF, as "
           ".gltf or .glb, each node of the scene that has a mesh is a part with the name of the node or else of the "
           "mesh, so that nodes of one name and material are one part; nodes of that name in another "
-          "material are a part NAME.MATERIAL, and so is each material of a mesh in several. Compressed meshes are "
-          "refused.");
+          "material are a part NAME.MATERIAL, and so is each material of a mesh in several. Nodes that "
+          "KHR_node_visibility hides are left out. Meshes packed by Draco or meshoptimizer are unpacked.");
   spec.option("gbuffer", "FILE", "view.exr", &o.gbuffer, "shade the buffers of an earlier picture instead of a mesh")
       .more(
           "The file is an EXR that was made with --aov normal,part. Its buffers and its attributes goniochrome:rays, "

@@ -41,6 +41,7 @@ void tell_repairs(const mesh::Mesh& mesh, cli::Session& session) {
   if (repairs.normals_made > 0) {
     session.say(fmt::format("{} of {} vertices had no normal and got one", repairs.normals_made, mesh.normals.size()));
   }
+  for (const std::string& remark : mesh.remarks) session.warn(remark);
 }
 
 void tell_parts(const mesh::Mesh& mesh, const DressedMesh& dress, bool streamed, cli::Session& session) {
