@@ -52,8 +52,11 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
   spec.flag("trim", &o.trim, "dress glass, tires, rims, seams and the underside instead of painting them")
       .more(
           "Parts are known by words in their names or materials, such as glass, window, tire, rubber, rim, chrome, "
-          "seam and underbody. Glass is black under a coat, rubber, seams and the underside are matt black, and rims "
-          "and metal are gray under a coat. --part goes before --trim, and --trim before --paint.");
+          "seam and underbody. Words are parted by all signs but letters, and by capitals, as in WindowGlass1. Where "
+          "no word tells, a glTF material does that transmits light, is transparent or is polished metal without a "
+          "clear coat, unless its name speaks of paint or body. A line says what was recognized. Glass is black under "
+          "a coat, rubber, seams and the underside are matt black, and rims and metal are gray under a coat. --part "
+          "goes before --trim, and --trim before --paint.");
   spec.option("split", "PAINT,PAINT", "a.xml#red,a.xml#blue", &o.split, "draw the halves of the picture in two paints")
       .more("Both stand in the place of --paint: the first on the left, the second on the right.");
   spec.option("texture", "PART=FILE[,WORD=VALUE]", "Hood=flakes.exr,project=decal,axis=y", &o.textures,
