@@ -7,8 +7,8 @@ builds=$(realpath -m "${GONIOCHROME_BUILD_FOLDER:-$top/build}")
 
 build_packages=(
   g++ cmake ninja-build ccache pkg-config
-  libcgal-dev libceres-dev libcli11-dev libegl-dev libeigen3-dev libembree-dev libfmt-dev libhwy-dev libimath-dev libjpeg-dev liblcms2-dev
-  libopencolorio-dev libopenexr-dev libopenimageio-dev libtbb-dev libtinygltf-dev libxml2-dev libzip-dev nlohmann-json3-dev zlib1g-dev
+  libcgal-dev libceres-dev libcli11-dev libdraco-dev libegl-dev libeigen3-dev libembree-dev libfmt-dev libhwy-dev libimath-dev libjpeg-dev liblcms2-dev
+  libmeshoptimizer-dev libopencolorio-dev libopenexr-dev libopenimageio-dev libtbb-dev libtinygltf-dev libxml2-dev libzip-dev nlohmann-json3-dev zlib1g-dev
 )
 test_packages=(
   bats coinor-libclp-dev file jq libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6 librsvg2-bin libbenchmark-dev libgmock-dev libgtest-dev libxml2-utils locales make mandoc

@@ -111,8 +111,31 @@ Result<Choice> find_view(const std::vector<Choice>& all, const std::string& want
 
 }  // namespace
 
+namespace {
+
+// The signals of a display, by the words that configurations of OpenColorIO name it with.
+std::optional<image::SignalCode> signal_of(const std::string& color_space) {
+  const std::string name = lower(color_space);
+  const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
+  const bool pq = has("pq") || has("2084"), hlg = has("hlg"), video = has("1886");
+  if (has("p3"))
+    return pq                  ? std::optional(image::SignalCode{12, 16})
+           : has("display p3") ? std::optional(image::SignalCode{12, 13})
+                               : std::nullopt;
+  if (has("2020") || has("2100")) {
+    if (pq || hlg) return image::SignalCode{9, pq ? 16 : 18};
+    return video ? std::optional(image::SignalCode{9, 14}) : std::nullopt;
+  }
+  if (has("srgb")) return image::SignalCode{};
+  if (video && has("709")) return image::SignalCode{1, 1};
+  return std::nullopt;
+}
+
+}  // namespace
+
 struct Display::State {
   std::string name;
+  std::optional<image::SignalCode> signal = image::SignalCode{};
   ocio::ConstCPUProcessorRcPtr processor;  // none: the view "Paint", which needs no OpenColorIO
 };
 
@@ -142,6 +165,8 @@ Result<Display> Display::make(const std::string& view) {
     GONIO_ASSIGN(const Choice choice, find_view(all, view));
     auto state = std::make_unique<State>();
     state->name = choice.display + " / " + choice.view;
+    const std::string space = config->getDisplayViewColorSpaceName(choice.display.c_str(), choice.view.c_str());
+    state->signal = signal_of(space.empty() || space == "<USE_DISPLAY_NAME>" ? choice.display : space);
     state->processor = processor(config, choice.display.c_str(), choice.view.c_str());
     return Display(std::move(state));
   } catch (const ocio::Exception& refused) {
@@ -197,19 +222,27 @@ class SrgbCodes {
   std::uint8_t first_[kSteps];  // the code of the lower end of each step
 };
 
+Result<void> check_shown(const image::Image& picture) {
+  if (auto finite = image::check_finite(picture); !finite.ok())
+    return input_error("the picture: {}", finite.error().message);
+  return {};
+}
+
 }  // namespace
 
 Result<void> Display::show(const image::Image& picture, double stops, image::ByteImage& shown) const {
   if (state_->processor) {
     GONIO_ASSIGN(const image::Image signals, image(picture, stops));
     image::put_bytes(signals, shown);
+    shown.signal = state_->signal;
     return {};
   }
+  GONIO_TRY(check_shown(picture));
   static const SrgbCodes codes;
   const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
   const double gain = std::exp2(stops);
   shown.width = picture.width, shown.height = picture.height;
-  shown.rgb.resize(3 * pixels);
+  shown.rgb.resize(3 * pixels), shown.signal = state_->signal;
   parallel_for(pixels, 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const color::Rgb c = painted(&picture.data[4 * i], gain);
@@ -221,6 +254,7 @@ Result<void> Display::show(const image::Image& picture, double stops, image::Byt
 }
 
 Result<image::Image> Display::image(const image::Image& picture, double stops) const {
+  GONIO_TRY(check_shown(picture));
   image::Image shown{picture.width, picture.height, 3, {}, {"R", "G", "B"}};
   const std::size_t pixels = static_cast<std::size_t>(picture.width) * picture.height;
   shown.data.resize(3 * pixels);

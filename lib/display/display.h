@@ -25,11 +25,11 @@ class Display {
   ~Display();
 
   // The picture (R G B A, working space, premultiplied) times 2^stops in front of a backdrop of 18 % gray, as RGB
-  // signals in 0..1.
+  // signals in 0..1. Error: a pixel is not finite.
   Result<image::Image> image(const image::Image& picture, double stops) const;
 
   // The same as 8 bits, rounded to the nearest, into `shown`, whose memory is used again. The view "Paint" is exact
-  // here and takes 10 ns a pixel.
+  // here and takes 10 ns a pixel. `shown.signal` is that of the display, or none where its name does not tell.
   Result<void> show(const image::Image& picture, double stops, image::ByteImage& shown) const;
 
   // "sRGB / Paint"

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <limits>
 
+#include "base/scratch_for_test.h"
 #include "display/paint_view.h"
 
 namespace goniochrome::display::display_test {
@@ -66,6 +68,40 @@ TEST(Display, BytesOfThePaintViewAreTheNearestCodes) {
   image::ByteImage plain;
   ASSERT_TRUE(Display::make("Un-tone-mapped")->show(picture, 0, plain).ok());
   for (std::size_t i = 0; i < shown.rgb.size(); ++i) EXPECT_LE(std::abs(shown.rgb[i] - plain.rgb[i]), 1);
+}
+
+TEST(Display, APixelThatIsNotFiniteIsRefused) {
+  unsetenv("OCIO");
+  image::Image picture = one_pixel({0.5, 0.5, 0.5});
+  picture.data[1] = std::numeric_limits<float>::quiet_NaN();
+  image::ByteImage shown;
+  for (const char* view : {"Paint", "Un-tone-mapped"})
+    EXPECT_THAT(Display::make(view)->show(picture, 0, shown).error().message,
+                HasSubstr("the picture: pixel 0,0 channel G is nan"));
+}
+
+TEST(Display, NamesTheSignalsOfItsDisplay) {
+  const ScratchFolder folder;
+  const auto signal_in = [&](const char* space) {
+    const std::string config = fmt::format(
+        "ocio_profile_version: 2\nsearch_path: luts\nroles:\n  aces_interchange: ap0\n  default: ap0\n"
+        "file_rules:\n  - !<Rule> {{name: Default, colorspace: default}}\n"
+        "displays:\n  Screen:\n    - !<View> {{name: Shown, colorspace: {0}}}\n"
+        "colorspaces:\n  - !<ColorSpace>\n    name: ap0\n  - !<ColorSpace>\n    name: {0}\n",
+        space);
+    setenv("OCIO", folder.file("config.ocio", config).c_str(), 1);
+    const auto display = Display::make("");
+    EXPECT_TRUE(display.ok()) << display.error().message;
+    image::ByteImage shown;
+    EXPECT_TRUE(display->show(one_pixel({0.5, 0.5, 0.5}), 0, shown).ok());
+    unsetenv("OCIO");
+    return shown.signal;
+  };
+  EXPECT_EQ(signal_in("sRGB - Display"), (image::SignalCode{1, 13}));
+  EXPECT_EQ(signal_in("Display P3 - Display"), (image::SignalCode{12, 13}));
+  EXPECT_EQ(signal_in("Rec.2100-PQ - Display"), (image::SignalCode{9, 16}));
+  EXPECT_EQ(signal_in("Rec.1886 Rec.709 - Display"), (image::SignalCode{1, 1}));
+  EXPECT_EQ(signal_in("P3-DCI - Display"), std::nullopt) << "its gamma of 2.6 has no code";
 }
 
 TEST(Display, ABadConfigurationIsRefusedByName) {

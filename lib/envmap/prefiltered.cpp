@@ -10,6 +10,7 @@
 
 #include "base/file.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "envmap/mip.h"
 #include "envmap/open_maps.h"
 #include "image/exr.h"
@@ -23,6 +24,7 @@ constexpr double kHalfError = 0x1p-11;      // relative, of a normal half
 constexpr double kHalfSubnormal = 0x1p-25;  // absolute, below 2^-14
 constexpr double kFloor = 1e-3;             // errors are relative to the local value, but no less than this of the mean
 constexpr const char* kTexels = "goniochrome:texels";
+constexpr const char* kColorSpace = "lin_rec2020_scene";
 constexpr const char* kExponent = "goniochrome:exponent";
 constexpr const char* kSpots = "goniochrome:brightSpots";
 // Of parts with maps that follow from others. A reader that knows another version makes them itself.
@@ -87,7 +89,7 @@ image::ImagePart part_of(const std::string& name, const PrefilteredLobe& lobe, c
       {"goniochrome:method", lobe.method},
       {"goniochrome:source", source},
       {"goniochrome:command", command},
-      {"colorInteropID", std::string("lin_rec2020_scene")},
+      {"colorInteropID", std::string(kColorSpace)},
   };
   if (edges) part.attributes["envmap"] = std::string("cube");
   if (lobe.layout == Layout::kLatLong) part.attributes["envmap"] = std::string("latlong");
@@ -103,7 +105,7 @@ image::ImagePart part_of_map(const std::string& name, const CubeMap& map, const 
   part.attributes = {{kTexels, std::string("center")},
                      {kExponent, static_cast<float>(lobe.exponent)},
                      {kVersion, kKnownVersion},
-                     {"colorInteropID", std::string("lin_rec2020_scene")}};
+                     {"colorInteropID", std::string(kColorSpace)}};
   return part;
 }
 
@@ -126,7 +128,10 @@ Result<PrefilteredLobe> lobe_of(image::ImagePart part, const std::string& path) 
   const image::Image& image = part.image;
   if (image.height != 6 * image.width)
     return refused(fmt::format("is {} x {}, not a strip of six faces", image.width, image.height));
-  if (image.channels != 3) return refused(fmt::format("has {} channels, not 3", image.channels));
+  if (image.channel_names != std::vector<std::string>{"R", "G", "B"})
+    return refused(fmt::format("has the channels {}, not R, G and B", joined(image.channel_names, ", ")));
+  if (const std::string space = text_attribute(part, "colorInteropID"); !space.empty() && space != kColorSpace)
+    return refused(fmt::format("attribute colorInteropID is \"{}\", not \"{}\"", space, kColorSpace));
   if (text_attribute(part, kTexels) != "center")
     return refused(fmt::format("attribute {} is \"{}\", not \"center\"", kTexels, text_attribute(part, kTexels)));
   if (!part.attributes.count(kExponent)) return refused(fmt::format("attribute {} is missing", kExponent));

@@ -116,8 +116,7 @@ void read_env_file(const std::string& path) {
 void read_probe(const std::string& path) {
   const auto probe = image::decoded_hdr(file_content(path).value(), path);
   if (!probe.ok()) return demand_message(probe.error());
-  if (!*probe) return;  // of a kind that another library reads
-  for (const float value : (*probe)->image.data) demand(std::isfinite(value), "a radiance that is no number");
+  for (const float value : probe->image.data) demand(std::isfinite(value), "a radiance that is no number");
 }
 
 void read_picture(const std::string& path) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,10 +11,17 @@
 
 namespace goniochrome::image {
 
+// The light that R G B signals stand for: the code points of primaries and curve in ITU-T H.273. 1 and 13 are sRGB.
+struct SignalCode {
+  int primaries = 1, transfer = 13;
+  bool operator==(const SignalCode&) const = default;
+};
+
 // R G B by pixels, row 0 at the top.
 struct ByteImage {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;
+  std::optional<SignalCode> signal = SignalCode{};  // none: not known
 
   std::uint8_t* pixel(int x, int y) { return &rgb[3 * (static_cast<std::size_t>(y) * width + x)]; }
   const std::uint8_t* pixel(int x, int y) const { return &rgb[3 * (static_cast<std::size_t>(y) * width + x)]; }
@@ -25,8 +33,8 @@ ByteImage byte_image(const Image& image);
 // The same into `bytes`, whose memory is used again.
 void put_bytes(const Image& image, ByteImage& bytes);
 
-// The bytes of a PNG, with text entries for provenance. Its rows are compressed on all cores, and it is the same on any
-// number of them.
+// The bytes of a PNG that says which light its signals stand for, with text entries for provenance. Its rows are
+// compressed on all cores, and it is the same on any number of them.
 std::string png_content(const ByteImage& image, const Attributes& text = {});
 
 }  // namespace goniochrome::image

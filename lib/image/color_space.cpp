@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "color/color.h"
+#include "image/icc.h"
 
 namespace goniochrome::image {
 
@@ -64,21 +65,22 @@ Result<Space> space_of(const ImagePart& part, const std::string& file) {
     if (const auto space = named_space(id)) return *space;
     return unknown("colorInteropID", id);
   }
+  const bool whole_numbers = attribute_or(part.attributes, "goniochrome:integer", 0) != 0;
+  const std::string name = text("oiio:ColorSpace");
+  // OpenImageIO says Rec709 of PNM and DPX files, and programs that use it pass this on to PNG. Of whole numbers it
+  // means the curve of a display with these primaries, as PNM defines it, and in practice that of sRGB.
+  const auto named = name.empty()                               ? Space{}
+                     : whole_numbers && lower(name) == "rec709" ? Space{kRec709, Curve::kSrgb}
+                                                                : named_space(name);
   const auto* xy = find_attribute<std::vector<float>>(part.attributes, "chromaticities");
-  if (xy && xy->size() == 8) {
-    Space space;
-    std::copy(xy->begin(), xy->end(), space.primaries.begin());
-    return space;
-  }
-  if (const std::string name = text("oiio:ColorSpace"); !name.empty()) {
-    // OpenImageIO says Rec709 of PNM and DPX files, and programs that use it pass this on to PNG. Of whole numbers it
-    // means the curve of a display with these primaries, as PNM defines it, and in practice that of sRGB.
-    const bool whole_numbers = attribute_or(part.attributes, "goniochrome:integer", 0) != 0;
-    if (whole_numbers && lower(name) == "rec709") return Space{kRec709, Curve::kSrgb};
-    if (const auto space = named_space(name)) return *space;
-    return unknown("its color space", name);
-  }
-  return Space{};
+  const bool stated = xy && xy->size() == 8;
+  if (!named && (whole_numbers || !stated)) return unknown("its color space", name);
+  if (!stated) return *named;
+  // Chromaticities tell the primaries of floats, which are linear unless a gamma is named, and nothing of their curve.
+  Space space;
+  if (named && (whole_numbers || named->curve == Curve::kGamma)) space = *named;
+  std::copy(xy->begin(), xy->end(), space.primaries.begin());
+  return space;
 }
 
 bool same(const Primaries& a, const Primaries& b) {
@@ -120,9 +122,18 @@ double decoded(double value, const Space& space) {
   return value;
 }
 
+// The ICC profile that tells the colors of the channels. Where inks have become RGB, that of the inks does not.
+std::string profile_of(const ImagePart& part) {
+  const bool was_inks = part.attributes.contains("goniochrome:inks") && color_channels(part.image) != 4;
+  const bool has_id = !text_attribute(part, "colorInteropID").empty();
+  return was_inks || has_id ? "" : text_attribute(part, "ICCProfile");
+}
+
 }  // namespace
 
 Result<Image> working_space_rgb(ImagePart part, const std::string& name) {
+  if (const std::string profile = profile_of(part); !profile.empty())
+    return image_through_icc(part.image, profile, name, attribute_or(part.attributes, "goniochrome:integer", 0) != 0);
   GONIO_ASSIGN(const Space space, space_of(part, name));
   GONIO_ASSIGN(const Columns columns, to_working_space(space.primaries, name));
   const bool convert = !same(space.primaries, kRec2020);

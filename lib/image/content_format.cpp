@@ -65,6 +65,14 @@ bool shows(std::string_view content, const Signature& signature) {
   return content.size() >= signature.offset && content.substr(signature.offset).starts_with(signature.bytes);
 }
 
+// A Radiance picture need not begin with "#?": a line of its header tells what it is.
+bool is_radiance_header(std::string_view content) {
+  constexpr std::size_t kMostHeader = 1 << 16;
+  content = content.substr(0, kMostHeader);
+  content = content.substr(0, content.find("\n\n"));
+  return content.starts_with("FORMAT=32-bit_rle_") || content.find("\nFORMAT=32-bit_rle_") != std::string_view::npos;
+}
+
 bool is_pnm(std::string_view content) {
   return content.size() > 2 && content[0] == 'P' && std::strchr("123456fF", content[1]) && content[1] != '\0' &&
          std::strchr(" \t\r\n#", content[2]) && content[2] != '\0';
@@ -120,7 +128,36 @@ bool is_camera_raw(std::string_view content) {
 
 constexpr const char* kAdvice = "convert it to EXR, or to a TIFF or PNG of 16 bits";
 
+// The EXIF tag Orientation in the first directory of a TIFF header; 1 where there is none.
+int tiff_orientation(std::string_view header) {
+  if (!header.starts_with("II\x2a") && !header.starts_with("MM")) return 1;
+  const TiffNumbers number(header);
+  const std::size_t directory = number.at(4, 4);
+  for (std::uint32_t i = 0; i < number.at(directory, 2); ++i) {
+    const std::size_t entry = directory + 2 + 12 * std::size_t{i};
+    if (entry + 12 > header.size()) return 1;
+    if (number.at(entry, 2) == 0x112) return static_cast<int>(number.at(entry + 8, 2));
+  }
+  return 1;
+}
+
 }  // namespace
+
+// Behind "RIFF", a size and "WEBP" come chunks of a type, a size and bytes, of which there are an even number.
+int webp_orientation(std::string_view content) {
+  for (std::size_t at = 12; at + 8 <= content.size();) {
+    std::uint32_t size = 0;
+    for (std::size_t i = 8; i-- > 4;) size = size << 8 | static_cast<unsigned char>(content[at + i]);
+    if (size > content.size() - at - 8) return 1;
+    std::string_view bytes = content.substr(at + 8, size);
+    if (content.substr(at, 4) == "EXIF") {
+      if (bytes.starts_with("Exif")) bytes.remove_prefix(std::min<std::size_t>(6, bytes.size()));
+      return tiff_orientation(bytes);
+    }
+    at += 8 + std::size_t{size} + size % 2;
+  }
+  return 1;
+}
 
 Result<std::string> content_format(std::string_view content, const std::string& name) {
   for (const Signature& signature : kWanted) {
@@ -132,6 +169,7 @@ Result<std::string> content_format(std::string_view content, const std::string& 
     return format;
   }
   if (is_pnm(content)) return std::string("pnm");
+  if (is_radiance_header(content)) return std::string("hdr");
   for (const Signature& signature : kUnwanted)
     if (shows(content, signature))
       return input_error("{}: is {}, which is not read here: {}", name, signature.format, kAdvice);

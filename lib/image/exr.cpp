@@ -31,6 +31,7 @@
 #include "image/image.h"
 #include "image/internal/exr.h"
 #include "image/internal/exr_header.h"
+#include "image/internal/exr_layers.h"
 #include "image/internal/exr_rows.h"
 
 namespace goniochrome::image {
@@ -112,9 +113,8 @@ std::vector<std::string> ordered_channels(const Imf::ChannelList& list) {
   return names;
 }
 
-// The channels that are wanted, as far as the part has them; all where none is named.
+// The channels that are wanted, as far as the part has them.
 std::vector<std::string> wanted_channels(const Imf::ChannelList& list, const std::vector<std::string>& wanted) {
-  if (wanted.empty()) return ordered_channels(list);
   std::vector<std::string> names;
   for (const std::string& name : wanted)
     if (list.findChannel(name)) names.push_back(name);
@@ -134,8 +134,62 @@ void expect_last_line(Imf::MultiPartInputFile& file, int index, const Imath::Box
   Imf::InputPart(file, index).rawPixelData(window.max.y, bytes, size);
 }
 
+ExrWindow window_of(const Imath::Box2i& box) {
+  return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1};
+}
+
+// Whether a part is shown as it is stored. All parts share one display window, so that parts of sizes of their own, as
+// those of an environment, begin at its corner; in the pictures of other programs these are crops.
+bool fills_its_window(const Imf::MultiPartInputFile& file, int index, const Attributes& attributes, bool as_picture) {
+  const Imath::Box2i &data = file.header(index).dataWindow(), &display = file.header(index).displayWindow();
+  if (data == display) return true;
+  if (file.parts() == 1 || data.min != display.min) return false;
+  const auto is_own = [](const auto& entry) { return entry.first.starts_with("goniochrome:"); };
+  return !as_picture || attributes.contains("envmap") || std::ranges::any_of(attributes, is_own);
+}
+
+// Brings the pixels of a data window into the display window. A forged window must not ask for all memory.
+Result<void> place_in_window(const Imf::Header& header, const std::string& where, Image& image) {
+  constexpr std::size_t kFreePixels = std::size_t{1} << 26, kMostTimes = 64;
+  const ExrWindow display = window_of(header.displayWindow()), data = window_of(header.dataWindow());
+  const std::size_t pixels = image.data.size() / static_cast<std::size_t>(image.channels);
+  const auto width = static_cast<std::size_t>(display.width), height = static_cast<std::size_t>(display.height);
+  if (width * height > std::max(kFreePixels, kMostTimes * pixels) ||
+      width * height > kMostSamples / static_cast<std::size_t>(image.channels))
+    return input_error("{}: its display window of {} x {} is too large for its {} x {} pixels: crop it", where, width,
+                       height, data.width, data.height);
+  if (!header.displayWindow().intersects(header.dataWindow()))
+    return input_error("{}: none of its pixels lies in its display window: export it again", where);
+  image = shown_in(display, data, std::move(image));
+  return {};
+}
+
+// Fills `image.data` with the channels that `image` names.
+Result<void> read_pixels(Imf::MultiPartInputFile& file, int index, const std::string& where, Image& image) {
+  const Imf::Header& header = file.header(index);
+  if (has_rows(header)) {
+    read_rows(file, index, image);
+    return {};
+  }
+  use_threads();
+  const Imath::Box2i& window = header.dataWindow();
+  Imf::FrameBuffer buffer;
+  const std::size_t x_stride = sizeof(float) * image.channels, y_stride = x_stride * image.width;
+  for (int c = 0; c < image.channels; ++c) {
+    const Imf::Channel& channel = header.channels()[image.channel_names[c].c_str()];
+    if (channel.xSampling != 1 || channel.ySampling != 1)
+      return input_error("{}: channel {} is subsampled: convert it to full resolution", where, image.channel_names[c]);
+    buffer.insert(image.channel_names[c],
+                  Imf::Slice::Make(Imf::FLOAT, image.data.data() + c, window, x_stride, y_stride));
+  }
+  Imf::InputPart input(file, index);
+  input.setFrameBuffer(buffer);
+  input.readPixels(window.min.y, window.max.y);
+  return {};
+}
+
 Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const std::string& file_name,
-                               std::size_t file_bytes, const ExrWanted& wanted) {
+                               std::size_t file_bytes, const ExrWanted& wanted, bool as_picture = false) {
   const Imf::Header& header = file.header(index);
   ImagePart part;
   if (header.hasName()) part.name = header.name();
@@ -153,10 +207,12 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
   Image& image = part.image;
   image.width = window.max.x - window.min.x + 1;
   image.height = window.max.y - window.min.y + 1;
-  image.channel_names = wanted_channels(header.channels(), index == 0 ? wanted.channels : std::vector<std::string>());
+  const bool some = index == wanted.channels_of && !wanted.channels.empty();
+  image.channel_names =
+      some ? wanted_channels(header.channels(), wanted.channels) : ordered_channels(header.channels());
   image.channels = static_cast<int>(image.channel_names.size());
   const std::size_t samples = static_cast<std::size_t>(image.width) * image.height * image.channels;
-  if (image.channels == 0 && index == 0 && !wanted.channels.empty()) return part;
+  if (image.channels == 0 && some) return part;
   if (samples == 0) return input_error("{}: holds no pixels", where);
   if (samples > kMostSamples || samples / most_samples_a_byte(header.compression()) > file_bytes)
     return input_error("{}: {} x {} pixels are too many for a file of {} bytes", where, image.width, image.height,
@@ -166,47 +222,60 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
   part.type = PixelType::kHalf;
   for (const std::string& name : image.channel_names)
     if (header.channels()[name.c_str()].type != Imf::HALF) part.type = PixelType::kFloat;
-  if (has_rows(header)) {
-    read_rows(file, index, image);
-    return part;
-  }
-  use_threads();
-  Imf::FrameBuffer buffer;
-  const std::size_t x_stride = sizeof(float) * image.channels, y_stride = x_stride * image.width;
-  for (int c = 0; c < image.channels; ++c) {
-    const Imf::Channel& channel = header.channels()[image.channel_names[c].c_str()];
-    if (channel.xSampling != 1 || channel.ySampling != 1)
-      return input_error("{}: channel {} is subsampled: convert it to full resolution", where, image.channel_names[c]);
-    buffer.insert(image.channel_names[c],
-                  Imf::Slice::Make(Imf::FLOAT, image.data.data() + c, window, x_stride, y_stride));
-  }
-  Imf::InputPart input(file, index);
-  input.setFrameBuffer(buffer);
-  input.readPixels(window.min.y, window.max.y);
+  GONIO_TRY(read_pixels(file, index, where, image));
+  if (!fills_its_window(file, index, part.attributes, as_picture)) GONIO_TRY(place_in_window(header, where, image));
   return part;
 }
 
-}  // namespace
-
-Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name,
-                                           const ExrWanted& wanted) {
+// Opens a file in memory and hands it to `read`; what the library throws becomes an error.
+template <class Read>
+auto opened(const std::string& content, const std::string& name, Read&& read)
+    -> decltype(read(std::declval<Imf::MultiPartInputFile&>())) {
   // The library itself tells that a file is no EXR file at all.
   if (is_exr(content) && !is_sound_exr_header(content))
     return input_error("{}: its header is damaged or cut off", name);
   try {
     MemoryInput stream(content, name);
     Imf::MultiPartInputFile file(stream, threads());
+    return read(file);
+  } catch (const std::bad_alloc&) {
+    return input_error("{}: is too large for the memory there is", name);
+  } catch (const std::exception& e) {
+    return input_error("{}: cannot be read as EXR: {}", name, e.what());
+  }
+}
+
+}  // namespace
+
+Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name,
+                                           const ExrWanted& wanted) {
+  return opened(content, name, [&](Imf::MultiPartInputFile& file) -> Result<std::vector<ImagePart>> {
     std::vector<ImagePart> parts;
     for (int i = 0; i < file.parts(); ++i) {
       GONIO_ASSIGN(auto part, decoded_part(file, i, name, content.size(), wanted));
       parts.push_back(std::move(part));
     }
     return parts;
-  } catch (const std::bad_alloc&) {
-    return input_error("{}: is too large for the memory there is", name);
-  } catch (const std::exception& e) {
-    return input_error("{}: cannot be read as EXR: {}", name, e.what());
-  }
+  });
+}
+
+Result<ImagePart> decoded_exr_picture(const std::string& content, const std::string& name, const std::string& layer) {
+  return opened(content, name, [&](Imf::MultiPartInputFile& file) -> Result<ImagePart> {
+    std::vector<ExrPartNames> names;
+    for (int i = 0; i < file.parts(); ++i) {
+      const Imf::Header& header = file.header(i);
+      names.push_back({header.hasName() ? header.name() : "", ordered_channels(header.channels())});
+    }
+    GONIO_ASSIGN(const ExrLayer picture, color_layer(names, layer, name));
+    const int chosen = static_cast<int>(picture.part);
+    const ExrWanted none{[](const std::string&, const Attributes&) { return false; }};
+    for (int i = 0; i < file.parts(); ++i)
+      if (i != chosen) GONIO_TRY(decoded_part(file, i, name, content.size(), none));
+    GONIO_ASSIGN(ImagePart part,
+                 decoded_part(file, chosen, name, content.size(), {{}, picture.channels, chosen}, true));
+    part.image.channel_names = picture.as;
+    return part;
+  });
 }
 
 Result<std::vector<ImagePart>> read_exr(const std::string& path) {
@@ -258,18 +327,11 @@ std::vector<std::string> channel_names(const Image& image) {
 }
 
 // The type that holds every value of the part. Error: the first value that is not finite, by pixel.
-Result<PixelType> storage_type(const ImagePart& part, const std::vector<std::string>& names) {
-  const Image& image = part.image;
+Result<PixelType> storage_type(const ImagePart& part) {
+  if (auto finite = check_finite(part.image); !finite.ok())
+    return input_error("part {}: {}", part.name, finite.error().message);
   float most = 0;
-  for (std::size_t i = 0; i < image.data.size(); ++i) {
-    const float size = std::fabs(image.data[i]);
-    if (!std::isfinite(size)) {
-      const std::size_t pixel = i / image.channels;
-      return input_error("part {}: pixel {},{} channel {} is {}: only finite values are written", part.name,
-                         pixel % image.width, pixel / image.width, names[i % image.channels], image.data[i]);
-    }
-    most = std::max(most, size);
-  }
+  for (const float value : part.image.data) most = std::max(most, std::fabs(value));
   return most > kMostHalf ? PixelType::kFloat : part.type;
 }
 
@@ -373,7 +435,7 @@ Result<std::string> encoded(const std::vector<ImagePart>& given, ExrStorage stor
   std::vector<Imf::Header> headers;
   for (const ImagePart& part : parts) {
     names.push_back(channel_names(part.image));
-    GONIO_ASSIGN(const PixelType type, storage_type(part, names.back()));
+    GONIO_ASSIGN(const PixelType type, storage_type(part));
     types.push_back(type);
     headers.push_back(header_of(part, type, names.back(), display, storage));
   }
@@ -392,6 +454,15 @@ Result<std::string> encoded(const std::vector<ImagePart>& given, ExrStorage stor
 }
 
 }  // namespace
+
+Result<void> check_finite(const Image& image) {
+  const auto bad = std::ranges::find_if_not(image.data, [](float value) { return std::isfinite(value); });
+  if (bad == image.data.end()) return {};
+  const auto at = static_cast<std::size_t>(bad - image.data.begin());
+  const auto channels = static_cast<std::size_t>(image.channels), width = static_cast<std::size_t>(image.width);
+  return input_error("pixel {},{} channel {} is {}: only finite values are written", at / channels % width,
+                     at / channels / width, channel_names(image)[at % channels], *bad);
+}
 
 Result<std::string> exr_content(const std::string& name, const std::vector<ImagePart>& parts, ExrStorage storage) {
   try {

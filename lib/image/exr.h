@@ -13,13 +13,18 @@ namespace goniochrome::image {
 struct ExrWanted {
   // Whether the pixels of a part are wanted, by its name and attributes; without the function those of all parts are.
   std::function<bool(const std::string& name, const Attributes& attributes)> part = {};
-  // The channels of the first part that are wanted, in their order in a pixel, as far as it has them; empty: all.
+  // The channels of one part, the first, that are wanted, in their order in a pixel, as far as it has them; empty: all.
   std::vector<std::string> channels = {};
+  int channels_of = 0;
 };
 
 // All parts of an EXR file held in memory; `name` is what errors call it. A part that is not wanted has no pixels.
 Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name,
                                            const ExrWanted& wanted = {});
 Result<std::vector<ImagePart>> read_exr(const std::string& path, const ExrWanted& wanted);
+
+// The picture of an EXR file: its colors, with alpha where there is one, in its display window. `layer` names them, or
+// is empty for the only ones or those without a layer.
+Result<ImagePart> decoded_exr_picture(const std::string& content, const std::string& name, const std::string& layer);
 
 }  // namespace goniochrome::image

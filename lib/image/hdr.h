@@ -2,20 +2,16 @@
 // OpenImageIO takes ten times longer than reading the picture.
 #pragma once
 
-#include <optional>
 #include <string>
-#include <string_view>
 
 #include "image/image.h"
 
 namespace goniochrome::image {
 
-// Whether a file that begins with `head` may be a Radiance picture.
-bool is_radiance(std::string_view head);
-
-// The picture, linear RGB, if its rows run from the top and its columns from the left, as they do in nearly all such
-// files. Nothing if it is of another kind (XYZ, turned, gamma-corrected), which read_image() leaves to OpenImageIO.
-// Error: the row that ends early or whose runs are wrong; `name` is what errors call the file.
-Result<std::optional<ImagePart>> decoded_hdr(const std::string& content, const std::string& name);
+// The picture, upright, as it was before the exposures and color corrections that its header names. The attribute
+// `chromaticities` has its primaries; pixels of the kind XYZE are X, Y and Z, which these primaries say as well. Error:
+// the line of the header that is not understood, or the row that ends early or whose runs are wrong; `name` is what
+// errors call the file.
+Result<ImagePart> decoded_hdr(const std::string& content, const std::string& name);
 
 }  // namespace goniochrome::image

@@ -20,6 +20,8 @@
 #include "image/internal/content_format.h"
 #include "image/internal/exr.h"
 #include "image/internal/oiio_module.h"
+#include "image/internal/png_colors.h"
+#include "image/internal/turn.h"
 
 namespace goniochrome::image {
 
@@ -233,20 +235,31 @@ std::string text_attribute(const ImagePart& part, const std::string& name) {
   return text ? *text : "";
 }
 
+std::string image_file(const std::string& path) {
+  const std::size_t bracket = path.rfind('[');
+  const bool names_layer = path.ends_with(']') && bracket != std::string::npos && bracket > 0 && !is_there(path);
+  return names_layer ? path.substr(0, bracket) : path;
+}
+
 Result<ImagePart> read_image(const std::string& path, Inks inks) {
-  GONIO_ASSIGN(InputFile input, InputFile::open(path));
+  const std::string file = image_file(path);
+  const std::string layer = file == path ? "" : path.substr(file.size() + 1, path.size() - file.size() - 2);
+  GONIO_ASSIGN(InputFile input, InputFile::open(file));
   GONIO_ASSIGN(std::string content, input.rest(std::string::npos));
   if (content.empty()) return input_error("{}: is empty: name an image", input.name());
   GONIO_ASSIGN(const std::string format, content_format(content, input.name()));
-  if (format == "openexr") {
-    GONIO_ASSIGN(auto parts, decoded_exr(content, input.name()));
-    return std::move(parts.front());
-  }
-  if (format == "hdr") {
-    GONIO_ASSIGN(auto part, decoded_hdr(content, input.name()));
-    if (part) return std::move(*part);
-  }
-  return read_through_module(std::move(content), format, input.name(), inks);
+  if (format == "openexr") return decoded_exr_picture(content, input.name(), layer);
+  if (!layer.empty())
+    return input_error("{}: has no layers: leave out [{}], which names one of an EXR file", file, layer);
+  if (format == "hdr") return decoded_hdr(content, input.name());
+  Attributes colors = format == "png" ? png_colors(content) : Attributes();
+  const Turn turn = exif_turn(format == "webp" ? webp_orientation(content) : 1);
+  GONIO_ASSIGN(ImagePart part, read_through_module(std::move(content), format, input.name(), inks));
+  if (colors.contains("oiio:ColorSpace")) part.attributes.erase("ICCProfile");
+  for (auto& [name, value] : colors) part.attributes[name] = std::move(value);
+  Image& image = part.image;
+  if (turn.any()) image.data = upright(image.data, image.width, image.height, image.channels, turn);
+  return part;
 }
 
 }  // namespace goniochrome::image

@@ -55,7 +55,9 @@ struct ImagePart {
 std::string text_attribute(const ImagePart& part, const std::string& name);
 
 // All parts of an EXR file, stored as scan lines or tiles. Channels come in the order R G B A, then the others as they
-// are stored. Error: the path and the reason; a file that is cut off, deep data and subsampled channels are refused.
+// are stored. Pixels are those of the display window, but those of the part's own window where a file has several parts
+// that begin at the same corner. Error: the path and the reason; a file that is cut off, deep data and subsampled
+// channels are refused.
 Result<std::vector<ImagePart>> read_exr(const std::string& path);
 
 // Writes parts as one EXR file (ZIP), which appears whole or not at all. Halves are rounded to the nearest; a part with
@@ -73,14 +75,23 @@ Result<std::string> exr_content(const std::string& name, const std::vector<Image
 // ink.
 enum class Inks { kAsRgb, kKept };
 
-// The first part of an image, as it is stored. Its content tells the format, not its name; others are refused.
+// The picture in a file, upright, with channels R G B, R G B A, Y or Y A where it is an EXR. Its content tells the
+// format, not its name; others are refused. FILE[LAYER] names the colors of an EXR file that has several layers of
+// them, or one channel that is gray; without it they are those without a layer, or the only ones. An EXR is read in its
+// display window: 0 where it has no pixels, and without those outside.
 // `attributes` has `oiio:ColorSpace`, `chromaticities`, `colorInteropID`, `ICCProfile` and `envmap` ("latlong" or
 // "cube") where the file has them, and `goniochrome:integer`, which is 1 where it holds whole numbers; these are 0..1.
 // `goniochrome:inks` is there where the file is CMYK.
 Result<ImagePart> read_image(const std::string& path, Inks inks = Inks::kAsRgb);
 
-// Writes display-referred values 0..1, rounded and clamped, as a PNG of 8 bits and RGB, with text entries for
-// provenance. One channel is gray; channels after the third are left out.
+// The file that a path of read_image() names, without its layer.
+std::string image_file(const std::string& path);
+
+// Error: the first value that is not finite, by pixel and channel.
+Result<void> check_finite(const Image& image);
+
+// Writes sRGB signals 0..1, rounded and clamped, as a PNG of 8 bits and RGB that says so, with text entries for
+// provenance. One channel is gray; channels after the third are left out. NaN and infinity are refused.
 Result<void> write_png(const std::string& path, const Image& image, const Attributes& text = {});
 
 // The bytes of that PNG; `name` is what errors call it.

@@ -53,6 +53,14 @@ void append_text(const std::string& key, const std::string& text, std::string& f
   append_chunk(ascii ? "tEXt" : "iTXt", data + text, file);
 }
 
+// The chunk sRGB, whose byte asks for colors as they are, or cICP: primaries, curve, no matrix, the full range.
+// [Portable Network Graphics (Third Edition), 11.3.2]
+void append_signal(const std::optional<SignalCode>& signal, std::string& file) {
+  if (!signal) return;
+  if (*signal == SignalCode{}) return append_chunk("sRGB", "\x01", file);
+  append_chunk("cICP", {static_cast<char>(signal->primaries), static_cast<char>(signal->transfer), 0, 1}, file);
+}
+
 constexpr std::size_t kBandBytes = std::size_t{1} << 18;  // of rows that are compressed by one core
 constexpr std::uint8_t kSub = 1;                          // each byte is stored as what it adds to its left neighbor
 
@@ -153,6 +161,7 @@ std::string png_content(const ByteImage& image, const Attributes& text) {
                big_endian(static_cast<std::uint32_t>(image.width)) +
                    big_endian(static_cast<std::uint32_t>(image.height)) + eight_bits_rgb,
                file);
+  append_signal(image.signal, file);
   for (const auto& [key, value] : text) append_text(key, spelled(value), file);
   append_chunk("IDAT", compressed(image), file);
   append_chunk("IEND", "", file);
@@ -162,6 +171,7 @@ std::string png_content(const ByteImage& image, const Attributes& text) {
 Result<std::string> png_content(const std::string& name, const Image& image, const Attributes& text) {
   if (image.width < 1 || image.height < 1 || image.channels < 1)
     return input_error("{}: cannot be encoded as PNG: there are no pixels", name);
+  if (auto finite = check_finite(image); !finite.ok()) return input_error("{}: {}", name, finite.error().message);
   return png_content(byte_image(image), text);
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <jpeglib.h>
 
 #include "base/file.h"
+#include "base/scratch_for_test.h"
 #include "image/color_space.h"
 #include "image/image.h"
 
@@ -96,6 +98,64 @@ TEST_F(CmykJpeg, ACutFileIsAnError) {
     const auto part = read(whole.substr(0, size), Inks::kKept);
     ASSERT_FALSE(part.ok()) << size;
     EXPECT_THAT(part.error().message, HasSubstr("cannot be read as an image: "));
+  }
+}
+
+// A gray JPEG of 32 x 16 pixels, white in its upper left quarter, that says how it is turned.
+std::string turned_jpeg(int orientation) {
+  jpeg_compress_struct info{};
+  jpeg_error_mgr errors{};
+  info.err = jpeg_std_error(&errors);
+  jpeg_create_compress(&info);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  jpeg_mem_dest(&info, &bytes, &size);
+  info.image_width = 32, info.image_height = 16, info.input_components = 1, info.in_color_space = JCS_GRAYSCALE;
+  jpeg_set_defaults(&info);
+  jpeg_set_quality(&info, 100, TRUE);
+  jpeg_start_compress(&info, TRUE);
+  // Exif: a TIFF header and a directory of one entry, the tag 0x112, of one short number.
+  std::string exif("Exif\0\0MM\0\x2a\0\0\0\x08\0\1\x01\x12\0\3\0\0\0\1\0\0\0\0\0\0\0\0", 32);
+  exif[25] = static_cast<char>(orientation);
+  jpeg_write_marker(&info, JPEG_APP0 + 1, reinterpret_cast<const JOCTET*>(exif.data()),
+                    static_cast<unsigned>(exif.size()));
+  for (int y = 0; y < 16; ++y) {
+    std::vector<JSAMPLE> row(32, 0);
+    if (y < 8) std::fill_n(row.begin(), 16, JSAMPLE{255});
+    JSAMPLE* pointer = row.data();
+    jpeg_write_scanlines(&info, &pointer, 1);
+  }
+  jpeg_finish_compress(&info);
+  std::string content(reinterpret_cast<char*>(bytes), size);
+  jpeg_destroy_compress(&info);
+  std::free(bytes);
+  return content;
+}
+
+// The white quarter is where viewers show it. Without regard to the tag it was in the upper left of all eight.
+TEST(Orientation, PicturesAreUpright) {
+  const ScratchFolder folder;
+  struct Case {
+    int orientation;
+    bool upright, left, top;
+  };
+  for (const Case& c : {Case{1, true, true, true},
+                        {2, true, false, true},
+                        {3, true, false, false},
+                        {4, true, true, false},
+                        {5, false, true, true},
+                        {6, false, false, true},
+                        {7, false, false, false},
+                        {8, false, true, false}}) {
+    const auto part = read_image(folder.file("x.jpg", turned_jpeg(c.orientation)));
+    ASSERT_TRUE(part.ok()) << part.error().message;
+    const Image& image = part->image;
+    EXPECT_EQ(image.width, c.upright ? 32 : 16) << c.orientation;
+    for (const bool left : {true, false})
+      for (const bool top : {true, false}) {
+        const float value = image.pixel(left ? 2 : image.width - 3, top ? 2 : image.height - 3)[0];
+        EXPECT_NEAR(value, left == c.left && top == c.top ? 1 : 0, .02) << c.orientation << left << top;
+      }
   }
 }
 

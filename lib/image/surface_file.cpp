@@ -3,17 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string_view>
 #include <utility>
+
+#include "base/text.h"
 
 namespace goniochrome::image {
 
 Result<brdf::ColorMap> read_color_map(const std::string& path) {
   GONIO_ASSIGN(const std::vector<ImagePart> parts, read_exr(path));
   const Image& image = parts.front().image;
-  if (image.width < 1 || image.height != 2 * image.width || image.channels < 3)
-    return input_error("{}: {}x{} with {} channels is no color map: a color map is RGB and twice as high as wide", path,
-                       image.width, image.height, image.channels);
+  // Channels are read in this order where they are there.
+  const std::vector<std::string> rgb = {"R", "G", "B"};
+  if (image.width < 1 || image.height != 2 * image.width || image.channels < 3 ||
+      !std::ranges::equal(rgb, std::span(image.channel_names).first(3)))
+    return input_error("{}: {}x{} with the channels {} is no color map: a color map is RGB and twice as high as wide",
+                       path, image.width, image.height, goniochrome::joined(image.channel_names, ","));
   const Attributes& attributes = parts.front().attributes;
   double index = 1.5;
   if (attributes.contains("goniochrome:index")) {

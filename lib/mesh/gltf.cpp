@@ -1,5 +1,5 @@
 // glTF 2.0 as JSON or GLB, read by tinygltf: the meshes of the scene's nodes, each where its node and the nodes above
-// put it. Animations, skins, cameras, lights, pictures and what materials look like are passed over. The library checks
+// put it. Animations, skins, cameras, lights and pictures are passed over. The library checks
 // few of the numbers that it reads, so it runs in a child process, as does what is made of them. Sections are those of
 // the specification (Khronos, glTF 2.0, revision 2.0.1).
 #define TINYGLTF_IMPLEMENTATION
@@ -19,11 +19,14 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "base/child.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "mesh/internal/gltf_numbers.h"
+#include "mesh/internal/gltf_packed.h"
 #include "mesh/internal/polygons_bytes.h"
 
 namespace goniochrome::mesh {
@@ -37,8 +40,15 @@ constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 // may place each mesh 80 times.
 constexpr std::size_t kLeastRoom = std::size_t{1} << 20, kMostRoom = std::size_t{1} << 27, kRoomAByte = 8;
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
-constexpr const char* kMeshopt = "EXT_meshopt_compression";
+constexpr std::array kMeshopt = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+constexpr const char* kVisibility = "KHR_node_visibility";
+// Extensions of nodes, meshes and primitives that change nothing of the surface. FB_ngon_encoding only says which
+// triangles were one polygon, and the coarser meshes of MSFT_lod are nodes outside of the scene.
+constexpr std::array kHarmless = {
+    "KHR_node_selectability", "KHR_node_hoverability", "KHR_lights_punctual", "KHR_materials_variants",
+    "KHR_mesh_quantization",  "FB_ngon_encoding",      "EXT_mesh_features",   "MSFT_lod",
+    "KHR_xmp_json_ld"};
 
 // Addresses for a file: the library's own; what its JSON takes, of which a node of 11 bytes takes 900, and what its
 // meshes take where they are placed often; and buffers in files beside it, whose sizes are not known before it is read.
@@ -114,15 +124,20 @@ class Reader {
   Reader(const Source& source, std::string folder) : source_(source), folder_(std::move(folder)) {}
 
   Result<Polygons> polygons(const std::string& content) {
-    GONIO_TRY(load(content));
+    const std::optional<std::string> changed = with_buffers_of_bytes(content);
+    GONIO_TRY(load(changed ? *changed : content));
+    GONIO_TRY(unpack_views());
     std::size_t bytes = content.size();
+    for (const auto& [view, unpacked] : unpacked_) bytes += unpacked.size();
     for (const tinygltf::Buffer& buffer : model_.buffers) bytes += buffer.data.size();
     room_ = std::clamp(std::min(bytes, kMostRoom) * kRoomAByte, kLeastRoom, kMostRoom);
     met_.assign(model_.nodes.size(), false);
     const tinygltf::Scene* scene = element(model_.scenes, std::max(model_.defaultScene, 0));
     if (scene == nullptr) return refused("scenes", "there is no scene: export one");
     GONIO_TRY(place_all(scene->nodes));
-    if (result_.faces.empty()) return refused("scene", "no node of it has a mesh of triangles");
+    if (result_.faces.empty())
+      return refused("scene", hidden_ ? "KHR_node_visibility hides all of its meshes: show one"
+                                      : "no node of it has a mesh of triangles");
     return std::move(result_);
   }
 
@@ -158,20 +173,58 @@ class Reader {
   // Extensions that change what the surface is must be known; those of looks are passed over.
   Result<void> check_extensions() const {
     for (const std::string& name : model_.extensionsRequired) {
-      GONIO_TRY(check_compression(name));
-      const bool harmless = name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
+      const bool known = name == kDraco || name == kVisibility || std::ranges::find(kMeshopt, name) != kMeshopt.end() ||
+                         std::ranges::find(kHarmless, name) != kHarmless.end();
+      const bool of_looks = name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
                             name.starts_with("KHR_lights_") || name.starts_with("EXT_texture_") ||
-                            name.starts_with("MSFT_texture_") || name == "KHR_mesh_quantization";
-      if (!harmless)
+                            name.starts_with("MSFT_texture_");
+      if (!known && !of_looks)
         return refused("extensionsRequired", fmt::format("\"{}\" is not known here: export without it", name));
     }
     return {};
   }
 
-  Result<void> check_compression(const std::string& extension) const {
-    if (extension == kDraco || extension == kMeshopt)
-      return refused(extension, fmt::format("the mesh is compressed by {}: export it without compression",
-                                            extension == kDraco ? "Draco" : "meshoptimizer"));
+  // Remarks on extensions, of what is placed, that may change it and are not known. Each is named once.
+  void remark_on(const tinygltf::ExtensionMap& extensions, const std::string& where) {
+    for (const auto& [name, value] : extensions) {
+      if (name == kDraco || name == kVisibility || std::ranges::find(kHarmless, name) != kHarmless.end()) continue;
+      remark_once(name, fmt::format("{} has the extension {}, which is not known here: what it changes is not drawn",
+                                    where, name));
+    }
+  }
+  void remark_once(const std::string& about, const std::string& remark) {
+    if (remarked_.insert(about).second) result_.remarks.push_back(remark);
+  }
+
+  // The bytes of the views that are packed by meshoptimizer.
+  Result<void> unpack_views() {
+    const auto number = [](const tinygltf::Value& object, const char* name) {
+      const tinygltf::Value& value = object.Get(name);
+      const double given = value.IsNumber() ? value.GetNumberAsDouble() : 0;
+      return given >= 0 && given <= 1e15 ? static_cast<std::size_t>(given) : 0;
+    };
+    const auto text = [](const tinygltf::Value& object, const char* name) {
+      const tinygltf::Value& value = object.Get(name);
+      return value.IsString() ? value.Get<std::string>() : std::string();
+    };
+    for (std::size_t i = 0; i < model_.bufferViews.size(); ++i)
+      for (const char* name : kMeshopt) {
+        const auto found = model_.bufferViews[i].extensions.find(name);
+        if (found == model_.bufferViews[i].extensions.end() || !found->second.IsObject()) continue;
+        const tinygltf::Value& packed = found->second;
+        tinygltf::BufferView view;
+        view.buffer = packed.Get("buffer").IsNumber() ? packed.Get("buffer").GetNumberAsInt() : -1;
+        view.byteOffset = number(packed, "byteOffset"), view.byteLength = number(packed, "byteLength");
+        const auto bytes = bytes_of_buffer(view);
+        auto unpacked = !bytes ? std::nullopt
+                               : meshopt_unpacked({*bytes, number(packed, "count"), number(packed, "byteStride"),
+                                                   text(packed, "mode"), text(packed, "filter")});
+        if (!unpacked)
+          return refused(
+              fmt::format("bufferView {}", i),
+              fmt::format("what it packs by {} cannot be unpacked: export it again, or without compression", name));
+        unpacked_[static_cast<int>(i)] = std::move(*unpacked);
+      }
     return {};
   }
 
@@ -222,6 +275,14 @@ class Reader {
     Matrix above;
   };
 
+  // A hidden node hides those below it as well.
+  static bool is_hidden(const tinygltf::Node& node) {
+    const auto found = node.extensions.find(kVisibility);
+    if (found == node.extensions.end() || !found->second.IsObject()) return false;
+    const tinygltf::Value& visible = found->second.Get("visible");
+    return visible.IsBool() && !visible.Get<bool>();
+  }
+
   // Places the meshes of these nodes and of all below them. A node may stand in one place only, so that there are no
   // circles.
   Result<void> place_all(const std::vector<int>& roots) {
@@ -239,6 +300,10 @@ class Reader {
       const auto number = static_cast<std::size_t>(next.node);
       if (met_[number]) return refused(where, "stands below two nodes, or below itself");
       met_[number] = true;
+      if (is_hidden(*node)) {
+        hidden_ = true;
+        continue;
+      }
       if (node->extensions.contains(kInstancing))
         return refused(where, fmt::format("is placed by {}: export a node for each instance", kInstancing));
       GONIO_ASSIGN(const Matrix own, matrix_of(*node, where));
@@ -256,6 +321,11 @@ class Reader {
     if (mesh == nullptr) return refused(where, fmt::format("there is no mesh {}", node.mesh));
     std::string name = node.name.empty() ? mesh->name : node.name;
     if (name.empty()) name = fmt::format("mesh-{}", node.mesh);
+    remark_on(node.extensions, where), remark_on(mesh->extensions, fmt::format("mesh {}", node.mesh));
+    if (node.skin != -1) remark_once("a skin", where + " is bent by a skin: it is drawn as it is stored");
+    const std::vector<double>& weights = node.weights.empty() ? mesh->weights : node.weights;
+    if (std::ranges::any_of(weights, [](double weight) { return weight != 0; }))
+      remark_once("morph targets", where + " is changed by morph targets: it is drawn without them");
     for (std::size_t i = 0; i < mesh->primitives.size(); ++i) {
       const tinygltf::Primitive& primitive = mesh->primitives[i];
       const int mode = primitive.mode;
@@ -265,51 +335,112 @@ class Reader {
       const std::string made_of = material != nullptr ? material->name : "";
       const std::string of_several =
           mesh->primitives.size() > 1 ? "." + (made_of.empty() ? std::to_string(i) : made_of) : "";
-      GONIO_TRY(place(primitive, matrix, part(name + of_several, made_of),
-                      fmt::format("mesh {}, primitive {}", node.mesh, i)));
+      const std::string primitive_name = fmt::format("mesh {}, primitive {}", node.mesh, i);
+      remark_on(primitive.extensions, primitive_name);
+      const Look look = material != nullptr ? look_of(*material) : Look::kUnknown;
+      GONIO_TRY(place(primitive, matrix, part(name + of_several, made_of, look), primitive_name));
     }
     return {};
   }
 
+  // Light passes a material that transmits half of it or lets a quarter of the background through; metal is polished
+  // where no texture and no coat of paint says otherwise (section 3.9, KHR_materials_transmission).
+  static Look look_of(const tinygltf::Material& material) {
+    const auto transmission = material.extensions.find("KHR_materials_transmission");
+    if (transmission != material.extensions.end() && transmission->second.IsObject()) {
+      const tinygltf::Value& factor = transmission->second.Get("transmissionFactor");
+      if (factor.IsNumber() && factor.GetNumberAsDouble() >= 0.5) return Look::kClear;
+    }
+    const tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
+    if (material.alphaMode == "BLEND" && surface.baseColorFactor.size() == 4 && surface.baseColorFactor[3] <= 0.75)
+      return Look::kClear;
+    const bool polished = surface.metallicFactor >= 0.9 && surface.roughnessFactor <= 0.5 &&
+                          surface.metallicRoughnessTexture.index == -1 &&
+                          !material.extensions.contains("KHR_materials_clearcoat");
+    return polished ? Look::kPolishedMetal : Look::kUnknown;
+  }
+
   // The part of that name and material. A name that comes twice is one part, unless it is made of something else: that
   // gets the name of its material behind its own.
-  std::uint32_t part(std::string name, const std::string& material) {
+  std::uint32_t part(std::string name, const std::string& material, Look look) {
     while (true) {
       const auto [found, is_new] = parts_.try_emplace(name, static_cast<std::uint32_t>(result_.parts.size()));
-      if (is_new) result_.parts.push_back({name, material});
+      if (is_new) result_.parts.push_back({name, material, look});
       if (result_.parts[found->second].material == material) return found->second;
       name += "." + (material.empty() ? "plain" : material);
     }
   }
 
+  // The numbers of a primitive's vertices and corners; empty where it has none.
+  struct Arrays {
+    std::vector<double> positions, normals, texture, indices;
+  };
+
+  // Those of its accessors, but where Draco has packed them.
+  Result<Arrays> arrays_of(const tinygltf::Primitive& primitive, const std::string& where) const {
+    Arrays arrays;
+    struct Wanted {
+      const char* name;
+      std::size_t wide;
+      std::vector<double>& values;
+    };
+    const std::array<Wanted, 3> all = {
+        {{"POSITION", 3, arrays.positions}, {"NORMAL", 3, arrays.normals}, {"TEXCOORD_0", 2, arrays.texture}}};
+    const auto packed = primitive.extensions.find(kDraco);
+    const bool has_draco = packed != primitive.extensions.end() && packed->second.IsObject();
+    const auto id_of = [&](const char* name) {
+      const tinygltf::Value& ids = has_draco ? packed->second.Get("attributes") : tinygltf::Value();
+      return ids.IsObject() && ids.Get(name).IsNumber() ? ids.Get(name).GetNumberAsInt() : -1;
+    };
+    if (has_draco) {
+      std::vector<DracoMesh::Attribute> attributes;
+      std::vector<const Wanted*> which;
+      for (const Wanted& wanted : all)
+        if (const int id = id_of(wanted.name); id >= 0)
+          attributes.push_back({id, wanted.wide}), which.push_back(&wanted);
+      const tinygltf::Value& number = packed->second.Get("bufferView");
+      const auto bytes = number.IsNumber() ? bytes_of_view(number.GetNumberAsInt()) : std::nullopt;
+      auto mesh = bytes ? draco_unpacked(*bytes, attributes, room_) : std::nullopt;
+      if (!mesh)
+        return refused(where, "what it packs by Draco cannot be unpacked: export it again, or without compression");
+      arrays.indices = std::move(mesh->indices);
+      for (std::size_t i = 0; i < which.size(); ++i) which[i]->values = std::move(attributes[i].values);
+      for (const Wanted& wanted : all)
+        for (const double value : wanted.values)
+          if (!std::isfinite(value))
+            return refused(where, fmt::format("a number of its {} is not finite", wanted.name));
+    }
+    for (const Wanted& wanted : all) {
+      const auto found = primitive.attributes.find(wanted.name);
+      if (found == primitive.attributes.end() || id_of(wanted.name) >= 0) continue;
+      GONIO_ASSIGN(wanted.values, accessor(found->second, wanted.wide, where + ", " + wanted.name));
+    }
+    if (arrays.positions.empty() && !primitive.attributes.contains("POSITION"))
+      return refused(where, "has no POSITION");
+    if (has_draco) return arrays;
+    if (primitive.indices != -1) {
+      GONIO_ASSIGN(arrays.indices, accessor(primitive.indices, 1, where + ", indices"));
+    } else {
+      for (std::size_t i = 0; i < arrays.positions.size() / 3; ++i) arrays.indices.push_back(static_cast<double>(i));
+    }
+    return arrays;
+  }
+
   Result<void> place(const tinygltf::Primitive& primitive, const Matrix& matrix, std::uint32_t part,
                      const std::string& where) {
-    if (primitive.extensions.contains(kDraco)) return check_compression(kDraco);
-    const auto attribute = [&](const char* name, std::size_t wide, std::vector<double>& values) -> Result<void> {
-      const auto found = primitive.attributes.find(name);
-      if (found == primitive.attributes.end()) return {};
-      GONIO_ASSIGN(values, accessor(found->second, wide, where + ", " + name));
-      return {};
-    };
-    std::vector<double> positions, normals, texture, indices;
-    if (!primitive.attributes.contains("POSITION")) return refused(where, "has no POSITION");
-    GONIO_TRY(attribute("POSITION", 3, positions));
-    GONIO_TRY(attribute("NORMAL", 3, normals));
-    GONIO_TRY(attribute("TEXCOORD_0", 2, texture));
-    const std::size_t count = positions.size() / 3;
-    if ((!normals.empty() && normals.size() != 3 * count) || (!texture.empty() && texture.size() != 2 * count))
+    GONIO_ASSIGN(const Arrays arrays, arrays_of(primitive, where));
+    const std::size_t count = arrays.positions.size() / 3;
+    const bool with_normals = !arrays.normals.empty(), with_texture = !arrays.texture.empty();
+    if ((with_normals && arrays.normals.size() != 3 * count) || (with_texture && arrays.texture.size() != 2 * count))
       return refused(where, "its attributes have different counts");
-    if (primitive.indices != -1) {
-      GONIO_ASSIGN(indices, accessor(primitive.indices, 1, where + ", indices"));
-    } else {
-      for (std::size_t i = 0; i < count; ++i) indices.push_back(static_cast<double>(i));
-    }
-    for (const double index : indices)
+    for (const double index : arrays.indices)
       if (!(index < static_cast<double>(count)))
         return refused(where, fmt::format("index {} is beyond its {} vertices", index, count));
     const auto first = static_cast<std::uint32_t>(result_.positions.size());
-    GONIO_TRY(add_vertices(positions, normals, texture, matrix, where));
-    return add_faces(indices, primitive.mode, matrix, part, first, !normals.empty(), !texture.empty(), where);
+    GONIO_TRY(add_vertices(arrays.positions, arrays.normals, arrays.texture, matrix, where));
+    // What Draco packs are triangles, whatever they were before.
+    const int mode = primitive.extensions.contains(kDraco) ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+    return add_faces(arrays.indices, mode, matrix, part, first, with_normals, with_texture, where);
   }
 
   Result<void> add_vertices(const std::vector<double>& positions, const std::vector<double>& normals,
@@ -365,47 +496,18 @@ class Reader {
     return {};
   }
 
-  // The bytes of a view; nothing where its buffer has not so many.
-  std::optional<std::string_view> bytes_of_view(const tinygltf::BufferView& view) const {
+  // The bytes of a view, unpacked; nothing where there is no such view, or its buffer has not so many.
+  std::optional<std::string_view> bytes_of_view(int index) const {
+    if (const auto found = unpacked_.find(index); found != unpacked_.end()) return found->second;
+    const tinygltf::BufferView* view = element(model_.bufferViews, index);
+    return view == nullptr ? std::nullopt : bytes_of_buffer(*view);
+  }
+  std::optional<std::string_view> bytes_of_buffer(const tinygltf::BufferView& view) const {
     const tinygltf::Buffer* buffer = element(model_.buffers, view.buffer);
     if (buffer == nullptr) return std::nullopt;
     const std::string_view bytes(reinterpret_cast<const char*>(buffer->data.data()), buffer->data.size());
     if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset) return std::nullopt;
     return bytes.substr(view.byteOffset, view.byteLength);
-  }
-
-  // A number of the component type, and as a share of its largest value where it is normalized (section 3.6.2.2).
-  static double number_at(const char* bytes, int component, bool normalized) {
-    const auto read = [&](auto value, double most) {
-      std::memcpy(&value, bytes, sizeof value);
-      return normalized ? std::max(-1.0, static_cast<double>(value) / most) : static_cast<double>(value);
-    };
-    switch (component) {
-      case TINYGLTF_COMPONENT_TYPE_BYTE:
-        return read(std::int8_t{}, 127);
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-        return read(std::uint8_t{}, 255);
-      case TINYGLTF_COMPONENT_TYPE_SHORT:
-        return read(std::int16_t{}, 32767);
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-        return read(std::uint16_t{}, 65535);
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        return read(std::uint32_t{}, 4294967295.0);
-      default:
-        return read(float{}, 1);
-    }
-  }
-
-  // The bytes of one number of that type; 0 where no mesh has such numbers.
-  static std::size_t bytes_of_number(int component) {
-    const bool known = component >= TINYGLTF_COMPONENT_TYPE_BYTE && component <= TINYGLTF_COMPONENT_TYPE_FLOAT &&
-                       component != TINYGLTF_COMPONENT_TYPE_INT;
-    return known ? static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(component)))
-                 : 0;
-  }
-  static bool is_index(int component) {
-    return component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-           component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
   }
 
   // The numbers of an accessor, `wide` of them to an element. Sparse ones take the place of the others.
@@ -444,7 +546,7 @@ class Reader {
 
   Result<void> read_elements(const Numbers& numbers, const std::string& where, std::vector<double>& values) const {
     const tinygltf::BufferView* view = element(model_.bufferViews, numbers.view);
-    const auto bytes = view == nullptr ? std::nullopt : bytes_of_view(*view);
+    const auto bytes = bytes_of_view(numbers.view);
     const std::size_t one = bytes_of_number(numbers.component), size = one * numbers.wide,
                       stride = view == nullptr || view->byteStride == 0 ? size : view->byteStride;
     if (!bytes || stride < size ||
@@ -485,8 +587,11 @@ class Reader {
   const Source& source_;
   std::string folder_;
   tinygltf::Model model_;
-  std::size_t room_ = 0;  // for corners, and for vertices
+  std::size_t room_ = 0;                 // for corners, and for vertices
+  std::map<int, std::string> unpacked_;  // the bytes of views that were packed, by their numbers
   std::vector<bool> met_;
+  bool hidden_ = false;             // whether a node was
+  std::set<std::string> remarked_;  // what there is a remark on
   std::map<std::string, std::uint32_t> parts_;
   std::int32_t first_normal_ = 0, first_texture_ = 0;  // of the primitive that is placed
   Polygons result_;

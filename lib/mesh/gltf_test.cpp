@@ -1,10 +1,14 @@
 // glTF and GLB files made here, part by part.
+#include <draco/compression/encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <meshoptimizer.h>
 
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <memory>
 
 #include "base/encode.h"
 #include "base/scratch_for_test.h"
@@ -159,10 +163,8 @@ TEST_F(GltfFiles, BadFilesAreOneErrorThatNamesTheElement) {
   EXPECT_THAT(error(document(R"({"mesh":9})", "0")), HasSubstr("there is no mesh 9"));
   EXPECT_THAT(error(document(R"({"mesh":0,"rotation":[0,0,0,0]})", "0")), HasSubstr("no quaternion"));
   EXPECT_THAT(error(document(R"({"mesh":0,"scale":[1,1]})", "0")), HasSubstr("no list of finite numbers"));
-  EXPECT_THAT(error(document(node, "0", R"(,"extensionsRequired":["KHR_draco_mesh_compression"])")),
-              HasSubstr("compressed by Draco"));
   EXPECT_THAT(error(document(node, "0", "", R"(,"extensions":{"KHR_draco_mesh_compression":{}})")),
-              HasSubstr("compressed by Draco"));
+              HasSubstr("mesh 0, primitive 0: what it packs by Draco cannot be unpacked"));
   EXPECT_THAT(error(document(node, "0", R"(,"extensionsRequired":["VENDOR_x"])")), HasSubstr("\"VENDOR_x\""));
   EXPECT_THAT(error(document(node, "0", "", "", "/etc/hostname")), HasSubstr("cannot be read"));
   EXPECT_THAT(error(document(node, "0", "", "", "gone.bin")), HasSubstr("gone.bin"));
@@ -223,6 +225,167 @@ TEST_F(GltfFiles, NumbersThatAreNotFiniteAndIndicesBeyondTheVerticesAreRefused) 
 TEST_F(GltfFiles, InstancesByExtensionAreRefusedByName) {
   EXPECT_THAT(error(document(R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{}}})", "0")),
               HasSubstr("EXT_mesh_gpu_instancing"));
+}
+
+TEST_F(GltfFiles, HiddenNodesAndThoseBelowThemAreNotDrawn) {
+  const std::string hidden = R"(,"extensions":{"KHR_node_visibility":{"visible":false}})",
+                    visible = R"(,"extensions":{"KHR_node_visibility":{"visible":true}})";
+  const auto nodes = [](const std::string& first, const std::string& second) {
+    return R"({"name":"up","children":[1])" + first + R"(},{"name":"below","mesh":0)" + second +
+           R"(},{"name":"beside","mesh":0})";
+  };
+  const auto parts = [&](const std::string& first, const std::string& second) {
+    const auto mesh = read(document(nodes(first, second), "0,2", R"(,"extensionsRequired":["KHR_node_visibility"])"));
+    EXPECT_TRUE(mesh.ok()) << mesh.error().message;
+    return mesh->parts.size();
+  };
+  EXPECT_EQ(parts("", ""), 2U) << "control";
+  EXPECT_EQ(parts(visible, ""), 2U);
+  EXPECT_EQ(parts(hidden, ""), 1U);
+  EXPECT_EQ(parts("", hidden), 1U);
+  EXPECT_EQ(parts(hidden, visible), 1U) << "a hidden node hides those below it";
+  EXPECT_THAT(error(document(R"({"mesh":0)" + hidden + "}", "0")), HasSubstr("KHR_node_visibility hides all"));
+}
+
+TEST_F(GltfFiles, WhatIsNotKnownOfAMeshIsRemarkedOnce) {
+  const auto remarks = [&](const std::string& nodes, const std::string& roots) {
+    const auto mesh = read(document(nodes, roots));
+    EXPECT_TRUE(mesh.ok()) << mesh.error().message;
+    return mesh->remarks;
+  };
+  const std::string strange = R"({"mesh":0,"extensions":{"VENDOR_bend":{}}})";
+  EXPECT_THAT(remarks(strange + "," + strange, "0,1"),
+              testing::ElementsAre(HasSubstr("node 0 has the extension VENDOR_bend")));
+  EXPECT_THAT(remarks(R"({"mesh":0,"weights":[0.5]})", "0"), testing::ElementsAre(HasSubstr("morph targets")));
+  EXPECT_THAT(remarks(R"({"mesh":0,"extensions":{"KHR_lights_punctual":{"light":0}}})", "0"), testing::IsEmpty());
+}
+
+TEST_F(GltfFiles, MaterialsThatAreClearOrOfPolishedMetalAreKnown) {
+  const auto look = [&](const std::string& material) {
+    std::string text = document(R"({"mesh":0})", "0");
+    const std::string red = R"({"name":"Red"})";
+    text.replace(text.find(red), red.size(), R"({"name":"Red",)" + material + "}");
+    const auto mesh = read(text);
+    EXPECT_TRUE(mesh.ok()) << mesh.error().message;
+    return mesh->parts.front().look;
+  };
+  EXPECT_EQ(look(R"("extensions":{"KHR_materials_transmission":{"transmissionFactor":0.9}})"), Look::kClear);
+  EXPECT_EQ(look(R"("alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.3]})"), Look::kClear);
+  EXPECT_EQ(look(R"("pbrMetallicRoughness":{"metallicFactor":1,"roughnessFactor":0.1})"), Look::kPolishedMetal);
+  // A metallic paint has a clear coat; a material that says nothing is rough; an alpha without BLEND means nothing.
+  EXPECT_EQ(look(R"("pbrMetallicRoughness":{"metallicFactor":1,"roughnessFactor":0.1},)"
+                 R"("extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":1}})"),
+            Look::kUnknown);
+  EXPECT_EQ(look(R"("pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.3]})"), Look::kUnknown);
+}
+
+TEST_F(GltfFiles, ANodeFarAwayKeepsTheShapeOfItsMesh) {
+  const auto mesh = read(document(R"({"mesh":0,"translation":[500000.3,0,5400000.7],"scale":[0.1,0.1,0.1]})", "0"));
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  const Box box = bounding_box(*mesh);
+  EXPECT_NEAR(box.high.x - box.low.x, .1, 1e-8);
+  EXPECT_NEAR(box.high.y - box.low.y, .1, 1e-8);
+}
+
+// A file beside which `data` is the only buffer with bytes. The buffer of the views is a fallback without any.
+std::string packed_document(const std::string& data, const std::string& extension, const std::string& views,
+                            const std::string& primitive, const std::string& accessors) {
+  return R"({"asset":{"version":"2.0"},"extensionsRequired":[")" + extension +
+         R"("],"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[)" + primitive +
+         R"(]}],"buffers":[{"byteLength":)" + std::to_string(data.size()) +
+         R"(,"uri":"data:application/octet-stream;base64,)" + base64(data) +
+         R"("},{"byteLength":999,"extensions":{"EXT_meshopt_compression":{"fallback":true}}}],"bufferViews":[)" +
+         views + R"(],"accessors":[)" + accessors + "]}";
+}
+
+// A grid of 9 x 9 points in the plane z = 0, of which each square is two triangles.
+struct Grid {
+  std::vector<float> positions;
+  std::vector<unsigned> indices;
+};
+Grid grid() {
+  Grid made;
+  for (unsigned y = 0; y < 9; ++y)
+    for (unsigned x = 0; x < 9; ++x)
+      made.positions.insert(made.positions.end(), {static_cast<float>(x) / 8, static_cast<float>(y) / 8, 0});
+  for (unsigned y = 0; y < 8; ++y)
+    for (unsigned x = 0; x < 8; ++x) {
+      const unsigned i = 9 * y + x;
+      made.indices.insert(made.indices.end(), {i, i + 1, i + 9, i + 1, i + 10, i + 9});
+    }
+  return made;
+}
+
+double area(const Mesh& mesh) {
+  double sum = 0;
+  for (const auto& [i, j, k] : mesh.triangles)
+    sum += length(cross(mesh.positions[j] - mesh.positions[i], mesh.positions[k] - mesh.positions[i])) / 2;
+  return sum;
+}
+
+// As current exporters write; it was refused.
+TEST_F(GltfFiles, WhatMeshoptimizerPacksIsUnpacked) {
+  const Grid from = grid();
+  std::vector<unsigned char> points(meshopt_encodeVertexBufferBound(81, 12));
+  meshopt_encodeVertexVersion(0);
+  points.resize(meshopt_encodeVertexBuffer(points.data(), points.size(), from.positions.data(), 81, 12));
+  std::vector<unsigned char> corners(meshopt_encodeIndexBufferBound(from.indices.size(), 81));
+  corners.resize(meshopt_encodeIndexBuffer(corners.data(), corners.size(), from.indices.data(), from.indices.size()));
+  std::string data(points.begin(), points.end());
+  data.append(corners.begin(), corners.end());
+  const auto view = [](std::size_t offset, std::size_t size, int stride, std::size_t count, const char* mode) {
+    return fmt::format(R"({{"buffer":1,"byteLength":{},"extensions":{{"EXT_meshopt_compression":{{"buffer":0,)"
+                       R"("byteOffset":{},"byteLength":{},"byteStride":{},"count":{},"mode":"{}"}}}}}})",
+                       static_cast<std::size_t>(stride) * count, offset, size, stride, count, mode);
+  };
+  const auto written = [&](const std::string& bytes, std::size_t count) {
+    return packed_document(bytes, "EXT_meshopt_compression",
+                           view(0, points.size(), 12, count, "ATTRIBUTES") + "," +
+                               view(points.size(), corners.size(), 4, 384, "TRIANGLES"),
+                           R"({"attributes":{"POSITION":0},"indices":1})",
+                           R"({"bufferView":0,"componentType":5126,"count":81,"type":"VEC3"},)"
+                           R"({"bufferView":1,"componentType":5125,"count":384,"type":"SCALAR"})");
+  };
+  const auto mesh = read(written(data, 81));
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  EXPECT_EQ(mesh->triangles.size(), 128U);
+  EXPECT_NEAR(area(*mesh), 1, 1e-12);
+  EXPECT_THAT(error(written(data.substr(1), 81)), HasSubstr("cannot be unpacked"));
+  EXPECT_THAT(error(written(data, 99999999999)), HasSubstr("bufferView 0: what it packs by EXT_meshopt_compression"));
+}
+
+TEST_F(GltfFiles, WhatDracoPacksIsUnpacked) {
+  const Grid from = grid();
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(static_cast<int>(from.indices.size() / 3));
+  const int positions = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  for (std::size_t face = 0; face < from.indices.size() / 3; ++face) {
+    const auto at = [&](std::size_t corner) { return &from.positions[3 * from.indices[3 * face + corner]]; };
+    builder.SetAttributeValuesForFace(positions, draco::FaceIndex(static_cast<std::uint32_t>(face)), at(0), at(1),
+                                      at(2));
+  }
+  const std::unique_ptr<draco::Mesh> packed = builder.Finalize();
+  draco::Encoder encoder;
+  draco::EncoderBuffer buffer;
+  encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, 14);
+  ASSERT_TRUE(encoder.EncodeMeshToBuffer(*packed, &buffer).ok());
+  const std::string data(buffer.data(), buffer.size());
+  const auto written = [&](const std::string& bytes, int id) {
+    return packed_document(
+        bytes, "KHR_draco_mesh_compression", fmt::format(R"({{"buffer":0,"byteLength":{}}})", bytes.size()),
+        fmt::format(R"({{"attributes":{{"POSITION":0}},"indices":1,"extensions":{{)"
+                    R"("KHR_draco_mesh_compression":{{"bufferView":0,"attributes":{{"POSITION":{}}}}}}}}})",
+                    id),
+        R"({"componentType":5126,"count":81,"type":"VEC3"},)"
+        R"({"componentType":5125,"count":384,"type":"SCALAR"})");
+  };
+  const int id = static_cast<int>(packed->attribute(positions)->unique_id());
+  const auto mesh = read(written(data, id));
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  EXPECT_EQ(mesh->triangles.size(), 128U);
+  EXPECT_NEAR(area(*mesh), 1, 1e-3) << "14 bits";
+  EXPECT_THAT(error(written(data.substr(0, data.size() / 2), id)), HasSubstr("cannot be unpacked"));
+  EXPECT_THAT(error(written(data, 77)), HasSubstr("cannot be unpacked"));
 }
 
 // A file of few bytes that places a mesh again and again, which would take all memory.

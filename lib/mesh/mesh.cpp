@@ -208,6 +208,7 @@ std::vector<std::array<std::uint32_t, 3>> triangulated(const std::vector<Vec3>& 
 
 Result<Mesh> mesh_from_polygons(Polygons polygons, const std::string& path) {
   Mesh mesh;
+  mesh.remarks = std::move(polygons.remarks);
   const std::size_t faces = polygons.faces.size();
   if (polygons.corners.size() > std::numeric_limits<std::uint32_t>::max() / 3)
     return input_error("{}: its faces have {} corners, and {} are the most: split it", path, polygons.corners.size(),
@@ -223,7 +224,8 @@ Result<Mesh> mesh_from_polygons(Polygons polygons, const std::string& path) {
   const std::vector<std::uint32_t> order = ordered_by_part(triangles, count_of);
   for (std::size_t part = 0, first = 0; part < count_of.size(); first += count_of[part++]) {
     if (count_of[part] > 0) {
-      mesh.parts.push_back({polygons.parts[part].name, polygons.parts[part].material, first, count_of[part]});
+      const Polygons::Part& named = polygons.parts[part];
+      mesh.parts.push_back({named.name, named.material, first, count_of[part], named.look});
     } else {
       mesh.repairs.parts_dropped.push_back(polygons.parts[part].name);
     }
@@ -262,6 +264,13 @@ Box bounding_box(const Mesh& mesh) {
     }
   }
   return box;
+}
+
+// Up to 8 sizes from the origin a float is within 2^-24 8 = 5e-7 sizes.
+Vec3 float_origin(const Box& box) {
+  constexpr double kNear = 8;
+  const Vec3 middle = 0.5 * (box.low + box.high);
+  return length(middle) > kNear * length(box.high - box.low) ? middle : Vec3{};
 }
 
 namespace {

@@ -11,11 +11,16 @@
 
 namespace goniochrome::mesh {
 
+// What a material is to look like, as far as the file says more than its name: one that light passes, or polished
+// metal.
+enum class Look : std::uint8_t { kUnknown, kClear, kPolishedMetal };
+
 // Triangles of one part are contiguous: [first, first + count). The material is that of the part's first face.
 struct MeshPart {
   std::string name;
   std::string material;
   std::size_t first = 0, count = 0;
+  Look look = Look::kUnknown;
 };
 
 // Indexed triangles, counter-clockwise seen from outside; one unit normal per vertex.
@@ -34,6 +39,7 @@ struct Mesh {
   } repairs;
 
   std::vector<std::array<float, 2>> texture = {};  // u v of each vertex, v up; empty where the file has none
+  std::vector<std::string> remarks = {};           // what the file says of the mesh that is not understood here
 };
 
 struct Box {
@@ -41,13 +47,18 @@ struct Box {
 };
 Box bounding_box(const Mesh& mesh);
 
+// The middle of a box that lies so far from the origin, as in surveyors' coordinates, that floats are coarser there
+// than 1e-6 of its size; else the origin. Whatever narrows positions to floats subtracts it before.
+Vec3 float_origin(const Box& box);
+
 // Reads OBJ, whose parts are its objects (`o`) or else its groups (`g`; a name that comes twice is one part); glTF 2.0
-// or GLB, whose parts are the nodes of the scene with meshes, by their own names or those of the meshes, so that nodes
-// of one name and material are one part (of one name in another material they are a part NAME.MATERIAL), and whose
-// meshes in several materials give a part NAME.MATERIAL for each; or OFF, PLY or STL as a single part. Vertices without
-// a normal get one: the mean over the faces around them, weighted by angle and broken at edges sharper than 60 degrees.
-// Triangles without area are dropped. Both are counted. The ending of the name tells the format; where there is none,
-// as with pipes and standard input, the content does. Errors name file, line and remedy.
+// or GLB, also packed by Draco or meshoptimizer, without what KHR_node_visibility hides, whose parts are the nodes of
+// the scene with meshes, by their own names or those of the meshes, so that nodes of one name and material are one part
+// (of one name in another material they are a part NAME.MATERIAL), and whose meshes in several materials give a part
+// NAME.MATERIAL for each; or OFF, PLY or STL as a single part. Vertices without a normal get one: the mean over the
+// faces around them, weighted by angle and broken at edges sharper than 60 degrees. Triangles without area are dropped.
+// Both are counted. The ending of the name tells the format; where there is none, as with pipes and standard input, the
+// content does. Errors name file, line and remedy.
 Result<Mesh> read_mesh(const std::string& path);
 
 }  // namespace goniochrome::mesh

@@ -83,6 +83,13 @@ TEST_F(MeshFiles, VertexColorsAndStrangersArePassedOver) {
   EXPECT_EQ(mesh->triangles.size(), 1u);
 }
 
+TEST_F(MeshFiles, FreeFormSurfacesAreRemarked) {
+  const std::string form = "cstype bezier\nsurf 0 1 0 1 1 2 3 4\nend\n";
+  EXPECT_THAT(obj(kSquare + "f 1 2 3 4\n" + form)->remarks, testing::ElementsAre(HasSubstr("1 free-form surfaces")));
+  EXPECT_THAT(obj(kSquare + "f 1 2 3 4\n")->remarks, testing::IsEmpty());
+  EXPECT_THAT(obj_error(kSquare + form), HasSubstr("no faces (f lines), but free-form surfaces"));
+}
+
 TEST_F(MeshFiles, ErrorsNameLineValueAndRemedy) {
   EXPECT_EQ(obj_error("v 0 0,5 0\n"),
             "t.obj:1: vertex coordinate 2 is \"0,5\": write a finite number with a decimal point");
@@ -312,6 +319,40 @@ TEST_F(MeshFiles, OffPlyAndStlAreOnePartNamedForTheFile) {
     EXPECT_NEAR(area(*mesh), 1, 1e-15) << name;
     for (const Vec3& n : mesh->normals) EXPECT_EQ(n, (Vec3{0, 0, 1})) << name;
   }
+}
+
+// A small triangle at the coordinates of a surveyor. Where numbers are stored as doubles, or written out, its corners
+// are as far apart as at the origin, to 1e-6 of its size; floats lie .5 apart there.
+TEST_F(MeshFiles, CornersFarFromTheOriginKeepTheirPlaces) {
+  const std::string a = "500000.125 1.25 5400000.25\n", b = "500000.875 1.25 5400000.25\n",
+                    c = "500000.125 1.25 5400000.625\n";
+  std::string binary =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double "
+      "z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const double value : {500000.125, 1.25, 5400000.25, 500000.875, 1.25, 5400000.25, 500000.125, 1.25, 5400000.625})
+    binary.append(reinterpret_cast<const char*>(&value), sizeof value);
+  binary += std::string("\3\0\0\0\0\1\0\0\0\2\0\0\0", 13);
+  const std::pair<const char*, std::string> files[] = {
+      {"far.obj", "v " + a + "v " + b + "v " + c + "f 1 2 3\n"},
+      {"far.off", "OFF\n3 1 0\n" + a + b + c + "3 0 1 2\n"},
+      {"ascii.ply",
+       "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\nelement face "
+       "1\nproperty list uchar int vertex_indices\nend_header\n" +
+           a + b + c + "3 0 1 2\n"},
+      {"binary.ply", binary},
+      {"far.stl", "solid s\nfacet normal 0 0 1\nouter loop\nvertex " + a + "vertex " + b + "vertex " + c +
+                      "endloop\nendfacet\nendsolid s\n"}};
+  for (const auto& [name, content] : files) {
+    const auto mesh = read_mesh(file(name, content));
+    ASSERT_TRUE(mesh.ok()) << name << ": " << mesh.error().message;
+    const Box box = bounding_box(*mesh);
+    EXPECT_NEAR(box.high.x - box.low.x, .75, 1e-6) << name;
+    EXPECT_NEAR(box.high.z - box.low.z, .375, 1e-6) << name;
+    EXPECT_NEAR(area(*mesh), .75 * .375 / 2, 1e-6) << name;
+    EXPECT_EQ(float_origin(box), 0.5 * (box.low + box.high)) << name;
+  }
+  EXPECT_EQ(float_origin({{-1, 0, 2}, {1, 1, 4}}), (Vec3{})) << "a mesh near the origin stays where it is";
 }
 
 // What a pipe holds is told by its content, since its name has no ending.

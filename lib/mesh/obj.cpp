@@ -76,11 +76,12 @@ class Statements {
 
 // How much of everything there is in a chunk, or before it; and which names were given last, if any were.
 struct Census {
-  std::size_t lines = 0, positions = 0, textures = 0, normals = 0;
+  std::size_t lines = 0, positions = 0, textures = 0, normals = 0, free_forms = 0;
   std::optional<std::string> object, group, material;
 
   Census& operator+=(const Census& later) {
     lines += later.lines, positions += later.positions, textures += later.textures, normals += later.normals;
+    free_forms += later.free_forms;
     if (later.object) object = later.object;
     if (later.group) group = later.group;
     if (later.material) material = later.material;
@@ -99,6 +100,7 @@ Census census_of(std::string_view text) {
     if (keyword == "v" && line.size() >= kThreeNumbers) ++census.positions;
     if (keyword == "vn" && line.size() >= kThreeNumbers) ++census.normals;
     if (keyword == "vt") ++census.textures;
+    if (keyword == "surf") ++census.free_forms;
     if (keyword == "o") census.object = trimmed(line);
     if (keyword == "g") census.group = trimmed(line);
     if (keyword == "usemtl") census.material = trimmed(line);
@@ -326,7 +328,12 @@ Result<Polygons> polygons_from_obj(std::string_view text, const Source& source) 
     GONIO_TRY(chunk->ok() ? Result<void>() : Result<void>(chunk->error()));
     corners += (*chunk)->corners.size(), faces += (*chunk)->faces.size();
   }
-  if (faces == 0) return input_error("{}: holds no faces (f lines): there is nothing to draw", source.name);
+  if (faces == 0)
+    return input_error("{}: holds no faces (f lines){}: there is nothing to draw", source.name,
+                       all.free_forms > 0 ? ", but free-form surfaces (surf): export them as faces" : "");
+  if (all.free_forms > 0)
+    mesh.remarks.push_back(
+        fmt::format("{} free-form surfaces (surf lines) are not drawn: export them as faces", all.free_forms));
   FacesJoined joined(mesh, corners, faces);
   for (auto& chunk : read) {
     joined.add(std::move(**chunk));

@@ -75,8 +75,14 @@ void put(ChildOutput& output, const Polygons& polygons) {
   put_all(output, polygons.faces.data(), polygons.faces.size());
   const std::uint64_t parts = polygons.parts.size();
   output.write(&parts, sizeof parts);
-  for (const Polygons::Part& part : polygons.parts)
+  for (const Polygons::Part& part : polygons.parts) {
     for (const std::string* text : {&part.name, &part.material}) put_all(output, text->data(), text->size());
+    const auto look = static_cast<std::uint64_t>(part.look);
+    output.write(&look, sizeof look);
+  }
+  const std::uint64_t remarks = polygons.remarks.size();
+  output.write(&remarks, sizeof remarks);
+  for (const std::string& remark : polygons.remarks) put_all(output, remark.data(), remark.size());
 }
 
 Result<Polygons> polygons_of_bytes(std::string_view content, const std::string& path) {
@@ -87,7 +93,16 @@ Result<Polygons> polygons_of_bytes(std::string_view content, const std::string& 
                bytes.take(polygons.corners) && bytes.take(polygons.faces) && bytes.take_number(parts) &&
                parts <= bytes.left();
   if (whole) polygons.parts.resize(parts);
-  for (Polygons::Part& part : polygons.parts) whole = whole && bytes.take(part.name) && bytes.take(part.material);
+  for (Polygons::Part& part : polygons.parts) {
+    std::uint64_t look = 0;
+    whole = whole && bytes.take(part.name) && bytes.take(part.material) && bytes.take_number(look) &&
+            look <= static_cast<std::uint64_t>(Look::kPolishedMetal);
+    if (whole) part.look = static_cast<Look>(look);
+  }
+  std::uint64_t remarks = 0;
+  whole = whole && bytes.take_number(remarks) && remarks <= bytes.left();
+  if (whole) polygons.remarks.resize(remarks);
+  for (std::string& remark : polygons.remarks) whole = whole && bytes.take(remark);
   if (!whole || !is_whole(polygons))
     return input_error("{}: the library that reads it lost its way: the file is damaged: export it again", path);
   return polygons;

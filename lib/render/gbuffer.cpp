@@ -84,11 +84,11 @@ Result<Rasterizer> Rasterizer::create(const GlContext& gl) {
 
 void Rasterizer::upload(const mesh::Mesh& mesh) {
   const GlContext& gl = *gl_;
-  const auto attribute = [&](GLuint buffer, GLuint index, const std::vector<Vec3>& values) {
+  const auto attribute = [&](GLuint buffer, GLuint index, const std::vector<Vec3>& values, const Vec3& origin) {
     std::vector<float> floats;
     floats.reserve(3 * values.size());
     for (const Vec3& v : values) {
-      for (int axis = 0; axis < 3; ++axis) floats.push_back(static_cast<float>(v[axis]));
+      for (int axis = 0; axis < 3; ++axis) floats.push_back(static_cast<float>(v[axis] - origin[axis]));
     }
     gl.BindBuffer(GL_ARRAY_BUFFER, buffer);
     gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(floats.size() * sizeof(float)), floats.data(),
@@ -98,9 +98,11 @@ void Rasterizer::upload(const mesh::Mesh& mesh) {
   };
   mesh_ = &mesh;
   box_ = mesh::bounding_box(mesh);
+  origin_ = mesh::float_origin(box_);
+  box_ = {box_.low - origin_, box_.high - origin_};
   gl.BindVertexArray(vertex_array_);
-  attribute(positions_, 0, mesh.positions);
-  attribute(normals_, 1, mesh.normals);
+  attribute(positions_, 0, mesh.positions, origin_);
+  attribute(normals_, 1, mesh.normals, {});
   gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
   gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(mesh.triangles[0])),
                 mesh.triangles.data(), GL_STATIC_DRAW);
@@ -132,7 +134,9 @@ Result<void> Rasterizer::resize(int width, int height) {
 
 void Rasterizer::draw(const Camera& camera, const Rays& rays, double shift_x, double shift_y) {
   const GlContext& gl = *gl_;
-  const auto matrix = clip_matrix(camera, rays, width_, height_, box_, shift_x, shift_y);
+  Camera near = camera;
+  near.eye = near.eye - origin_, near.target = near.target - origin_;
+  const auto matrix = clip_matrix(near, rays, width_, height_, box_, shift_x, shift_y);
   drawn_ = rays;
   drawn_.corner += shift_x * rays.right + shift_y * rays.down;
   gl.BindFramebuffer(GL_FRAMEBUFFER, target_);

@@ -121,7 +121,8 @@ class Rasterizer {
   unsigned program_ = 0, vertex_array_ = 0, positions_ = 0, normals_ = 0, indices_ = 0;
   unsigned texture_ = 0, triangles_ = 0, depth_ = 0, target_ = 0;
   int width_ = 0, height_ = 0;
-  mesh::Box box_;
+  mesh::Box box_;     // about the origin below
+  Vec3 origin_ = {};  // of the positions that OpenGL has
 };
 
 }  // namespace goniochrome::render

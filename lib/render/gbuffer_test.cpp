@@ -37,6 +37,27 @@ TEST(Gbuffer, HoldsTheTrianglesThatRaysMeet) {
   EXPECT_GT(differing(Camera::orbit(mesh, 34, 21, 1, 30, 1.5)), seen / 5);
 }
 
+// As at the origin, but for pixels whose center lies on an edge. As floats in the world, corners of a sphere of radius
+// 1 lay on a grid of .5 here.
+TEST(Gbuffer, IsTheSameFarFromTheOrigin) {
+  mesh::Mesh mesh = sphere_mesh(24);
+  auto renderer = Renderer::create();
+  ASSERT_TRUE(renderer.ok());
+  const auto near = renderer->look(mesh, slanted_view(mesh));
+  ASSERT_TRUE(near.ok());
+  const Gbuffer at_origin = **near;
+  for (Vec3& p : mesh.positions) p += Vec3{5e5, 0, 5.4e6};
+  const auto far = renderer->look(mesh, slanted_view(mesh));
+  ASSERT_TRUE(far.ok());
+  int seen = 0, differing = 0;
+  for (std::size_t i = 0; i < at_origin.triangles.size(); ++i) {
+    seen += at_origin.triangles[i] != kNoTriangle;
+    differing += at_origin.triangles[i] != (*far)->triangles[i];
+  }
+  EXPECT_GT(seen, 1000);
+  EXPECT_LE(differing, seen / 100);
+}
+
 // The numbers count through all parts, and what shows no triangle shows no part.
 TEST(Gbuffer, TrianglesBelongToThePartThatIsSeen) {
   const mesh::Mesh mesh = panels_mesh(3);

@@ -1,10 +1,11 @@
 #include "render/trim.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
+#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/angles.h"
 #include "base/text.h"
@@ -14,42 +15,73 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr std::array<std::string_view, 4> kGlass = {"glass", "window", "windshield", "windscreen"};
-constexpr std::array<std::string_view, 9> kBlack = {"tire", "tires", "tyre",      "tyres",    "rubber",
-                                                    "seam", "seams", "underbody", "underside"};
-constexpr std::array<std::string_view, 6> kMetal = {"rim", "rims", "wheel", "wheels", "chrome", "metal"};
+using Words = std::vector<std::string>;
 
-template <std::size_t Count>
-bool has_word_of(const std::string& text, const std::array<std::string_view, Count>& words) {
-  const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
-  const std::string small = lower(text);
-  for (auto at = small.begin(); at != small.end();) {
-    const auto begin = std::find_if(at, small.end(), is_letter), end = std::find_if_not(begin, small.end(), is_letter);
-    if (std::ranges::find(words, std::string_view(begin, end)) != words.end()) return true;
-    at = end;
-  }
-  return false;
+bool is_letter(char c) {
+  return std::isalpha(static_cast<unsigned char>(c)) != 0;
+}
+bool is_capital(char c) {
+  return std::isupper(static_cast<unsigned char>(c)) != 0;
 }
 
-std::optional<paint::LobeFit> finish_of(const std::string& text, bool with_mirror) {
-  paint::LobeFit finish;
-  const auto wear = [&](double reflectance, bool coated) {
-    finish.diffuse = (reflectance / kPi) * color::Rgb{1, 1, 1};
-    if (!coated || !with_mirror) return finish;
-    finish.lobes.push_back({paint::kMirrorExponent, {}, {1, 1, 1}});
-    return brdf::under_coat(finish, brdf::kCoatIndex);
-  };
-  if (has_word_of(text, kGlass)) return wear(0.005, true);
-  if (has_word_of(text, kBlack)) return wear(0.03, false);
-  if (has_word_of(text, kMetal)) return wear(0.2, true);
+// The words of a name in lower case. Words begin at a capital behind a small letter (carWindow), and at the last of
+// several capitals before a small letter (RIMFront).
+Words words_of(const std::string& name) {
+  Words words;
+  bool inside = false;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const bool letter = is_letter(name[i]);
+    const bool small_next = i + 1 < name.size() && is_letter(name[i + 1]) && !is_capital(name[i + 1]);
+    const bool begins = letter && (!inside || (is_capital(name[i]) && (!is_capital(name[i - 1]) || small_next)));
+    if (begins) words.emplace_back();
+    if (letter) words.back() += name[i];
+    inside = letter;
+  }
+  for (std::string& word : words) word = lower(word);
+  return words;
+}
+
+bool has_any(const Words& words, std::initializer_list<std::string_view> wanted) {
+  return std::ranges::any_of(words,
+                             [&](const std::string& word) { return std::ranges::find(wanted, word) != wanted.end(); });
+}
+
+bool has_glass(Words words) {
+  for (std::size_t i = 1; i < words.size(); ++i)
+    if (words[i] == "glass" && (words[i - 1] == "fiber" || words[i - 1] == "fibre")) words[i].clear();
+  return has_any(words, {"glass", "window", "windows", "windshield", "windscreen"});
+}
+
+std::optional<TrimKind> kind_by(const Words& words) {
+  if (has_glass(words)) return TrimKind::kGlass;
+  if (has_any(words, {"tire", "tires", "tyre", "tyres", "rubber", "seam", "seams", "underbody", "underside"}))
+    return TrimKind::kBlack;
+  if (has_any(words, {"rim", "rims", "wheel", "wheels", "chrome", "metal"})) return TrimKind::kMetal;
   return std::nullopt;
 }
 
 }  // namespace
 
+std::optional<TrimKind> trim_kind(const mesh::MeshPart& part) {
+  const Words name = words_of(part.name), material = words_of(part.material);
+  for (const Words& words : {name, material})
+    if (const auto kind = kind_by(words)) return kind;
+  for (const Words& words : {name, material})
+    if (has_any(words, {"paint", "painted", "carpaint", "body"})) return std::nullopt;
+  if (part.look == mesh::Look::kClear) return TrimKind::kGlass;
+  if (part.look == mesh::Look::kPolishedMetal) return TrimKind::kMetal;
+  return std::nullopt;
+}
+
 std::optional<paint::LobeFit> trim_of(const mesh::MeshPart& part, bool with_mirror) {
-  const auto finish = finish_of(part.name, with_mirror);
-  return finish ? finish : finish_of(part.material, with_mirror);
+  const auto kind = trim_kind(part);
+  if (!kind) return std::nullopt;
+  paint::LobeFit finish;
+  const double reflectance = *kind == TrimKind::kGlass ? 0.005 : *kind == TrimKind::kBlack ? 0.03 : 0.2;
+  finish.diffuse = (reflectance / kPi) * color::Rgb{1, 1, 1};
+  if (*kind == TrimKind::kBlack || !with_mirror) return finish;
+  finish.lobes.push_back({paint::kMirrorExponent, {}, {1, 1, 1}});
+  return brdf::under_coat(finish, brdf::kCoatIndex);
 }
 
 }  // namespace goniochrome::render

@@ -7,7 +7,7 @@
 #include "display/paint_view.h"
 #include "image/aov_file.h"
 #include "image/color_space.h"
-#include "sketch/internal/sketch_icc.h"
+#include "image/icc.h"
 
 namespace goniochrome::sketch {
 
@@ -38,7 +38,7 @@ bool is_clipped(const float* pixel, int colors) {
 }
 
 std::vector<std::uint8_t> states(const image::Image& image, bool display) {
-  const int alpha = alpha_channel(image), colors = color_channels(image);
+  const int alpha = alpha_channel(image), colors = image::color_channels(image);
   std::vector<std::uint8_t> state(static_cast<std::size_t>(image.width) * image.height, Picture::kGood);
   for (std::size_t i = 0; i < state.size(); ++i) {
     const float* pixel = &image.data[i * image.channels];
@@ -106,7 +106,7 @@ Result<Picture> picture_of(image::ImagePart part, const std::string& name, Pictu
   if (part.image.channels == 0) return input_error("{}: has no channels", name);
   picture.state = states(part.image, integer);
   drop_to_gray(part.image);
-  if (color_channels(part.image) == 4 && image::text_attribute(part, "ICCProfile").empty()) {
+  if (image::color_channels(part.image) == 4 && image::text_attribute(part, "ICCProfile").empty()) {
     picture.warnings.push_back(fmt::format(
         "{} is CMYK without a profile, converted without regard to its inks: for exact color save it with its profile "
         "or as sRGB",
@@ -115,7 +115,7 @@ Result<Picture> picture_of(image::ImagePart part, const std::string& name, Pictu
     part.attributes["oiio:ColorSpace"] = std::string("sRGB");
   }
   if (!image::text_attribute(part, "ICCProfile").empty() && integer) {
-    GONIO_ASSIGN(picture.rgb, image_through_icc(part.image, image::text_attribute(part, "ICCProfile"), name));
+    GONIO_ASSIGN(picture.rgb, image::image_through_icc(part.image, image::text_attribute(part, "ICCProfile"), name));
     picture.space = "its ICC profile";
   } else {
     tag_untagged(part, integer, is_exr);

@@ -137,19 +137,21 @@ PackedMesh packed_mesh(const mesh::Mesh& mesh, bool with_mirror, PackedNumbers& 
   const double eye_height = std::max({size.x, size.y, size.z}) / 3;
   const Vec3 middle = 0.5 * (box.low + box.high);
   const render::Camera camera = render::Camera::orbit(mesh, kAzimuth_deg, kElevation_deg, 1, kFov_deg, 16.0 / 9);
+  const Vec3 origin = mesh::float_origin(box);  // the page computes in floats
   result.json = {
-      {"low", vector_json(box.low)},
-      {"high", vector_json(box.high)},
+      {"low", vector_json(box.low - origin)},
+      {"high", vector_json(box.high - origin)},
       {"positions", numbers.add(positions)},
       {"normals", numbers.add(normals)},
       {"corners", numbers.add(corners)},
       {"parts", std::move(parts)},
-      {"ground", {{"seen_from", vector_json({middle.x, box.low.y + eye_height, middle.z})}, {"drop", eye_height}}},
+      {"ground",
+       {{"seen_from", vector_json(Vec3{middle.x, box.low.y + eye_height, middle.z} - origin)}, {"drop", eye_height}}},
       {"view",
        {{"azimuth", kAzimuth_deg},
         {"elevation", kElevation_deg},
         {"fov", kFov_deg},
-        {"target", vector_json(camera.target)},
+        {"target", vector_json(camera.target - origin)},
         {"distance", length(camera.eye - camera.target)}}}};
   return result;
 }

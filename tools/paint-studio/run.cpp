@@ -102,6 +102,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   session.explain(plan_text(options));
   GONIO_ASSIGN(const formats::Basis basis, formats::read_basis(options.basis));
   GONIO_ASSIGN(const mesh::Mesh mesh, mesh::read_mesh(options.mesh));
+  for (const std::string& remark : mesh.remarks) session.warn(remark);
   GONIO_ASSIGN(const PackedLibrary paints, packed_paints(options, session));
   GONIO_ASSIGN(const std::string index, paints.index());
   PackedNumbers numbers;

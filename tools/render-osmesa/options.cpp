@@ -22,8 +22,8 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
           "A name without an ending, such as that of a pipe, leaves it to the content to tell the format. Of glTF, as "
           ".gltf or .glb, each node of the scene that has a mesh is a part with the name of the node or else of the "
           "mesh, so that nodes of one name and material are one part; nodes of that name in another "
-          "material are a part NAME.MATERIAL, and so is each material of a mesh in several. Compressed meshes are "
-          "refused.");
+          "material are a part NAME.MATERIAL, and so is each material of a mesh in several. Nodes that "
+          "KHR_node_visibility hides are left out. Meshes packed by Draco or meshoptimizer are unpacked.");
   spec.option("gbuffer", "FILE", "view.exr", &o.gbuffer, "shade the buffers of an earlier picture instead of a mesh")
       .more(
           "The file is an EXR that was made with --aov normal,part. Its buffers and its attributes goniochrome:rays, "
@@ -52,8 +52,11 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
   spec.flag("trim", &o.trim, "dress glass, tires, rims, seams and the underside instead of painting them")
       .more(
           "Parts are known by words in their names or materials, such as glass, window, tire, rubber, rim, chrome, "
-          "seam and underbody. Glass is black under a coat, rubber, seams and the underside are matt black, and rims "
-          "and metal are gray under a coat. --part goes before --trim, and --trim before --paint.");
+          "seam and underbody. Words are parted by all signs but letters, and by capitals, as in WindowGlass1. Where "
+          "no word tells, a glTF material does that transmits light, is transparent or is polished metal without a "
+          "clear coat, unless its name speaks of paint or body. A line says what was recognized. Glass is black under "
+          "a coat, rubber, seams and the underside are matt black, and rims and metal are gray under a coat. --part "
+          "goes before --trim, and --trim before --paint.");
   spec.option("split", "PAINT,PAINT", "a.xml#red,a.xml#blue", &o.split, "draw the halves of the picture in two paints")
       .more("Both stand in the place of --paint: the first on the left, the second on the right.");
   spec.option("texture", "PART=FILE[,WORD=VALUE]", "Hood=flakes.exr,project=decal,axis=y", &o.textures,

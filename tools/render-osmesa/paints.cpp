@@ -243,6 +243,7 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool
   for (std::size_t part = 0; options.trim && part < mesh.parts.size(); ++part) {
     const auto trim = render::trim_of(mesh.parts[part], with_mirrors);
     if (!trim) continue;
+    result.trim.push_back(part);
     result.paints[part] = *trim, result.gloss_deg[part] = kUnreadGlossDeg;
     result.anisotropy[part] = {}, result.surfaces[part] = {}, result.names[part] = "trim";
     result.worn[part].reset();

@@ -33,6 +33,7 @@ struct DressedMesh {
   std::vector<LaidTexture> laid;
   std::vector<bool> panes;             // for each part, whether it is clear glass that is seen through
   std::vector<std::string> unplaced;   // parts of --texture without texture coordinates, of which nothing was said
+  std::vector<std::size_t> trim;       // the parts that --trim recognized
   std::vector<std::string> unpainted;  // names of the parts that wear the gray of unpainted parts
 };
 

@@ -9,10 +9,12 @@
 #include "base/text.h"
 #include "envmap/open_maps.h"
 #include "image/aov_file.h"
+#include "image/image.h"
 #include "mesh/unit.h"
 #include "prefilter/lobe_tree.h"
 #include "render/aov.h"
 #include "render/panes.h"
+#include "render/trim.h"
 #include "spectra.h"
 #include "stream.h"
 
@@ -40,6 +42,31 @@ void tell_repairs(const mesh::Mesh& mesh, cli::Session& session) {
   if (repairs.normals_made > 0) {
     session.say(fmt::format("{} of {} vertices had no normal and got one", repairs.normals_made, mesh.normals.size()));
   }
+  for (const std::string& remark : mesh.remarks) session.warn(remark);
+}
+
+// What --trim took parts for, each kind with the names of its first parts.
+void tell_trim(const mesh::Mesh& mesh, const DressedMesh& dress, cli::Session& session) {
+  if (dress.trim.empty())
+    return session.warn(
+        fmt::format("--trim recognized none of {} parts: give them names with words such as glass, tire or rim, or "
+                    "dress them by --part",
+                    mesh.parts.size()));
+  constexpr std::size_t kMost = 4;
+  std::string told;
+  for (const auto& [kind, word] : {std::pair{render::TrimKind::kGlass, "glass"},
+                                   {render::TrimKind::kBlack, "black"},
+                                   {render::TrimKind::kMetal, "metal"}}) {
+    std::vector<std::string> names;
+    for (const std::size_t part : dress.trim)
+      if (render::trim_kind(mesh.parts[part]) == kind) names.push_back(mesh.parts[part].name);
+    if (names.empty()) continue;
+    const std::size_t more = names.size() - std::min(names.size(), kMost);
+    names.resize(names.size() - more);
+    told += fmt::format("{}{} on {}{}", told.empty() ? "" : "; ", word, joined(names, ", "),
+                        more > 0 ? fmt::format(" and {} more", more) : "");
+  }
+  session.say(fmt::format("--trim: {}: {} of {} parts", told, dress.trim.size(), mesh.parts.size()));
 }
 
 void tell_parts(const mesh::Mesh& mesh, const DressedMesh& dress, bool streamed, cli::Session& session) {
@@ -103,7 +130,7 @@ Result<Source> source_of(const Options& options, const render::Scene& scene, cli
   std::string missing = "is not there";
   for (const std::string& path : candidates) {
     const bool is_pattern = path.find("{face}") != std::string::npos;
-    const bool there = is_pattern ? envmap::face_paths(path).ok() : is_plain_file(path);
+    const bool there = is_pattern ? envmap::face_paths(path).ok() : is_plain_file(image::image_file(path));
     if (!there && options.check_source.empty()) continue;
     GONIO_ASSIGN(envmap::Environment environment,
                  envmap::Environment::read(path, envmap::Environment::BadPixels::kZero));
@@ -276,6 +303,7 @@ Result<void> set_stage(const Options& options, Request& request, Stage& stage, c
   Options base = options;
   if (is_stream(options)) base.paint.clear();  // its paints come one by one
   GONIO_TRY(dress_stage(base, stage));
+  if (options.trim) tell_trim(stage.mesh, stage.dresses.front(), session);
   tell_parts(stage.mesh, stage.dresses.front(), is_stream(options), session);
   render::Scene& scene = stage.scene;
   scene.mesh = &stage.mesh;

@@ -13,4 +13,7 @@ namespace goniochrome::image {
 // is, if that can be told, and what to convert it to. `name` is what errors call the file.
 Result<std::string> content_format(std::string_view content, const std::string& name);
 
+// The EXIF orientation of a WebP file, which OpenImageIO does not read; 1 where there is none.
+int webp_orientation(std::string_view content);
+
 }  // namespace goniochrome::image

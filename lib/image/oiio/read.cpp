@@ -9,6 +9,7 @@
 
 #include "image/internal/exr.h"
 #include "image/internal/oiio_module.h"
+#include "image/internal/turn.h"
 #include "image/oiio/cmyk_jpeg.h"
 
 namespace {
@@ -82,6 +83,9 @@ void read(const Source& source, void* context, GoniochromeOiioTake take, Gonioch
   } else if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data())) {
     return fail(context, input->geterror().c_str());
   }
+
+  if (const auto turn = goniochrome::image::exif_turn(spec.get_int_attribute("Orientation", 1)); turn.any())
+    pixels = goniochrome::image::upright(pixels, spec.width, spec.height, spec.nchannels, turn);
 
   std::vector<const char*> names;
   for (const std::string& name : spec.channelnames) names.push_back(name.c_str());

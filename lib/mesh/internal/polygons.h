@@ -27,6 +27,7 @@ struct Polygons {
   };
   struct Part {
     std::string name, material;
+    Look look = Look::kUnknown;
   };
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;                  // unit
@@ -34,6 +35,7 @@ struct Polygons {
   std::vector<Corner> corners;
   std::vector<Face> faces;
   std::vector<Part> parts;
+  std::vector<std::string> remarks;
 };
 
 // Where the bytes of a mesh come from.

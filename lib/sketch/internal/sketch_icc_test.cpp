@@ -1,5 +1,5 @@
 // Profiles are made here by Little CMS or byte by byte; what they mean is computed by the formulas they were made from.
-#include "sketch/internal/sketch_icc.h"
+#include "image/icc.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +12,7 @@
 #include <functional>
 
 #include "color/color.h"
+#include "image/color_space.h"
 #include "sketch/sketch_picture.h"
 
 namespace goniochrome::sketch::sketch_icc_test {
@@ -345,6 +346,21 @@ TEST_F(CmykFile, InksWithoutAProfileAreFiltersAndAWarningSaysSo) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel(picture->rgb, 0)[c], color::rec2020_from_rec709(signals)[c], 1e-5);
   EXPECT_TRUE(image::read_image(file("again.tif", tiff("")))->image.channels ==
               3);  // who does not ask for inks gets RGB
+}
+
+// Environments, photographs and textures with a profile were read as if they had none.
+TEST(IccProfile, TellsTheColorsOfEveryPicture) {
+  image::ImagePart part{"", {1, 1, 3, {.5F, .5F, .5F}, {"R", "G", "B"}}, {{"goniochrome:integer", 1}}};
+  EXPECT_NEAR(image::working_space_rgb(part, "x")->data[1], .5, 1e-6) << "control: linear where nothing tells";
+  part.attributes["ICCProfile"] = rgb_profile(cmsBuildGamma(nullptr, 1.8));
+  EXPECT_NEAR(image::working_space_rgb(part, "x")->data[1], std::pow(.5, 1.8), 1e-3);
+  // Floats may be brighter than white.
+  part.attributes["goniochrome:integer"] = 0, part.attributes["ICCProfile"] = rgb_profile(cmsBuildGamma(nullptr, 1));
+  part.image.data = {4, 4, 4};
+  EXPECT_NEAR(image::working_space_rgb(part, "x")->data[1], 4, 1e-2);
+  // A profile of inks says nothing of the RGB that another library made of them.
+  part.attributes["goniochrome:inks"] = 1;
+  EXPECT_NEAR(image::working_space_rgb(part, "x")->data[1], 4, 1e-6);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 // since each signal passes its own curve and a matrix follows. Therefore the curve of each channel is tabulated once,
 // at 4097 signals, and a pixel is the sum of three look-ups times their colors: 13 ns. A picture with a table profile
 // passes Little CMS pixel by pixel.
-#include "sketch/internal/sketch_icc.h"
+#include "image/icc.h"
 
 #include <lcms2.h>
 
@@ -21,7 +21,7 @@
 #include "base/parallel.h"
 #include "color/color.h"
 
-namespace goniochrome::sketch {
+namespace goniochrome::image {
 
 namespace {
 
@@ -132,9 +132,9 @@ struct AdditiveLight {
 
 // Calls row(signals, light) for each row of the image.
 template <class Row>
-image::Image rows_converted(const image::Image& from, const Row& row) {
+Image rows_converted(const Image& from, const Row& row) {
   const auto width = static_cast<std::size_t>(from.width), channels = static_cast<std::size_t>(from.channels);
-  image::Image to = {from.width, from.height, 3, {}, {}};
+  Image to = {from.width, from.height, 3, {}, {}};
   to.data.resize(width * from.height * 3);
   parallel_for(static_cast<std::size_t>(from.height), kConvertedRows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) row(&from.data[y * width * channels], &to.data[y * width * 3]);
@@ -143,12 +143,12 @@ image::Image rows_converted(const image::Image& from, const Row& row) {
 }
 
 // The signals of a gray image stand for all channels of the profile.
-std::size_t signal_step(const image::Image& image) {
+std::size_t signal_step(const Image& image) {
   return color_channels(image) == 1 ? 0 : 1;
 }
 
 template <std::size_t kChannels>
-image::Image through_curves(const image::Image& from, const SignalsToLight& to_light) {
+Image through_curves(const Image& from, const SignalsToLight& to_light) {
   const AdditiveLight<kChannels> light_of(to_light);
   const std::size_t step = signal_step(from);
   return rows_converted(from, [&](const float* signals, float* light) {
@@ -156,7 +156,7 @@ image::Image through_curves(const image::Image& from, const SignalsToLight& to_l
   });
 }
 
-image::Image pixel_by_pixel(const image::Image& from, const SignalsToLight& to_light) {
+Image pixel_by_pixel(const Image& from, const SignalsToLight& to_light) {
   const std::size_t step = signal_step(from);
   return rows_converted(from, [&](const float* pixel, float* light) {
     std::vector<float> signals;
@@ -166,8 +166,8 @@ image::Image pixel_by_pixel(const image::Image& from, const SignalsToLight& to_l
   });
 }
 
-image::Image converted(const image::Image& from, const Profile& profile, const SignalsToLight& to_light) {
-  if (!is_additive(profile)) return pixel_by_pixel(from, to_light);
+Image converted(const Image& from, const Profile& profile, const SignalsToLight& to_light, bool whole_numbers) {
+  if (!is_additive(profile) || !whole_numbers) return pixel_by_pixel(from, to_light);
   return to_light.channels() == 1 ? through_curves<1>(from, to_light) : through_curves<3>(from, to_light);
 }
 
@@ -177,14 +177,15 @@ const char* pixels_name(int channels) {
 
 }  // namespace
 
-int color_channels(const image::Image& image) {
+int color_channels(const Image& image) {
   const auto& names = image.channel_names;
   constexpr const char* kInks[] = {"C", "M", "Y", "K"};
   if (names.size() >= 4 && std::equal(std::begin(kInks), std::end(kInks), names.begin())) return 4;
   return image.channels < 3 ? 1 : 3;
 }
 
-Result<image::Image> image_through_icc(const image::Image& image, const std::string& bytes, const std::string& name) {
+Result<Image> image_through_icc(const Image& image, const std::string& bytes, const std::string& name,
+                                bool whole_numbers) {
   const auto damaged = [&] { return input_error("{}: its ICC profile is damaged: convert the image to sRGB", name); };
   const Profile profile(cmsOpenProfileFromMem(bytes.data(), static_cast<cmsUInt32Number>(bytes.size())));
   if (!profile || bytes.size() < 20) return damaged();
@@ -207,10 +208,10 @@ Result<image::Image> image_through_icc(const image::Image& image, const std::str
   Transform transform(cmsCreateTransform(profile.get(), kFormats[channels], pcs.get(), TYPE_XYZ_FLT,
                                          INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOCACHE));  // rows run side by side
   if (!transform) return damaged();
-  image::Image light =
-      converted(image, profile, SignalsToLight(std::move(transform), static_cast<std::size_t>(channels)));
+  Image light = converted(image, profile, SignalsToLight(std::move(transform), static_cast<std::size_t>(channels)),
+                          whole_numbers);
   if (!std::ranges::all_of(light.data, [](float v) { return std::isfinite(v); })) return damaged();
   return light;
 }
 
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::image
