@@ -51,39 +51,25 @@ std::string gltf_text(const OneLobe& p, const Naming& naming, const Shown& shown
         {"KHR_materials_specular",
          {{"specularFactor", p.strength}, {"specularColorFactor", {p.specular.x, p.specular.y, p.specular.z}}}}}},
       {"extras", gltf_extras(naming, shown)}};
-  Json used = {"KHR_materials_ior", "KHR_materials_specular"};
-  if (p.clearcoat > 0) {
+  if (p.clearcoat > 0)
     material["extensions"]["KHR_materials_clearcoat"] = {{"clearcoatFactor", p.clearcoat},
                                                          {"clearcoatRoughnessFactor", p.clearcoat_roughness}};
-    used.push_back("KHR_materials_clearcoat");
-  }
-  if (p.film > 0) {
+  if (p.film > 0)
     material["extensions"]["KHR_materials_iridescence"] = {
         {"iridescenceFactor", p.film}, {"iridescenceIor", p.film_index}, {"iridescenceThicknessMaximum", p.film_nm}};
-    used.push_back("KHR_materials_iridescence");
-  }
-  return gltf_sphere(material, used, naming);
+  return gltf_sphere(material, naming);
 }
 
 Result<Material> gltf_material(const paint::Paint& fitted, const Naming& naming) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
-  const auto shown_of = [&paint](const OneLobe& p) {
-    return shown(paint, [&](const Vec3& light, const Vec3& view) {
-      return color::rec2020_from_rec709(seen_by_gltf(p, light, view));
-    });
-  };
-  OneLobe p = rounded(nearest_one_lobe(paint, seen_by_gltf, Searched::kStrengthToo));
-  Material material;
-  material.shown = shown_of(p);
+  NearestLobe nearest = nearest_of(paint, seen_by_gltf, {Searched::kStrengthToo});
   // A film costs every viewer time, and what does not turn its hue has no use for it.
-  if (material.shown.de00_mean > kLeastGainByFilm) {
-    const OneLobe with_film = rounded(nearest_with_film(paint, seen_by_gltf, p));
-    const Shown shown_with_film = shown_of(with_film);
-    if (shown_with_film.de00_mean < material.shown.de00_mean - kLeastGainByFilm)
-      p = with_film, material.shown = shown_with_film;
+  if (nearest.shown.de00_mean > kLeastGainByFilm) {
+    const OneLobe with_film = rounded(nearest_with_film(paint, seen_by_gltf, nearest.parameters));
+    const Shown shown_with_film = shown_by(paint, seen_by_gltf, with_film);
+    if (shown_with_film.de00_mean < nearest.shown.de00_mean - kLeastGainByFilm) nearest = {with_film, shown_with_film};
   }
-  material.bytes = gltf_text(p, naming, material.shown);
-  return material;
+  return Material{gltf_text(nearest.parameters, naming, nearest.shown), nearest.shown};
 }
 
 }  // namespace

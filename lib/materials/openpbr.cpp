@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include "base/angles.h"
 #include "materials/internal/dielectric_layer.h"
@@ -114,19 +113,11 @@ ShaderInputs inputs_of(const OneLobe& p) {
 
 Result<Material> openpbr_material(const paint::Paint& fitted, const Naming& naming, bool usd) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
-  std::optional<OneLobe> nearest;
-  Shown least;
-  for (const Searched searched : {Searched::kStrengthToo, Searched::kMetalnessToo}) {
-    const OneLobe p = rounded(nearest_one_lobe(paint, seen_by_openpbr, searched));
-    const Shown now = shown(paint, [&](const Vec3& light, const Vec3& view) {
-      return color::rec2020_from_rec709(seen_by_openpbr(p, light, view));
-    });
-    if (!nearest || now.de00_mean < least.de00_mean) nearest = p, least = now;
-  }
-  const ShaderInputs inputs = inputs_of(*nearest);
+  const NearestLobe nearest = nearest_of(paint, seen_by_openpbr, {Searched::kStrengthToo, Searched::kMetalnessToo});
+  const ShaderInputs inputs = inputs_of(nearest.parameters);
   return Material{usd ? usda_of_shader("ND_open_pbr_surface_surfaceshader", "mtlx:surface", "", inputs, naming)
                       : mtlx_of_shader("open_pbr_surface", "1.39", inputs, naming),
-                  least};
+                  nearest.shown};
 }
 
 }  // namespace

@@ -40,10 +40,8 @@ std::string standard_text(const OneLobe& p, const Naming& naming) {
 
 Result<Material> standard_surface_material(const paint::Paint& fitted, const Naming& naming) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
-  const OneLobe p = rounded(nearest_one_lobe(paint, seen_by_standard, Searched::kStrengthToo));
-  return Material{standard_text(p, naming), shown(paint, [&](const Vec3& light, const Vec3& view) {
-                    return color::rec2020_from_rec709(seen_by_standard(p, light, view));
-                  })};
+  const NearestLobe nearest = nearest_of(paint, seen_by_standard, {Searched::kStrengthToo});
+  return Material{standard_text(nearest.parameters, naming), nearest.shown};
 }
 
 }  // namespace

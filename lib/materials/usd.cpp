@@ -50,10 +50,8 @@ std::string usd_text(const OneLobe& p, const Naming& naming) {
 
 Result<Material> usd_material(const paint::Paint& fitted, const Naming& naming) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
-  const OneLobe p = rounded(nearest_one_lobe(paint, seen_by_usd, Searched::kColorsAndRoughness));
-  return Material{usd_text(p, naming), shown(paint, [&](const Vec3& light, const Vec3& view) {
-                    return color::rec2020_from_rec709(seen_by_usd(p, light, view));
-                  })};
+  const NearestLobe nearest = nearest_of(paint, seen_by_usd, {Searched::kColorsAndRoughness});
+  return Material{usd_text(nearest.parameters, naming), nearest.shown};
 }
 
 }  // namespace

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <optional>
 
 #include "base/angles.h"
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "prefilter/exact_lobe.h"
-#include "prefilter/internal/arc_sums.h"
 #include "prefilter/internal/bright_texels.h"
 #include "prefilter/internal/harmonic_grid.h"
 #include "prefilter/internal/harmonics.h"
@@ -37,15 +35,12 @@ constexpr double kSharpestWide = 20;
 // The tolerance below which kWideDegree degrees do not serve exponent 1. In one room the bound left 4 of 384 texels at
 // 5e-5, 49 at 2e-5 and 77 at 1e-5; in another 0, 0 and 10.
 constexpr double kBent = 2e-5;
-// The tolerance below which arcs take the place of bands for it.
-constexpr double kArcs = 4e-6;
-// The same for exponent 0, whose arcs are themselves good to 2e-5 of the mean (theory: Arcs).
-constexpr double kArcsOfSteps = 5e-5;
 // The tolerance above which such harmonics serve exponents below 1. For 0.3 the bound left 14 of 96 texels at 1e-3, 16
 // at 5e-4 and 48 at 2e-4, each to be done by blocks.
 constexpr double kFlatLobes = 5e-4;
-// The tolerance up to which bands beside the horizon take their place, where the map has rows.
-constexpr double kBands = 2e-3;
+// The tolerance up to which bands beside the horizon take their place, where the map has rows. For 0 at 1e-2 the bound
+// left 412 of 6144 texels in one of five measured maps, and for 0.3 at 1e-4 between 240 and all of them.
+constexpr double kBands = 2e-2;
 // Radians: larger texels are cut. BrightTexels takes t as linear over a texel of radius r that the edge cuts, and errs
 // by r/5 of what the texel adds there, which at this size is 0.4 % of 2 % of its flux for exponent 1.
 constexpr double kFlatTexel = 0.03;
@@ -67,13 +62,6 @@ constexpr double kPeak = 16;
 constexpr double kDark = 0.03;
 
 using Method = LobePlan::Method;
-
-// Whether arc_sums() can take the place of harmonics: on lat-long maps, for the kernels whose arcs are sums.
-bool arcs_serve(const envmap::Environment& env, const ZonalKernel& kernel, double tolerance) {
-  using Shape = ZonalKernel::Shape;
-  return env.layout() == envmap::Environment::Layout::kLatLong &&
-         (kernel.shape() == Shape::kCosine || (kernel.shape() == Shape::kStep && tolerance > kArcsOfSteps));
-}
 
 // What the method may err by: the tolerance less what the file's rounding takes.
 double method_tolerance(double tolerance) {
@@ -105,16 +93,13 @@ LobePlan lobe_plan(const envmap::Environment& env, const PrefilterRequest& reque
   // Half of the method's share goes to the degrees left out, relative to the floor.
   plan.degree = sufficient_degree(*plan.kernel, 0.5 * tolerance * kErrorFloor, kMostDegree);
   plan.predicted_error = rounding_error(request.tolerance) + tolerance;
-  const bool arcs = arcs_serve(env, *plan.kernel, tolerance);
   if (plan.degree >= 0) return plan;
   plan.degree = 0;
   const bool bent = plan.exponent < 1 ? tolerance <= kBands : plan.exponent == 1 && tolerance < kBent;
-  if (arcs && tolerance < kArcs) {
-    plan.method = Method::kArcs;
-  } else if (bent && dynamic_cast<const CosineKernel*>(plan.kernel.get()) && HorizonBand::serves(env)) {
+  if (bent && dynamic_cast<const CosineKernel*>(plan.kernel.get()) && HorizonBand::serves(env)) {
     plan.method = Method::kHorizon;
     plan.degree = kWideDegree;
-  } else if (plan.kernel->edge().exists() && (plan.exponent >= 1 || arcs || tolerance > kFlatLobes) &&
+  } else if (plan.kernel->edge().exists() && (plan.exponent >= 1 || tolerance > kFlatLobes) &&
              plan.exponent < kSharpestWide) {
     plan.method = Method::kBrightHarmonics;
     plan.degree = kWideDegree;
@@ -298,14 +283,6 @@ class WideLobe {
       : plan_(plan), tolerance_(tolerance), shop_(shop), mean_((1 / (4 * kPi)) * shop.flux()) {}
 
   std::vector<float> values() {
-    if (plan_.method == Method::kArcs) {
-      const envmap::SphereGrid grid = shop_.grid(plan_.size);
-      std::vector<std::size_t> all(static_cast<std::size_t>(grid.width()) * static_cast<std::size_t>(grid.height()));
-      std::iota(all.begin(), all.end(), std::size_t{0});
-      std::vector<float> texels(3 * all.size());
-      one_by_one(all, texels);
-      return texels;
-    }
     const Vec3 darkest = darkest_value();
     if (plan_.method == Method::kHorizon) return with_band(darkest);
     const std::vector<int> degrees = {64, 96, 128, 192, 256, 384, kWideDegree};
@@ -411,15 +388,11 @@ class WideLobe {
     for (const std::size_t i : chosen)
       directions.push_back(
           shop_.turn().to_environment(grid.direction(static_cast<int>(i % width), static_cast<int>(i / width))));
-    const bool by_arcs = arcs_serve(shop_.environment(), *plan_.kernel, tolerance_);
-    const LobeTree* tree = by_arcs ? nullptr : &shop_.tree();
-    std::vector<Vec3> values(chosen.size());
-    if (by_arcs) values = arc_sums(shop_.fine(), shop_.bright().rest(), *plan_.kernel, directions, tolerance_);
+    const LobeTree& tree = shop_.tree();
     parallel_for(chosen.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        values[i] +=
-            tree ? tree->lobe(directions[i], *plan_.kernel, tolerance_) : bright_lobe(directions[i], values[i]);
-        for (int c = 0; c < 3; ++c) texels[3 * chosen[i] + c] = static_cast<float>(std::max(0.0, values[i][c]));
+        const Vec3 value = tree.lobe(directions[i], *plan_.kernel, tolerance_);
+        for (int c = 0; c < 3; ++c) texels[3 * chosen[i] + c] = static_cast<float>(std::max(0.0, value[c]));
       }
     });
   }
@@ -453,7 +426,6 @@ std::vector<float> lobe_by_plan(const LobePlan& plan, double tolerance, Workshop
       return lobe_values(shop.harmonics(), plan.kernel->multipliers(plan.degree), shop.angles(plan.size),
                          taps(shop.flux(), shop.largest(), *plan.kernel, tolerance));
     case Method::kBrightHarmonics:
-    case Method::kArcs:
     case Method::kHorizon:
       return WideLobe(plan, tolerance, shop).values();
     case Method::kLocal:
@@ -479,8 +451,6 @@ const char* method_name(Method method) {
       return "harmonics";
     case Method::kBrightHarmonics:
       return "harmonics+bright";
-    case Method::kArcs:
-      return "arcs+bright";
     case Method::kHorizon:
       return "harmonics+horizon";
     case Method::kLocal:

@@ -36,7 +36,6 @@ struct LobePlan {
   enum class Method {
     kHarmonics,        // zonal harmonics with a bound on what is left out
     kBrightHarmonics,  // the same for the rest after the brightest texels; texels beyond the bound by blocks
-    kArcs,             // exponent 1 of the rest by sums along rows, and the brightest texels
     kHorizon,  // exponents up to 1: harmonics of a smoother kernel, bands beside the horizon, the brightest texels
     kLocal,    // sums over the texels that a sharp lobe reaches
     kBlocks,   // the tree of texel blocks

@@ -10,13 +10,11 @@
 #include "brdf/gloss.h"
 #include "brdf/lobe_model.h"
 #include "display/paint_view.h"
-#include "math/statistics.h"
 #include "paint/curve.h"
 #include "sketch/internal/sketch_curve.h"
 #include "sketch/internal/sketch_gloss.h"
-#include "sketch/internal/sketch_regions.h"
+#include "sketch/internal/sketch_residual.h"
 #include "sketch/internal/sketch_search.h"
-#include "sketch/internal/sketch_trust.h"
 #include "sketch/internal/view_angles.h"
 
 namespace goniochrome::sketch {
@@ -28,30 +26,12 @@ constexpr std::size_t kFewestCells = 8, kChunk = 8192;
 constexpr double kFace_deg = 15;                              // the least of the export angles
 constexpr double kReach_deg = 2;                              // an angle this close to one seen counts as seen
 constexpr std::size_t kSearchCells = 700, kFirstCells = 400;  // that the answer and the way to it look at
-constexpr double kTrustTo_deg = 113;                          // beyond it, no pixel is asked whether it shows a row
 constexpr double kSameCost = 1.05, kSameCostBy = 0.005;  // costs of two values of gloss that the pixels cannot tell
 
-constexpr std::size_t kMostPixels = 6000;    // of an environment's picture, looked at for the answer; more change it by
-                                             // less than 0.05 dE
-constexpr std::size_t kFirstPixels = 1000;   // and on the way to it
-constexpr std::size_t kRegionPixels = 2000;  // where the paints of regions are compared
+constexpr std::size_t kMostPixels = 6000;   // of an environment's picture, looked at for the answer; more change it by
+                                            // less than 0.05 dE
+constexpr std::size_t kFirstPixels = 1000;  // and on the way to it
 constexpr std::size_t kFewestPixels = 30;
-
-// How well a paint explains the pixels: RMS and median of the differences, and all of them where asked for.
-// difference(i) is that of the i-th used pixel. The figures come from some kJudged pixels.
-template <class Difference>
-void judge_sketch(std::size_t count, bool all, Difference&& difference, SketchFit& fit) {
-  constexpr std::size_t kJudged = 20000;
-  const std::size_t step = all ? 1 : std::max<std::size_t>(1, count / kJudged);
-  std::vector<float> values;
-  for (std::size_t i = 0; i < count; i += step) values.push_back(static_cast<float>(difference(i)));
-  if (values.empty()) return;
-  double squares = 0;
-  for (const float value : values) squares += static_cast<double>(value) * value;
-  fit.rms_de76 = std::sqrt(squares / static_cast<double>(values.size()));
-  if (all) fit.de76 = values;
-  fit.median_de76 = math::median(std::move(values));
-}
 
 // What of a color the edited picture could show.
 color::Rgb as_displayed(const color::Rgb& rgb, const SketchInput& input) {
@@ -69,7 +49,6 @@ void fall_back(const color::Rgb& color, const std::string& reason, SketchFit& fi
   fit.appearance = {lab, lab, 60, std::nullopt};
   fit.rows = paint::rows_of(fit.appearance);
   fit.extrapolated_deg.clear();
-  fit.unsure.clear();
 }
 
 // Rows, face, flop, travel, gloss and condition of a search.
@@ -82,6 +61,26 @@ void take_found(const FoundPaint& found, SketchFit& fit) {
   fit.gloss_60_gu = paint.gloss.front().gloss_units;
   fit.gloss_from = "search";
   fit.condition = found.search.condition;
+}
+
+// Rows are read off the lobes that were found where is_told(angle) and where they differ from those of face, flop and
+// travel: a curve of few numbers misses what the lobes show where the paint does not follow one. Export angles without
+// a row get one.
+void take_shown(const formats::Basis& basis, const PaintWeights& weights, double coat_index,
+                const std::function<bool(double angle_deg)>& is_told, SketchFit& fit) {
+  constexpr double kApart_de00 = 1;  // lobes fitted to a designed curve miss it by less
+  for (paint::LabReading& row : fit.rows) {
+    const double angle_deg = row.geometry.aspecular_deg;
+    if (!is_told(angle_deg)) continue;
+    const color::Lab shown = instrument_lab(basis, weights, coat_index, angle_deg);
+    if (color::delta_e_2000(shown, row.lab) > kApart_de00) row.lab = shown;
+  }
+  for (const double angle_deg : paint::kExportAngles_deg) {
+    const auto behind = std::ranges::find_if(
+        fit.rows, [&](const paint::LabReading& row) { return row.geometry.aspecular_deg >= angle_deg; });
+    if (behind != fit.rows.end() && behind->geometry.aspecular_deg == angle_deg) continue;
+    fit.rows.insert(behind, {{45, angle_deg}, instrument_lab(basis, weights, coat_index, angle_deg)});
+  }
 }
 
 // Whether a paint of few numbers explains the picture to rounding. It is then the paint that was drawn, and its lobes
@@ -369,16 +368,16 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   SketchCurve curve;
   const PaintWeights* by_view = nullptr;  // in place of the curve
   std::vector<Vec3> columns(search_columns(basis));
-  const auto difference = [&](std::size_t i) {
+  const auto pixel = [&](std::size_t i) -> PixelPair {
     const SketchSample& s = samples[i];
     color::Rgb shown = static_cast<double>(s.cos_i) * curve.reflectance(s.aspecular_deg) + curve.gloss(s.aspecular_deg);
     if (by_view != nullptr) {
       lamp_columns(s.aspecular_deg, s.cos_i, basis, seen.coat_index(), columns.data());
       shown = shown_light(columns.data(), by_view->mixed_at(s.view_deg), {});
     }
-    return color::delta_e_76(paint_lab({s.seen[0], s.seen[1], s.seen[2]}), paint_lab(as_displayed(shown, input)));
+    return {paint_lab({s.seen[0], s.seen[1], s.seen[2]}), paint_lab(as_displayed(shown, input))};
   };
-  const auto judge = [&] { judge_sketch(samples.size(), with_differences, difference, fit); };
+  const auto judge = [&] { take_residual(*input.buffers, pixels.used, pixel, with_differences, fit); };
   const auto give_up = [&](const std::string& problem) {
     curve = {}, curve.diffuse = mean_diffuse(cells), by_view = nullptr;
     fall_back(curve.diffuse, problem, fit);
@@ -410,16 +409,9 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   if (as_good) take_found(found, fit);
   fit.condition = quadratic.condition;
   take_extrapolated(cells, fit);
-  if (as_good) {
+  if (as_good)
     take_shown(
         basis, found.weights, coat, [&](double angle) { return !is_exact(found) && is_seen(cells, angle); }, fit);
-    const std::vector<FreeLobes> others = first.with_other_gloss(found);
-    take_open_by_gloss(basis, others.front(), others, coat, fit);
-  }
-  std::vector<TrustPixel> shown;
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    if (samples[i].aspecular_deg < kTrustTo_deg) shown.push_back({samples[i].aspecular_deg, difference(i)});
-  take_thinly_seen(shown, fit);
   const auto allows = [&](double gloss) {
     return search.cost_with_gloss(found, gloss) <= kSameCost * found.search.cost + kSameCostBy;
   };
@@ -486,22 +478,6 @@ double gloss_of_index(const SketchInput& input, const SketchPixels& pixels, cons
   return std::min(100.0, base + *brdf::smooth_gloss(60, brdf::coat_index_of_mirror(brighter, cosine)));
 }
 
-// How far light that the search does not know may have led.
-void take_regions(const SketchInput& input, const std::vector<std::uint32_t>& used, const SketchLight& light,
-                  const SearchFitters& fitters, const FoundPaint& found, SketchFit& fit) {
-  const std::size_t step = std::max<std::size_t>(1, used.size() / kRegionPixels);
-  std::vector<std::uint32_t> places;
-  for (std::size_t i = 0; i < used.size(); i += step) places.push_back(used[i]);
-  const LobeSearch search(fitters, samples_of(input, places, light, places.size()));
-  const image::AovFile& buffers = *input.buffers;
-  const int normal_y = *buffers.channel("normal.Y");
-  std::vector<double> up;
-  for (const std::uint32_t place : places)
-    up.push_back(buffers.image.data[static_cast<std::size_t>(place) * buffers.image.channels + normal_y]);
-  fit.regions_de00 = told_by_regions(search, found, light.basis, light.coat_index,
-                                     regions_of_places(places, buffers.image.width), halves_by_height(up));
-}
-
 SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
                    const SketchLimits& limits, bool with_differences, const Looked* lamps) {
   const SearchFitters fitters(light.basis, light.coat_index);
@@ -512,15 +488,15 @@ SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const S
   std::vector<Vec3> columns(weights.all.size());
   const ViewAngles views(*input.buffers);
   const double scale = 1 / input.buffers->white_luminance;
-  const auto difference = [&](std::size_t i) {
+  const auto pixel = [&](std::size_t i) -> PixelPair {
     light.shade(pixels.used[i], columns.data());
     const color::Rgb seen = scale * edited_light(input, pixels.used[i]);
     const color::Rgb shown =
         views.are_known() ? shown_light(columns.data(), weights.mixed_at(views.at(pixels.used[i])), light.reflection)
                           : shown_light(columns.data(), weights.all, light.reflection);
-    return color::delta_e_76(paint_lab(seen), paint_lab(as_displayed(shown, input)));
+    return {paint_lab(seen), paint_lab(as_displayed(shown, input))};
   };
-  const auto judge = [&] { judge_sketch(pixels.used.size(), with_differences, difference, fit); };
+  const auto judge = [&] { take_residual(*input.buffers, pixels.used, pixel, with_differences, fit); };
   const auto give_up = [&](const std::string& reason) {
     const color::Rgb matt = search.matt();
     fall_back(matt, reason, fit);
@@ -555,11 +531,6 @@ SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const S
         return !is_exact(found) && std::ranges::find(fit.extrapolated_deg, angle) == fit.extrapolated_deg.end();
       },
       fit);
-  const std::vector<FreeLobes> others = first.with_other_gloss(found);
-  take_open_by_gloss(light.basis, others.front(), others, light.coat_index, fit);
-  if (light.is_open && !input.buffers->drawn_by_rays.empty())
-    take_regions(input, pixels.used, light, fitters, found, fit);
-  if (lamps != nullptr) take_thinly_seen(trust_pixels(input, pixels, difference), fit);
   judge();
   if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));
   return fit;

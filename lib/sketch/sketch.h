@@ -10,6 +10,7 @@
 
 #include "base/result.h"
 #include "base/vec3.h"
+#include "color/color.h"
 #include "color/reflection.h"
 #include "formats/basis.h"
 #include "paint/paint.h"
@@ -27,11 +28,18 @@ struct SketchLimits {
   double face_error_de76 = 50;
 };
 
-// A color that the picture leaves open.
-struct UnsureColor {
-  double angle_deg = 0;
-  std::optional<double> de00;  // how far the color may be off, where that is known
-  std::string reason;
+// A used pixel: the picture, and the paint found there. Lab relative to white.
+struct PixelPair {
+  color::Lab seen, shown;
+  double de76() const { return color::delta_e_76(seen, shown); }
+};
+
+// How far the picture is from the paint found at the pixels of ten degrees.
+struct AngleResidual {
+  double from_deg = 0, to_deg = 0;
+  std::size_t pixels = 0;
+  double median_de76 = 0;
+  color::Lab mean;  // of picture less paint: L is above 0 where the picture is lighter
 };
 
 struct SketchFit {
@@ -41,7 +49,6 @@ struct SketchFit {
   paint::Appearance appearance;
   std::vector<paint::LabReading> rows;   // at the export angles
   std::vector<double> extrapolated_deg;  // angles of those rows that no pixel shows
-  std::vector<UnsureColor> unsure;       // of the other rows
   double gloss_60_gu = 0;
   std::string gloss_from;  // "highlight", "contrast" or "search"; "undetermined" where the pixels cannot tell it
   // The readings that explain the pixels as well, where they were looked for or nothing tells the gloss; else both are
@@ -50,12 +57,11 @@ struct SketchFit {
   double condition = 0;
   double rms_de76 = 0, median_de76 = 0;  // edited picture against the paint found, relative to white
   double seen_from_deg = 0, seen_to_deg = 0;
-  // By how much the paints differ that regions of the picture show, where it was drawn in light that the search does
-  // not know: at the export angles, CIEDE2000, as told_by_regions() has it.
-  std::vector<double> regions_de00;
-  bool by_views = false;            // the paint found has weights for several views
-  std::vector<color::Rgb> weights;  // of the lobes found, in the order of search_columns(); none of a point light
-  std::vector<float> de76;          // of every used pixel, in the order of SketchPixels::used; where asked for
+  std::string residual_angle;  // "aspecular", "view" (of the viewer from the normal), or "" where none is known
+  std::vector<AngleResidual> residual;  // ascending; where pixels are
+  bool by_views = false;                // the paint found has weights for several views
+  std::vector<color::Rgb> weights;      // of the lobes found, in the order of search_columns(); none of a point light
+  std::vector<PixelPair> pixels;        // every used one, in the order of SketchPixels::used; where asked for
 };
 
 // The paint under one directional light, whose effect at each pixel is computed exactly. The answer is the lobe curve
@@ -75,7 +81,6 @@ struct SketchLight {
   // K_DD and K_G of every lobe, then the mirror.
   std::function<void(std::uint32_t place, Vec3* columns)> shade;
   double coat_index = paint::kNoCoat;  // of the coat through which K_D and K_DD are lit
-  bool is_open = true;                 // nothing blocks it, and no surface sends it on
 };
 
 // The number of those parts.
@@ -92,10 +97,6 @@ SketchFit sketch_lamps(const SketchInput& input, const SketchPixels& pixels, con
 
 // The paint found as it is written to a file: rows, face, flop, travel and gloss. A fallback is a solid paint.
 paint::Paint sketch_paint(const SketchFit& fit, const std::string& name);
-
-// Tells in fit.unsure the angles at which lobes are missing that the picture was drawn without (`left_out`, by
-// render-osmesa's names of effects).
-void take_left_out(const std::vector<std::string>& left_out, SketchFit& fit);
 
 // Whether a paint of weights >= 0 can have a color within that distance of this reflectance factor.
 bool is_paint_color(const color::Rgb& rgb, double within_de76);

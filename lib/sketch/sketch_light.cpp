@@ -340,7 +340,7 @@ SketchLight SketchTransport::light(int samples, double coat_index) const {
     }
     add_point(t, *own, factors.get(), coat, share, out);
   };
-  return {basis, reflection_, shade, same_coat ? traced : coat_index, false};
+  return {basis, reflection_, shade, same_coat ? traced : coat_index};
 }
 
 std::vector<int> SketchTransport::mesh_parts() const {

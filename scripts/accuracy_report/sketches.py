@@ -98,6 +98,15 @@ class Trip:
         return max((e for angle, e in self.errors.items() if angle not in self.warned), default=0)
 
 
+def doubtful(found):
+    """The angles under a lamp about which few pixels stand, or at which the picture is visibly off the paint found."""
+    if found["residual_angle"] != "aspecular":
+        return set()
+    near = {one["from_deg"]: one for one in found["residual"]}
+    here = {angle: near.get(angle // 10 * 10) for angle in ANGLES_DEG}
+    return {a for a, one in here.items() if not one or one["pixels"] < 20 or one["median_de76"] > 2}
+
+
 class Stage:
     """The fitted paints, the meshes and the light of the pictures."""
 
@@ -130,7 +139,7 @@ class Stage:
         found, fit_s = self.run.tool("sketch-fit", "--image", picture, "--buffers", picture, *told, "-o", self.run.work / "trip.xml")
         rows = {float(row["geometry"].removeprefix("45as")): numpy.array((row["L"], row["a"], row["b"])) for row in found["rows"]}
         errors = {a: float(colors.de2000(rows[a], shown_lab(self.paints[paint], a))) for a in ANGLES_DEG}
-        warned = {*found["extrapolated_deg"], *(one["angle_deg"] for one in found["unsure"])}
+        warned = {*found["extrapolated_deg"], *doubtful(found)}
         if found["status"] != "fitted":
             warned = set(ANGLES_DEG)  # The fallback says that the answer is a matt color, whatever the angle.
         return Trip(paint, mesh, width, light, errors, warned, found, fit_s)
@@ -162,7 +171,8 @@ def study(run):
                     "width (pixels)", "dE00, the largest of five angles", front=False, x=lambda r: r.numbers["width"], joined=False)
     text = ("Each paint is drawn as render-osmesa does by default, with coat, bright spots, shadows and bounced light, and sketch-fit "
             "looks for it in the picture with the plain buffers. The error is the CIEDE2000 difference, at 15, 25, 45, 75 and 110 "
-            "deg, from what the lobes that were drawn show to an instrument. A warning names the angles at which a color may be off.")
+            "deg, from what the lobes that were drawn show to an instrument. A warning names the angles that no pixel shows; under the lamp, angles with fewer than 20 pixels or a residual above 2 dE76 "
+            "count as warned of.")
     head = ("light, mesh, width", "dE00, median reading", "median of the largest", "largest", "largest without a warning", "time (s)")
     return Study("Round trips of sketches", text, [figure],
                  [("By scene", head, rows),

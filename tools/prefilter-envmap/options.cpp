@@ -99,8 +99,7 @@ void add_report(cli::ToolSpec& spec) {
   spec.report = {
       {"lobes[].exponent", "exponent of the lobe; \"mirror\" for the environment itself"},
       {"lobes[].size", "texels along a face"},
-      {"lobes[].method",
-       "one of harmonics, harmonics+bright, harmonics+horizon, arcs+bright, local sums, blocks and overlaps"},
+      {"lobes[].method", "one of harmonics, harmonics+bright, harmonics+horizon, local sums, blocks and overlaps"},
       {"lobes[].cached", "whether the lobe came from the cache"},
       {"lobes[].degree", "degree of the harmonics"},
       {"lobes[].storage", "one of half and float"},
@@ -172,9 +171,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "degrees that are left out. Lobes that bend at the horizon are filtered by harmonics of all but the brightest "
       "texels, which are convolved one by one. Lobes of exponents below 1 end too steeply at the horizon for harmonics "
       "alone, and so does the diffuse lobe at small tolerances: the texels in a band beside the horizon are summed one "
-      "by one as well. For the diffuse lobe at the smallest tolerances, sums along the arcs that a hemisphere cuts "
-      "from the rows take their place. Very sharp lobes are sums over the texels that they reach, or walks over blocks "
-      "of texels where these are too many. --explain shows the choice for each lobe."};
+      "by one as well. Very sharp lobes are sums over the texels that they reach, or walks over blocks of texels where "
+      "these are too many. --explain shows the choice for each lobe."};
   spec.inputs = {"IMAGE", "an HDR image, or six, one for each face of a cube; - or none is standard input", &o.images,
                  0, 6};
   add_options(spec, o);

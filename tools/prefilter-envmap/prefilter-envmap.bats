@@ -148,7 +148,7 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   values method | grep -qx 'harmonics+bright'
   prefilter-envmap -q -e 70 --no-mirror --size 4 --tolerance 1e-6 --verify 2 coarse.hdr -o x.env.exr --report r.json
   values max_rel_error | within 1e-6
-  values method | grep -qx 'arcs+bright'
+  values method | grep -qx 'harmonics+horizon'
   prefilter-envmap -q -e 0,0.3 --no-mirror --size 4 --tolerance 1e-5 --verify 2 coarse.hdr -o x.env.exr --report r.json
   values max_rel_error | within 1e-5
   values method | grep -qx 'harmonics+horizon'

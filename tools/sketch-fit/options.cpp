@@ -57,7 +57,11 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "The paint found keeps its gloss where the picture does not tell another one, and its code. PAINT is "
           "FILE[#NAME]; NAME may be left out where the file holds only one paint.");
   spec.option("name", "NAME", "dawn", &o.name, "name of the paint found");
-  spec.option("residual", "FILE", "residual.png", &o.residual, "PNG of the differences between picture and paint");
+  spec.option("residual", "FILE", "residual.png", &o.residual, "PNG of picture, paint found and their difference")
+      .more(
+          "The used pixels of the picture stand on the left, the paint found in the middle, and their differences on "
+          "the right, from black through red and yellow to white at 20 units of CIE 1976. Pixels left out are dark "
+          "blue.");
   spec.option("output,o", "FILE", "sketch.paints.xml", &o.output, "paint XML to write; - is standard output");
   cli::add_common_options(spec, o.common, {.explain = true});
 }
@@ -91,14 +95,12 @@ void add_report(cli::ToolSpec& spec) {
       {"flop", "L*, a*, b* of its flop"},
       {"rows[]: geometry, L, a, b", "its colors at the export angles"},
       {"extrapolated_deg[]", "those of the angles that no pixel shows"},
-      {"regions_de00[]",
-       "by how much the colors at the export angles may be off where the picture has shadows or light that the body "
-       "sends to itself and the buffers have no transport, CIEDE2000: four standard errors, told by how far regions of "
-       "the picture disagree, or two by how far what faces up and what faces down does, whichever is more; else "
-       "empty"},
-      {"unsure[]: angle_deg, de00, reason",
-       "other angles whose color the picture leaves open, with the CIEDE2000 difference by which it may be off, or "
-       "null"},
+      {"residual_angle",
+       "angle that residual[] goes by: aspecular under lamps, view (of the viewer from the normal) in other light; "
+       "null where the buffers tell neither"},
+      {"residual[]: from_deg, to_deg, pixels, median_de76, L, a, b",
+       "for each ten degrees with pixels: their number, the median CIE 1976 difference of picture and paint found, and "
+       "the mean of picture less paint in L*, a* and b*"},
       {"gloss_60_gu", "its gloss at 60 degrees; null for the fallback, and where it is undetermined without --start"},
       {"gloss_from", "one of highlight, contrast, search, start and undetermined"},
       {"gloss_range_gu",
@@ -118,7 +120,8 @@ void add_report(cli::ToolSpec& spec) {
        "scale, turn_deg (clockwise), shift[] (pixels of the picture, of its middle) and agreement (correlation of the "
        "edges) where the picture was laid on the buffers; else null"},
       {"color_space", "color space that the picture was taken for"},
-      {"fit_s", "time of the fit, without reading and writing"}};
+      {"fit_s", "time of the fit, without reading and writing"},
+      {"regions_de00[], unsure[]", "not written any more: see residual[]"}};
   spec.see_also = {"render-osmesa(1)", "fit-paint(1)", "paint-pick(1)", "goniochrome-theory(7)"};
 }
 
@@ -142,8 +145,7 @@ cli::ToolSpec tool_spec(Options& o) {
       "where the buffers have them.",
       "Buffers with a transport hold the light that each lobe gathers at every pixel, with shadows and with light that "
       "the body sends to itself. The picture is then linear in the paint, and is solved in that light. Without it the "
-      "light is that which nothing blocks, and a message says so. Where an environment lights such a picture, the "
-      "message tells by how much the paint may be off.",
+      "light is that which nothing blocks, and a message says so.",
       "The picture may be an EXR, HDR, PNG, JPEG, TIFF, PNM, DPX, WebP, BMP or TGA. Whole numbers (PNG, JPEG, TIFF) "
       "are what a display shows: sRGB, or what an "
       "embedded ICC profile says, be it of RGB, of gray or of CMYK, after the view and the exposure of render-osmesa. "
@@ -158,9 +160,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "paint "
       "around it; where no highlight is seen, it is undetermined. With --env, "
       "it comes from the search where other pixels contradict the highlight.",
-      "A warning names the angles whose color the picture leaves open: no pixel shows them, too few pixels do, another "
-      "gloss with another color explains the picture as well, or the picture was drawn without a lobe that is seen "
-      "there.",
+      "A warning names the export angles that no pixel shows, and the angles at which the picture is farthest from the "
+      "paint found. The report has that difference for every ten degrees, and --residual draws picture, paint and "
+      "difference side by side.",
       "A picture that seems to be moved against the buffers is told with the shift to give."};
   add_options(spec, o);
   add_report(spec);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "color/color.h"
+#include "display/paint_view.h"
 #include "image/label.h"
 
 namespace goniochrome::tool {
@@ -30,20 +32,38 @@ void draw_scale(image::Image& image) {
   image::draw_label(image, x + width - image::label_width("20", scale) / 2, text_y, end, scale, kInk);
 }
 
+// As an sRGB display shows it, with the white of the light as its own.
+Color displayed(const color::Lab& lab) {
+  const color::Rgb rgb = color::rec709_from_rec2020(color::rgb_from_lab(lab, *color::white_point({})));
+  Color shown;
+  for (int c = 0; c < 3; ++c) shown[static_cast<std::size_t>(c)] = static_cast<float>(display::srgb_signal(rgb[c]));
+  return shown;
+}
+
 }  // namespace
 
 Result<void> write_residual(const std::string& path, const image::AovFile& buffers, const sketch::SketchPixels& pixels,
                             const sketch::SketchFit& fit) {
-  image::Image image{buffers.image.width, buffers.image.height, 3, {}, {}};
-  image.data.resize(pixels.use.size() * 3);
-  const auto paint = [&](std::size_t place, const Color& color) {
-    std::copy_n(color.data(), 3, &image.data[3 * place]);
+  const int width = buffers.image.width, height = buffers.image.height;
+  const auto pane = [&](const auto& color_of) {
+    image::Image image{width, height, 3, {}, {}};
+    image.data.resize(pixels.use.size() * 3);
+    const auto put = [&](std::size_t place, const Color& color) {
+      std::copy_n(color.data(), 3, &image.data[3 * place]);
+    };
+    for (std::size_t i = 0; i < pixels.use.size(); ++i)
+      put(i, pixels.use[i] == sketch::PixelUse::kBackground ? kBackground : kLeftOut);
+    for (std::size_t i = 0; i < pixels.used.size(); ++i) put(pixels.used[i], color_of(fit.pixels[i]));
+    return image;
   };
-  for (std::size_t i = 0; i < pixels.use.size(); ++i)
-    paint(i, pixels.use[i] == sketch::PixelUse::kBackground ? kBackground : kLeftOut);
-  for (std::size_t i = 0; i < pixels.used.size(); ++i) paint(pixels.used[i], heat(fit.de76[i] / kMost_de76));
-  draw_scale(image);
-  return image::write_png(path, image);
+  image::Image panes[] = {pane([](const sketch::PixelPair& p) { return displayed(p.seen); }),
+                          pane([](const sketch::PixelPair& p) { return displayed(p.shown); }),
+                          pane([](const sketch::PixelPair& p) { return heat(p.de76() / kMost_de76); })};
+  draw_scale(panes[2]);
+  image::Image all{3 * width, height, 3, {}, {}};
+  for (int y = 0; y < height; ++y)
+    for (const image::Image& one : panes) all.data.insert(all.data.end(), one.pixel(0, y), one.pixel(0, y) + 3 * width);
+  return image::write_png(path, all);
 }
 
 }  // namespace goniochrome::tool

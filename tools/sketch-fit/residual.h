@@ -1,4 +1,4 @@
-// The picture of the differences that a fit leaves.
+// The picture beside the paint that was found in it.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace goniochrome::tool {
 
-// Writes a PNG of the buffers' size. Differences go from black through red and yellow to white at 20 dE76. Pixels that
-// were left out are dark blue, and what is not the mesh is gray. A scale stands at the lower left.
+// Writes a PNG of three panes of the buffers' size: the used pixels of the picture, of the paint found, and their
+// differences, from black through red and yellow to white at 20 dE76. Pixels that were left out are dark blue, and what
+// is not the mesh is gray. A scale stands at the lower left of the last pane.
 Result<void> write_residual(const std::string& path, const image::AovFile& buffers, const sketch::SketchPixels& pixels,
                             const sketch::SketchFit& fit);
 

@@ -202,19 +202,37 @@ void report_fit(const sketch::SketchFit& fit, bool environment, Json& results) {
     results["rows"].push_back(
         {{"geometry", paint::geometry_name(row.geometry)}, {"L", row.lab.L}, {"a", row.lab.a}, {"b", row.lab.b}});
   results["extrapolated_deg"] = fit.extrapolated_deg;
-  results["unsure"] = Json::array();
-  for (const sketch::UnsureColor& one : fit.unsure)
-    results["unsure"].push_back({{"angle_deg", one.angle_deg},
-                                 {"de00", one.de00 ? json_number(*one.de00) : Json(nullptr)},
-                                 {"reason", one.reason}});
+  results["residual_angle"] = fit.residual_angle.empty() ? Json(nullptr) : Json(fit.residual_angle);
+  results["residual"] = Json::array();
+  for (const sketch::AngleResidual& one : fit.residual)
+    results["residual"].push_back({{"from_deg", one.from_deg},
+                                   {"to_deg", one.to_deg},
+                                   {"pixels", one.pixels},
+                                   {"median_de76", json_number(one.median_de76)},
+                                   {"L", json_number(one.mean.L)},
+                                   {"a", json_number(one.mean.a)},
+                                   {"b", json_number(one.mean.b)}});
   const bool told = !fit.gloss_from.empty() && fit.gloss_from != "undetermined";
   results["gloss_60_gu"] = told ? Json(fit.gloss_60_gu) : Json(nullptr);
   results["gloss_range_gu"] = fit.gloss_high_gu > 0 ? Json({fit.gloss_low_gu, fit.gloss_high_gu}) : Json(nullptr);
-  results["regions_de00"] = fit.regions_de00;
   results["gloss_from"] = fit.gloss_from.empty() ? Json(nullptr) : Json(fit.gloss_from);
   results["condition"] = fit.condition > 0 ? json_number(fit.condition) : Json(nullptr);
   results["aspecular_from_deg"] = environment ? Json(nullptr) : Json(fit.seen_from_deg);
   results["aspecular_to_deg"] = environment ? Json(nullptr) : Json(fit.seen_to_deg);
+}
+
+// Warns of the angles at which the picture is farthest from the paint found, where that can be seen.
+void tell_residual(const Options& options, const sketch::SketchFit& fit, cli::Session& session) {
+  constexpr double kSeen_de76 = 2;
+  constexpr std::size_t kFewest = 20;  // pixels; the median of fewer is noise
+  const sketch::AngleResidual* most = nullptr;
+  for (const sketch::AngleResidual& one : fit.residual)
+    if (one.pixels >= kFewest && one.median_de76 > (most != nullptr ? most->median_de76 : kSeen_de76)) most = &one;
+  if (most == nullptr) return;
+  session.warn(fmt::format("{} is {:.1f} dE76 (median of {} pixels) from the paint found at {} to {} deg from {}{}",
+                           options.image, most->median_de76, most->pixels, most->from_deg, most->to_deg,
+                           fit.residual_angle == "view" ? "the normal" : "specular",
+                           options.residual.empty() ? ": see --residual" : ""));
 }
 
 // Tells what a reader should know beside the paint.
@@ -225,9 +243,7 @@ void tell(const Options& options, const sketch::SketchPixels& pixels, const sket
   if (!fit.extrapolated_deg.empty())
     session.warn(fmt::format("no pixel shows {} deg from specular: the color there is extrapolated",
                              fmt::join(fit.extrapolated_deg, ", ")));
-  for (const sketch::UnsureColor& one : fit.unsure)
-    session.warn(fmt::format("the color at {} deg from specular may be off{}: {}", one.angle_deg,
-                             one.de00 ? fmt::format(" by {:.1f} dE00 or more", *one.de00) : "", one.reason));
+  tell_residual(options, fit, session);
   const paint::Appearance& a = fit.appearance;
   const std::string gloss =
       fit.gloss_from.empty() ? ""
@@ -266,20 +282,13 @@ sketch::SketchFit fit_in_transport(const sketch::SketchInput& input, const sketc
   return fit;
 }
 
-// What a fit without traced light leaves out, and how far that may lead.
-void tell_shadows(const image::AovFile& buffers, const sketch::SketchFit& fit, cli::Session& session) {
-  std::string by;
-  for (std::size_t i = 0; i < fit.regions_de00.size(); ++i)
-    by += fmt::format("{} {:.1f} dE00 at {} deg",
-                      i == 0                            ? ", by up to about"
-                      : i + 1 < fit.regions_de00.size() ? ","
-                                                        : " and",
-                      fit.regions_de00[i], paint::kExportAngles_deg[i]);
+// Tells which light a fit without traced light does not know.
+void tell_shadows(const image::AovFile& buffers, cli::Session& session) {
   if (!buffers.drawn_by_rays.empty())
     session.warn(
-        fmt::format("{} shows {}: no paint explains what the mesh does to light, so that the paint found is off{}: "
+        fmt::format("{} shows {}: no paint explains what the mesh does to light, so that the paint found is off: "
                     "render picture and buffers with --effects auto,-rays, or the buffers with --aov transport",
-                    buffers.path, buffers.drawn_by_rays, by));
+                    buffers.path, buffers.drawn_by_rays));
   session.say(fmt::format(
       "{} holds no transport: the paint is sought in light that nothing blocks and no surface sends back. Where the "
       "picture has shadows or the body in itself, give buffers of render-osmesa --aov transport",
@@ -409,8 +418,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     GONIO_TRY(fit_lamps(material, limits, differences, pixels, fit));
   }
   if (!options.env.empty() && !material.transport) warn_of_effects(material.buffers, fit.by_views, session);
-  if (!material.transport) tell_shadows(material.buffers, fit, session);
-  sketch::take_left_out(left_out_of(material), fit);
+  if (!material.transport) tell_shadows(material.buffers, session);
   keep_gloss(start, fit);
   Json& results = session.results();
   report_fit(fit, environment, results);

@@ -73,7 +73,9 @@ const Json& sphere_json() {
 
 }  // namespace
 
-std::string gltf_sphere(const Json& material, const Json& used, const Naming& naming) {
+std::string gltf_sphere(const Json& material, const Naming& naming) {
+  Json used = Json::array();
+  for (const auto& extension : material.at("extensions").items()) used.push_back(extension.key());
   Json document = {{"asset", {{"version", "2.0"}, {"generator", naming.provenance}}}, {"extensionsUsed", used}};
   document["materials"] = Json::array({material});
   document.update(sphere_json());

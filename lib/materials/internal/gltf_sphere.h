@@ -8,8 +8,8 @@
 
 namespace goniochrome::materials {
 
-// The text of the file. `used` are the names of the extensions of the material.
-std::string gltf_sphere(const Json& material, const Json& used, const Naming& naming);
+// The text of the file.
+std::string gltf_sphere(const Json& material, const Naming& naming);
 
 // What a material keeps for people: its identifier and how far it is from the paint.
 Json gltf_extras(const Naming& naming, const Shown& shown);

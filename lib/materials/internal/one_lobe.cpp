@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <initializer_list>
 #include <limits>
+#include <optional>
 
 #include "base/angles.h"
 #include "materials/internal/nearest.h"
@@ -129,6 +130,22 @@ OneLobe nearest_one_lobe(const paint::Paint& paint, const OneLobeModel& model, S
     if (sum < best) best = sum, nearest = p;
   }
   return nearest;
+}
+
+Shown shown_by(const paint::Paint& paint, const OneLobeModel& model, const OneLobe& parameters) {
+  return shown(paint, [&](const Vec3& light, const Vec3& view) {
+    return color::rec2020_from_rec709(model(parameters, light, view));
+  });
+}
+
+NearestLobe nearest_of(const paint::Paint& paint, const OneLobeModel& model, std::initializer_list<Searched> ways) {
+  std::optional<NearestLobe> nearest;
+  for (const Searched searched : ways) {
+    NearestLobe now{rounded(nearest_one_lobe(paint, model, searched)), {}};
+    now.shown = shown_by(paint, model, now.parameters);
+    if (!nearest || now.shown.de00_mean < nearest->shown.de00_mean) nearest = std::move(now);
+  }
+  return *nearest;
 }
 
 // The hue of a film turns once with some 200 nm of thickness, so that the search begins at steps of a part of that.

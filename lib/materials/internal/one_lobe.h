@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 
 #include "materials/internal/shown.h"
 
@@ -26,6 +27,17 @@ using OneLobeModel = std::function<color::Rgb(const OneLobe& parameters, const V
 // What the search moves beside colors and roughness. A metalness that it moves stays above 0.
 enum class Searched { kColorsAndRoughness, kStrengthToo, kMetalnessToo };
 OneLobe nearest_one_lobe(const paint::Paint& paint, const OneLobeModel& model, Searched searched);
+
+// What a model of such parameters shows of the paint.
+Shown shown_by(const paint::Paint& paint, const OneLobeModel& model, const OneLobe& parameters);
+
+// The nearest parameters, in the numbers that files have, and what they show: of the searches `ways` the one that shows
+// the paint best.
+struct NearestLobe {
+  OneLobe parameters;
+  Shown shown;
+};
+NearestLobe nearest_of(const paint::Paint& paint, const OneLobeModel& model, std::initializer_list<Searched> ways);
 
 // The parameters of the film as well, from those without one.
 OneLobe nearest_with_film(const paint::Paint& paint, const OneLobeModel& model, const OneLobe& without);

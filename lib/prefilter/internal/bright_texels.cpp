@@ -105,7 +105,7 @@ Vec3 BrightTexels::beside_edge(const Vec3& d, const ZonalKernel& kernel, const T
 // The centroid is exact for the cosine alone; for cos^E it errs by E |E-1| h^2/(24 t^2) of the texel, much near the
 // horizon.
 Vec3 BrightTexels::lobe(const Vec3& d, const ZonalKernel& kernel, double allowed) const {
-  const bool linear = kernel.shape() == ZonalKernel::Shape::kCosine;
+  const bool linear = kernel.is_cosine();
   const Points& points = linear ? centroids_ : gauss_;
   // Step 1: every texel as points.
   const double direction[3] = {d.x, d.y, d.z};

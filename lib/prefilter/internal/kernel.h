@@ -21,15 +21,12 @@ class ZonalKernel {
     double cosine = -2, angle_rad = 2 * kPi;  // beyond the sphere: there is none
     bool exists() const { return cosine > -1; }
   };
-  // Kernels that are a whole power of the cosine up to 90 deg. Arc sums serve these two alone, and the centroid of a
-  // texel stands for all of it where the kernel is the cosine itself.
-  enum class Shape { kStep, kCosine, kOther };
-
-  explicit ZonalKernel(Edge edge, Shape shape = Shape::kOther) : edge_(edge), shape_(shape) {}
+  explicit ZonalKernel(Edge edge) : edge_(edge) {}
   virtual ~ZonalKernel() = default;
 
   const Edge& edge() const { return edge_; }
-  Shape shape() const { return shape_; }
+  // Whether it is the cosine itself up to 90 deg: the centroid of a texel then stands for all of it.
+  virtual bool is_cosine() const { return false; }
 
   // K at an angle of the given cosine: 1 at the top, falling from there to 0 or more.
   virtual double value(double cosine) const = 0;
@@ -79,18 +76,14 @@ class ZonalKernel {
 
  private:
   Edge edge_;
-  Shape shape_;
 };
 
 // max(0, cos)^E, E >= 0: scale() is (E+1)/(2 pi).
 class CosineKernel final : public ZonalKernel {
  public:
-  explicit CosineKernel(double exponent)
-      : ZonalKernel({0, kPi / 2}, exponent == 0   ? Shape::kStep
-                                  : exponent == 1 ? Shape::kCosine
-                                                  : Shape::kOther),
-        exponent_(exponent) {}
+  explicit CosineKernel(double exponent) : ZonalKernel({0, kPi / 2}), exponent_(exponent) {}
 
+  bool is_cosine() const override { return exponent_ == 1; }
   double value(double cosine) const override;
   double scale() const override { return (exponent_ + 1) / (2 * kPi); }
   double sharpness() const override;
@@ -101,7 +94,7 @@ class CosineKernel final : public ZonalKernel {
   double norm_beyond(int degree) const override;
   double variation(double angle_rad) const override;
   double near_edge(double angle_rad) const override;
-  bool bends_beside_edge() const override { return exponent_ < 2 && shape() == Shape::kOther; }
+  bool bends_beside_edge() const override { return exponent_ < 2 && exponent_ != 0 && exponent_ != 1; }
   double linear_mean(double t0, double a, double b) const override;
   double slope(double t, double value) const override { return exponent_ * value / t; }
   double bend(double low, double high, double least, double most) const override;

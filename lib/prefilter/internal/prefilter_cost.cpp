@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "prefilter/internal/arc_sums.h"
 #include "prefilter/internal/bright_texels.h"
 #include "prefilter/internal/horizon_band.h"
 #include "prefilter/internal/local_sums.h"
@@ -48,10 +47,6 @@ double parting_time_s(const envmap::Environment& env) {
 // The bright texels one by one: as their middles for exponent 1, else as four points with a power.
 double bright_time_s(double bright, double exponent, double texels) {
   return (exponent == 1 ? 8.5e-10 : 3.4e-9) * bright * texels;
-}
-
-double arcs_time_s(const envmap::Environment& env, double exponent, double tolerance, double texels) {
-  return 4.8e-8 * arc_points(exponent == 0, tolerance) * env.height() * texels;
 }
 
 // About how many texels of a cube of maps share their weights (strip_map.h).
@@ -114,7 +109,7 @@ void predict_times(const envmap::Environment& env, const PrefilterRequest& reque
       if (angles_size != lobe.size) time_s += angles_time_s(texels);
       angles_size = lobe.size;
     }
-    if (lobe.method == Method::kBrightHarmonics || lobe.method == Method::kArcs || lobe.method == Method::kHorizon) {
+    if (lobe.method == Method::kBrightHarmonics || lobe.method == Method::kHorizon) {
       if (!parted) time_s += parting_time_s(env), bright = static_cast<double>(bright_count(env));
       parted = true;
       time_s += bright_time_s(bright, lobe.exponent, texels);
@@ -130,12 +125,7 @@ void predict_times(const envmap::Environment& env, const PrefilterRequest& reque
         rest_transformed = true;
         time_s += evaluation_time_s(usual_degree(lobe.degree, request.tolerance), texels);
         // Half of the texels are done once more where little light is left of the tolerance.
-        if (lobe.exponent < 1 && request.tolerance < 2e-3)
-          time_s += lobe.exponent == 0 ? arcs_time_s(env, 0, request.tolerance, texels / 2)
-                                       : blocks_time_s(env, lobe.exponent, texels / 2);
-        break;
-      case Method::kArcs:
-        time_s += arcs_time_s(env, lobe.exponent, request.tolerance, texels);
+        if (lobe.exponent < 1 && request.tolerance < 2e-3) time_s += blocks_time_s(env, lobe.exponent, texels / 2);
         break;
       case Method::kHorizon:
         if (!rest_transformed) time_s += transform_time_s(env, lobe.degree);

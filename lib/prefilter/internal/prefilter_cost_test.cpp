@@ -83,7 +83,8 @@ TEST(PrefilterCost, EveryMethodHasItsPrice) {
   const auto fine = prefilter_plan(env, {{1e5}, false, 32, 1e-6});
   EXPECT_EQ(fine[1].method, Method::kBlocks);
   EXPECT_GT(fine[1].predicted_time_s, 5 * plan[4].predicted_time_s);
-  EXPECT_EQ(prefilter_plan(env, {{}, false, 32, 1e-6})[0].method, Method::kArcs);
+  EXPECT_EQ(prefilter_plan(env, {{}, false, 32, 1e-6})[0].method, Method::kHorizon);
+  EXPECT_EQ(prefilter_plan(env, {{0}, false, 32, 1e-2})[1].method, Method::kHorizon);
 }
 
 }  // namespace

@@ -87,18 +87,6 @@ color::Rgb shown_light(const Vec3* columns, const PaintWeights::Mixed& weights,
   return weights.share > 0 ? low + weights.share * (shown_light(columns, *weights.high, reflection) - low) : low;
 }
 
-SearchSamples SearchSamples::part(const std::vector<std::size_t>& numbers) const {
-  SearchSamples some;
-  some.columns = columns, some.reflection = reflection, some.coat_index = coat_index, some.display = display;
-  for (const std::size_t i : numbers) {
-    some.light.insert(some.light.end(), columns_of(i), columns_of(i) + columns);
-    some.seen.push_back(seen[i]);
-    some.importance.push_back(importance[i]);
-    if (!view_deg.empty()) some.view_deg.push_back(view_deg[i]);
-  }
-  return some;
-}
-
 color::Lab SearchSamples::shown_by(const PaintWeights& weights, std::size_t sample) const {
   const Vec3* light_there = columns_of(sample);
   return shown(view_deg.empty() ? shown_light(light_there, weights.all, reflection)

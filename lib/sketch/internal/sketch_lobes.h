@@ -47,8 +47,6 @@ struct SearchSamples {
 
   std::size_t size() const { return seen.size(); }
   const Vec3* columns_of(std::size_t sample) const { return &light[sample * columns]; }
-  // Those of these numbers.
-  SearchSamples part(const std::vector<std::size_t>& numbers) const;
   // The light of a sample as the picture could show it.
   color::Lab shown(const color::Rgb& rgb) const;
   // What the paint shows there.

@@ -185,18 +185,6 @@ color::Rgb LobeSearch::matt() const {
   return color;
 }
 
-std::vector<FreeLobes> LobeSearch::with_other_gloss(const FoundPaint& found) const {
-  const FreeLobeFit fit = free_lobes();
-  const double gloss = found.search.values.back();
-  std::vector<double> readings = {gloss, 0, 10, 20, 40, 60, 75, 85, 92, 100};
-  std::vector<FreeLobes> tried(readings.size());
-  parallel_for(tried.size(), 1,
-               [&](std::size_t i, std::size_t) { tried[i] = fit.refined({found.weights.all, readings[i], 0}); });
-  const double most = kSameCost * tried.front().cost + kSameCostBy;
-  std::erase_if(tried, [&](const FreeLobes& one) { return one.cost > most; });
-  return tried;
-}
-
 double LobeSearch::cost_with_gloss(const FoundPaint& found, double gloss) const {
   const PaintWeights other = with_gloss(found, gloss);
   return other.all.empty() ? found.search.cost : cost(other);
@@ -253,21 +241,6 @@ FoundPaint LobeSearch::find(const LobeSearch& first) const {
   std::vector<double> apart;  // of the face, from that of a paint of few numbers
   for (std::size_t i = 0; i < 3; ++i) apart.push_back(std::abs(three[i] - designed.result.values[i]));
   return {{numbers_of(lobes, paint::kExportAngles_deg, free.gloss_60_gu), free.cost, 0, 0, apart}, {free.weights}};
-}
-
-FoundPaint LobeSearch::in_part(const FoundPaint& found, const std::vector<std::size_t>& samples, Gloss gloss) const {
-  const LobeSearch part(fitters_, samples_.part(samples));
-  FoundPaint other = found;
-  if (found.fitter != nullptr) {
-    other.search = part.run(*found.fitter, parameters_of(found.search.values));
-    other.weights = part.weights(*found.fitter, other.search.values);
-  } else {
-    const FreeLobeFit free = part.free_lobes();
-    const FreeLobes least =
-        gloss == Gloss::kAnew ? free.find() : free.refined({found.weights.all, found.search.values.back(), 0});
-    other.weights = {least.weights};
-  }
-  return other;
 }
 
 // The gloss of least cost among some, the rest held: the cost has a valley at each lobe of the basis.

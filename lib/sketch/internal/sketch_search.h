@@ -52,18 +52,6 @@ class LobeSearch {
   // weights for all views or, under a coat, for several.
   FoundPaint find_plain(const LobeSearch& first) const;
 
-  // That of free lobes in a part of the samples: the one found in all of them, or that which this part shows, which may
-  // be another one altogether.
-  enum class Gloss { kFound, kAnew };
-
-  // What a part of the samples, by their numbers, shows of a paint that was found in all of them: the nearest paint of
-  // as many numbers that explains these.
-  FoundPaint in_part(const FoundPaint& found, const std::vector<std::size_t>& samples, Gloss gloss) const;
-
-  // Lobes with the gloss of a paint found, and with others whose cost is at most a part more: free flake weights that
-  // are refined from those found. The first one has the gloss found.
-  std::vector<FreeLobes> with_other_gloss(const FoundPaint& found) const;
-
   // The cost of a paint found, with another gloss (gloss units).
   double cost_with_gloss(const FoundPaint& found, double gloss) const;
 
