@@ -11,7 +11,7 @@
 #include "base/scratch_for_test.h"
 #include "image/color_space.h"
 
-namespace goniochrome::image {
+namespace goniochrome::image::exr_layers_test {
 namespace {
 
 using testing::ElementsAre;
@@ -126,4 +126,4 @@ TEST_F(ExrPicture, OfACropIsBlackAroundIt) {
 }
 
 }  // namespace
-}  // namespace goniochrome::image
+}  // namespace goniochrome::image::exr_layers_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace goniochrome::sketch {
+namespace goniochrome::sketch::sketch_residual_test {
 namespace {
 
 // A row of pixels at these aspecular angles.
@@ -72,4 +72,4 @@ TEST(SketchResidual, OtherLightGoesByTheViewersAngle) {
 }
 
 }  // namespace
-}  // namespace goniochrome::sketch
+}  // namespace goniochrome::sketch::sketch_residual_test
