@@ -4,7 +4,8 @@
 #   - what lies in a private folder (internal/, and every folder of `render`) is included by its own room alone;
 #   - a public header stands at the top of its room because somebody outside the room includes it;
 #   - no third-party type shows in a public header;
-#   - the code of a room stands in the namespace of that name; that of `base` stands in goniochrome itself;
+#   - the code of a room stands in the namespace of that name; that of `base` stands in goniochrome itself; below it a test has a
+#     namespace of the name of its file, since several tests are compiled at once;
 #   - what of std::filesystem can throw stands in base/paths.cpp alone: a loop of links or a forbidden folder is no bug;
 #   - lib/README.md lists the rooms, and CMake builds them, in this order.
 set -euo pipefail
@@ -66,7 +67,9 @@ for room in "${order[@]}"; do
   name=goniochrome::$room
   [ "$room" = base ] && name=goniochrome
   while read -r file; do
-    grep -qE "^namespace $name(::[a-z_]+)? \{" "$file" || complain "$file does not stand in the namespace $name"
+    own=$name
+    [[ $file != *_test.cpp ]] || own+=::$(basename "$file" .cpp)
+    grep -qE "^namespace $own(::[a-z_]+)? \{" "$file" || complain "$file does not stand in the namespace $own"
   done < <(find "$room" \( -name '*.h' -o -name '*.cpp' \) ! -path '*/oiio/*')
 done
 
