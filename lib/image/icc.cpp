@@ -77,7 +77,7 @@ class SignalsToLight {
 
 // What a channel of an additive profile adds to the light of black: a curve, tabulated at evenly spaced signals, times
 // a color.
-struct Channel {
+struct ProfileChannel {
   std::vector<float> curve;
   std::array<float, 3> color{};
 
@@ -90,12 +90,12 @@ struct Channel {
 
 // Of light at evenly spaced signals, three numbers each: the number that changes most tells the curve, and the place
 // where it changes most tells the color.
-Channel channel_of(const std::vector<float>& light) {
+ProfileChannel channel_of(const std::vector<float>& light) {
   const auto change = [&](std::size_t i) { return light[i] - light[i % 3]; };
   std::size_t most = 0;
   for (std::size_t i = 0; i < light.size(); ++i)
     if (std::abs(change(i)) > std::abs(change(most))) most = i;
-  Channel channel;
+  ProfileChannel channel;
   channel.curve.resize(light.size() / 3);
   if (change(most) == 0) return channel;
   for (std::size_t k = 0; k < 3; ++k) channel.color[k] = change(most - most % 3 + k);
@@ -105,7 +105,7 @@ Channel channel_of(const std::vector<float>& light) {
 
 template <std::size_t kChannels>
 struct AdditiveLight {
-  std::array<Channel, kChannels> channels;
+  std::array<ProfileChannel, kChannels> channels;
   std::array<float, 3> black{};
 
   explicit AdditiveLight(const SignalsToLight& to_light) {
