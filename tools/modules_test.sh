@@ -55,7 +55,7 @@ while read -r header; do
   case $room in base | cli | fuzz) continue ;; esac
   grep -rqF "#include \"$header\"" --include='*.h' --include='*.cpp' $(printf '%s\n' */ | grep -v "^$room/") ../tools ||
     complain "$header is public, and nobody outside $room includes it: it belongs into $room/internal"
-done < <(find . -name '*.h' | grep -vE "^\./([a-z]+/internal|render/[a-z]+|image/oiio)/" | sort)
+done < <(find . -name '*.h' | grep -vE "^\./([a-z]+/internal|render/[a-z]+|image/codecs)/" | sort)
 
 # fit/ceres_options.h is for the two rooms that solve by Ceres.
 while read -r line; do complain "$line: belongs into a .cpp or into internal/"; done < <(
@@ -67,7 +67,7 @@ for room in "${order[@]}"; do
   [ "$room" = base ] && name=goniochrome
   while read -r file; do
     grep -qE "^namespace $name(::[a-z_]+)? \{" "$file" || complain "$file does not stand in the namespace $name"
-  done < <(find "$room" \( -name '*.h' -o -name '*.cpp' \) ! -path '*/oiio/*')
+  done < <(find "$room" \( -name '*.h' -o -name '*.cpp' \) ! -path '*/codecs/*')
 done
 
 throwing='filesystem::([a-oq-z_]|p[b-z]|path_)[a-z_]*'

@@ -158,8 +158,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "square with light in its corners, of which an angular probe has none, is reported as a likely photograph. "
       "Before "
       "a black ground the two cannot be told apart. Faces are those of OpenGL; an EXR whose envmap "
-      "attribute says cube is read by OpenEXR's own convention. EXR and Radiance HDR are read directly, and other "
-      "formats (TIFF, PNG) through OpenImageIO. Values are linear Rec.709 unless the file says otherwise, and are "
+      "attribute says cube is read by OpenEXR's own convention. EXR, Radiance HDR, PNG, JPEG, TIFF and PNM are read "
+      "directly; DPX, WebP, BMP and TGA through oiiotool, where OpenImageIO is installed. Values are linear Rec.709 unless the file says otherwise, and are "
       "converted to linear Rec.2020.",
       "Every texel counts as a patch of constant radiance with its exact solid angle; a lat-long map is not resampled "
       "first. Several methods are used. Smooth lobes are filtered by zonal harmonics, with a proven bound on the "
