@@ -56,7 +56,7 @@ while read -r header; do
   case $room in base | cli | fuzz) continue ;; esac
   grep -rqF "#include \"$header\"" --include='*.h' --include='*.cpp' $(printf '%s\n' */ | grep -v "^$room/") ../tools ||
     complain "$header is public, and nobody outside $room includes it: it belongs into $room/internal"
-done < <(find . -name '*.h' | grep -vE "^\./([a-z]+/internal|render/[a-z]+|image/oiio)/" | sort)
+done < <(find . -name '*.h' | grep -vE "^\./([a-z]+/internal|render/[a-z]+|image/codecs)/" | sort)
 
 # fit/ceres_options.h is for the two rooms that solve by Ceres.
 while read -r line; do complain "$line: belongs into a .cpp or into internal/"; done < <(
@@ -70,7 +70,7 @@ for room in "${order[@]}"; do
     own=$name
     [[ $file != *_test.cpp ]] || own+=::$(basename "$file" .cpp)
     grep -qE "^namespace $own(::[a-z_]+)? \{" "$file" || complain "$file does not stand in the namespace $own"
-  done < <(find "$room" \( -name '*.h' -o -name '*.cpp' \) ! -path '*/oiio/*')
+  done < <(find "$room" \( -name '*.h' -o -name '*.cpp' \) ! -path '*/codecs/*')
 done
 
 throwing='filesystem::([a-oq-z_]|p[b-z]|path_)[a-z_]*'

@@ -1,7 +1,6 @@
 // What becomes of a tool where the system starts no more threads.
 //
-// The libraries that tools use do not survive that. OpenEXR and TBB abort; log4cplus, which OpenImageIO loads, and
-// OSMesa wait for ever. A tool cannot catch it behind them, so thread_start.cpp defines pthread_create() itself. The
+// The libraries that tools use do not survive that. OpenEXR and TBB abort; OSMesa waits for ever. A tool cannot catch it behind them, so thread_start.cpp defines pthread_create() itself. The
 // dynamic loader takes the program's own function before that of the C library, for every library, also for those that
 // are loaded late. The function hands each call on to the C library. Where the C library cannot start the thread
 // (EAGAIN), the library that asked does not learn of it: the tool says what was lacking and ends at once. Sanitizers

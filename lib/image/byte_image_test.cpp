@@ -30,7 +30,7 @@ ByteImage drawn(int width, int height) {
   return image;
 }
 
-// libpng, through OpenImageIO, is the judge of what was written: one band, several bands, and rows longer than a band.
+// libpng, is the judge of what was written: one band, several bands, and rows longer than a band.
 TEST(Png, ReadsBackBitForBitByAnotherProgram) {
   const ScratchFolder folder;
   for (const auto& [width, height] : {std::pair{1, 1}, {37, 21}, {640, 480}, {100000, 3}}) {

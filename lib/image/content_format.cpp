@@ -141,22 +141,60 @@ int tiff_orientation(std::string_view header) {
   return 1;
 }
 
+// The number of so many bytes, the first of which is the highest.
+std::size_t big_endian(std::string_view bytes) {
+  std::size_t value = 0;
+  for (const char byte : bytes) value = value << 8 | static_cast<unsigned char>(byte);
+  return value;
+}
+
+// The EXIF data of a file; empty where there are none. Behind "RIFF", a size and "WEBP" come chunks of a type, a size
+// and bytes, of which there are an even number.
+std::string_view exif_of_webp(std::string_view content) {
+  for (std::size_t at = 12; at + 8 <= content.size();) {
+    std::size_t size = 0;
+    for (std::size_t i = 8; i-- > 4;) size = size << 8 | static_cast<unsigned char>(content[at + i]);
+    if (size > content.size() - at - 8) break;
+    if (content.substr(at, 4) == "EXIF") return content.substr(at + 8, size);
+    at += 8 + size + size % 2;
+  }
+  return {};
+}
+// Behind a mark of 8 bytes come chunks of a size, a type, bytes and a sum of 4.
+std::string_view exif_of_png(std::string_view content) {
+  for (std::size_t at = 8; at + 12 <= content.size();) {
+    const std::size_t size = big_endian(content.substr(at, 4));
+    if (size > content.size() - at - 12) break;
+    if (content.substr(at + 4, 4) == "eXIf") return content.substr(at + 8, size);
+    at += 12 + size;
+  }
+  return {};
+}
+// Segments begin with 0xFF, a kind, and a size that counts its own two bytes; the kind 0xDA begins the pixels.
+std::string_view exif_of_jpeg(std::string_view content) {
+  for (std::size_t at = 2; at + 4 <= content.size() && content[at] == '\xFF' && content[at + 1] != '\xDA';) {
+    if (content[at + 1] == '\xFF') {  // bytes that fill
+      ++at;
+      continue;
+    }
+    const std::size_t size = big_endian(content.substr(at + 2, 2));
+    if (size < 2 || size > content.size() - at - 2) break;
+    const std::string_view bytes = content.substr(at + 4, size - 2);
+    if (content[at + 1] == '\xE1' && bytes.starts_with("Exif"sv)) return bytes;
+    at += 2 + size;
+  }
+  return {};
+}
+
 }  // namespace
 
-// Behind "RIFF", a size and "WEBP" come chunks of a type, a size and bytes, of which there are an even number.
-int webp_orientation(std::string_view content) {
-  for (std::size_t at = 12; at + 8 <= content.size();) {
-    std::uint32_t size = 0;
-    for (std::size_t i = 8; i-- > 4;) size = size << 8 | static_cast<unsigned char>(content[at + i]);
-    if (size > content.size() - at - 8) return 1;
-    std::string_view bytes = content.substr(at + 8, size);
-    if (content.substr(at, 4) == "EXIF") {
-      if (bytes.starts_with("Exif")) bytes.remove_prefix(std::min<std::size_t>(6, bytes.size()));
-      return tiff_orientation(bytes);
-    }
-    at += 8 + std::size_t{size} + size % 2;
-  }
-  return 1;
+int exif_orientation(std::string_view content, std::string_view format) {
+  std::string_view exif = format == "webp"   ? exif_of_webp(content)
+                          : format == "png"  ? exif_of_png(content)
+                          : format == "jpeg" ? exif_of_jpeg(content)
+                                             : std::string_view();
+  if (exif.starts_with("Exif")) exif.remove_prefix(std::min<std::size_t>(6, exif.size()));
+  return tiff_orientation(exif);
 }
 
 Result<std::string> content_format(std::string_view content, const std::string& name) {

@@ -33,11 +33,12 @@ TEST(ContentFormat, OrientationOfAWebpIsFound) {
   const std::string pixels = "VP8 \3\0\0\0abc\0"s, exif = "MM\0\x2a\0\0\0\x08\0\1\x01\x12\0\3\0\0\0\1\0\6\0\0\0\0\0\0"s;
   const std::string head = "RIFF\0\0\0\0WEBP"s, size = "\x1a\0\0\0"s, longer = "\x20\0\0\0"s;
   ASSERT_EQ(exif.size(), 26U);
-  EXPECT_EQ(webp_orientation(head + pixels), 1);
-  EXPECT_EQ(webp_orientation(head + pixels + "EXIF" + size + exif), 6);
-  EXPECT_EQ(webp_orientation(head + pixels + "EXIF" + longer + "Exif\0\0"s + exif), 6);
+  EXPECT_EQ(exif_orientation(head + pixels, "webp"), 1);
+  EXPECT_EQ(exif_orientation(head + pixels + "EXIF" + size + exif, "webp"), 6);
+  EXPECT_EQ(exif_orientation(head + pixels + "EXIF" + longer + "Exif\0\0"s + exif, "webp"), 6);
   const std::string whole = head + pixels + "EXIF" + size + exif;
-  for (std::size_t cut = 0; cut < whole.size(); ++cut) EXPECT_EQ(webp_orientation(whole.substr(0, cut)), 1) << cut;
+  for (std::size_t cut = 0; cut < whole.size(); ++cut)
+    EXPECT_EQ(exif_orientation(whole.substr(0, cut), "webp"), 1) << cut;
 }
 
 }  // namespace

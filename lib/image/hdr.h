@@ -1,5 +1,5 @@
-// Radiance pictures (`*.hdr`) in memory. Most probes of light come in this format, and it is read here because loading
-// OpenImageIO takes ten times longer than reading the picture.
+// Radiance pictures (`*.hdr`) in memory. Most probes of light come in this format, and are read here, where
+// OpenImageIO would take ten times longer to start than to read the picture.
 #pragma once
 
 #include <string>

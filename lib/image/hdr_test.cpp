@@ -202,16 +202,10 @@ TEST_F(HdrFile, DamageNeverCrashes) {
   EXPECT_GT(read, 100);
 }
 
-TEST_F(HdrFile, TheOtherFormatsAreNotLoaded) {
-  const auto loaded = [] {
-    std::ifstream maps("/proc/self/maps");
-    return std::string(std::istreambuf_iterator<char>(maps), {}).find("OpenImageIO") != std::string::npos;
-  };
-  if (loaded()) GTEST_SKIP() << "another test of this process has loaded them";
+TEST_F(HdrFile, AGrayPixelIsItsRadiance) {
   const auto gray = read(header(1, 1) + std::string("\x80\x80\x80\x81", 4));
   ASSERT_TRUE(gray.ok());
   EXPECT_EQ(gray->image.data, (std::vector<float>{1, 1, 1}));
-  EXPECT_FALSE(loaded());
 }
 
 }  // namespace

@@ -1,14 +1,11 @@
 #include <dlfcn.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <new>
 #include <optional>
 
 #include "base/child.h"
@@ -17,9 +14,10 @@
 #include "image/exr.h"
 #include "image/hdr.h"
 #include "image/image.h"
+#include "image/internal/codec_module.h"
 #include "image/internal/content_format.h"
 #include "image/internal/exr.h"
-#include "image/internal/oiio_module.h"
+#include "image/internal/other_formats.h"
 #include "image/internal/png_colors.h"
 #include "image/internal/turn.h"
 
@@ -27,7 +25,7 @@ namespace goniochrome::image {
 
 namespace {
 
-constexpr const char* kModuleName = "goniochrome-oiio.so";
+constexpr const char* kModuleName = "goniochrome-codecs.so";
 constexpr int kMostChannels = 1024;  // of one picture
 
 // The module's path: in $GONIOCHROME_MODULE_PATH where that is set, else in ../lib/goniochrome beside the program.
@@ -38,45 +36,32 @@ std::filesystem::path module_path() {
 }
 
 struct Module {
-  GoniochromeOiioRead read = nullptr;
+  GoniochromeDecode decode = nullptr;
 };
 
-// The module, loaded once. Error: where it was looked for, and the remedy.
+// The module. Error: where it was looked for, and the remedy.
 Result<Module> loaded_module() {
-  static Module loaded;
-  if (loaded.read) return loaded;
   const std::string path = module_path().string();
-  // With less, one of the libraries starts its threads, fails at one of them and then waits for the others for ever.
-  constexpr std::size_t kLoading_bytes = std::size_t{450} << 20;
-  if (const auto left = addresses_left(); left && *left < kLoading_bytes)
-    return input_error(
-        "{}: cannot be loaded, for there is too little memory: give it 600 MB of addresses, or convert the image to "
-        "EXR",
-        path);
   void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) {
     // The loader tells by a sentence alone that it had no memory.
     const std::string reason = dlerror();
     for (const char* words : {"failed to map", "annot allocate memory", "cannot create shared object"})
-      if (reason.find(words) != std::string::npos)
-        return input_error(
-            "{}: cannot be loaded, for there is too little memory ({}): give it 600 MB of addresses, or convert the "
-            "image to EXR",
-            path, reason);
+      if (reason.find(words) != std::string::npos) throw std::bad_alloc();
     return input_error(
-        "{}: cannot be loaded ({}): it reads every format but EXR; install it there, set GONIOCHROME_MODULE_PATH to "
-        "its folder, or convert the image to EXR",
+        "{}: cannot be loaded ({}): it reads PNG, JPEG and TIFF; install it there, set GONIOCHROME_MODULE_PATH to its "
+        "folder, or convert the image to EXR",
         path, reason);
   }
-  loaded.read = reinterpret_cast<GoniochromeOiioRead>(dlsym(handle, kOiioReadName));
-  if (!loaded.read) return input_error("{}: is not of this version of Goniochrome: install both from one build", path);
-  return loaded;
+  const Module module{reinterpret_cast<GoniochromeDecode>(dlsym(handle, kDecodeName))};
+  if (!module.decode)
+    return input_error("{}: is not of this version of Goniochrome: install both from one build", path);
+  return module;
 }
 
 // A picture on its way from the child process: numbers and texts, one after the other, and then the pixels.
 struct Numbers {
-  std::int32_t width, height, channels, is_integer, has_chromaticities, is_inks;
-  std::array<float, 8> chromaticities;
+  std::int32_t width, height, channels, is_integer, is_inks;
 };
 
 void put_text(ChildOutput& output, std::string_view text) {
@@ -90,17 +75,10 @@ struct Decoded {
   std::optional<std::string> failure = "the library that reads it said nothing";
 };
 
-void take(void* context, const GoniochromeOiioImage* image) {
+void take(void* context, const GoniochromeDecoded* image) {
   auto& decoded = *static_cast<Decoded*>(context);
   ChildOutput& output = decoded.output;
-  Numbers numbers{image->width,
-                  image->height,
-                  image->channels,
-                  image->is_integer,
-                  image->chromaticities ? 1 : 0,
-                  image->is_inks,
-                  {}};
-  if (image->chromaticities) std::copy_n(image->chromaticities, 8, numbers.chromaticities.begin());
+  const Numbers numbers{image->width, image->height, image->channels, image->is_integer, image->is_inks};
   output.write(&numbers, sizeof numbers);
   for (const char* text : {image->color_space, image->interop_id, image->envmap}) put_text(output, text);
   put_text(output, image->icc_profile ? std::string_view(image->icc_profile, image->icc_size) : std::string_view());
@@ -158,9 +136,6 @@ std::optional<ImagePart> unpacked(std::string_view bytes) {
     if (!parcel.take_text(name)) return std::nullopt;
   part.attributes["goniochrome:integer"] = static_cast<int>(numbers.is_integer);
   if (numbers.is_inks != 0) part.attributes["goniochrome:inks"] = 1;
-  if (numbers.has_chromaticities != 0)
-    part.attributes["chromaticities"] =
-        std::vector<float>(numbers.chromaticities.begin(), numbers.chromaticities.end());
   const std::size_t samples = parcel.left() / sizeof(float);
   const std::size_t row = static_cast<std::size_t>(numbers.width) * static_cast<std::size_t>(numbers.channels);
   if (parcel.left() % sizeof(float) != 0 || samples % row != 0 ||
@@ -171,53 +146,21 @@ std::optional<ImagePart> unpacked(std::string_view bytes) {
   return part;
 }
 
-// A file in memory, which has a path for as long as this object lives: the library reads files by name.
-class MemoryFile {
- public:
-  explicit MemoryFile(std::string_view content) : descriptor_(memfd_create("goniochrome", MFD_CLOEXEC)) {
-    while (descriptor_ >= 0 && !content.empty()) {
-      const ssize_t count = write(descriptor_, content.data(), content.size());
-      if (count <= 0) return;
-      content.remove_prefix(static_cast<std::size_t>(count));
-    }
-    whole_ = descriptor_ >= 0;
-  }
-  MemoryFile(const MemoryFile&) = delete;
-  ~MemoryFile() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  bool whole() const { return whole_; }
-  std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
-
- private:
-  int descriptor_;
-  bool whole_ = false;
-};
-
-// Addresses for one picture: the libraries' own, of which 400 MB are their code, and 8 times the floats that a file of
-// its size can hold.
+// Addresses for one picture: those of the libraries, and 8 times the floats that a file of its size can hold.
 ChildLimits limits_for(std::size_t file_bytes) {
-  constexpr std::size_t kOwn = std::size_t{1} << 30, kFloatsAByte = 1100;
+  constexpr std::size_t kOwn = std::size_t{1} << 28, kFloatsAByte = 1100;
   const std::size_t floats = std::min(kMostSamples, kFloatsAByte * file_bytes);
   return {kOwn + 8 * sizeof(float) * floats, 60 + static_cast<int>(file_bytes >> 20)};
 }
 
-// For the first picture the child loads the module. Most runs read one picture, and so their own process is spared the
-// 115 MB of memory that the libraries take. For the second picture the module is loaded here, once for all that follow.
-Result<ImagePart> read_through_module(std::string content, const std::string& format, const std::string& name,
-                                      Inks inks) {
-  static std::atomic<int> pictures = 0;
-  if (++pictures > 1) {
-    GONIO_ASSIGN([[maybe_unused]] const Module module, loaded_module());
-  }
+// A child process loads the module, which takes 3 ms, and decodes.
+Result<ImagePart> decoded_by_module(const std::string& content, const std::string& format, const std::string& name,
+                                    Inks inks) {
   const std::size_t size = content.size();
-  const MemoryFile file(content);
-  if (!file.whole()) return input_error("{}: is too large for the memory there is", name);
-  content = std::string();
   GONIO_ASSIGN(const ChildBytes bytes, made_by_child(name, limits_for(size), [&](ChildOutput& output) -> Result<void> {
                  GONIO_ASSIGN(const Module module, loaded_module());
                  Decoded decoded{output};
-                 module.read(file.path().c_str(), format.c_str(), size, inks == Inks::kKept, &decoded, take, fail);
+                 module.decode(content.data(), size, format.c_str(), inks == Inks::kKept, &decoded, take, fail);
                  if (!decoded.failure) return {};
                  return input_error("{}: cannot be read as an image: {}", name, *decoded.failure);
                }));
@@ -252,12 +195,15 @@ Result<ImagePart> read_image(const std::string& path, Inks inks) {
   if (!layer.empty())
     return input_error("{}: has no layers: leave out [{}], which names one of an EXR file", file, layer);
   if (format == "hdr") return decoded_hdr(content, input.name());
+  if (format == "pnm") return decoded_pnm(content, input.name());
+  const bool by_module = format == "png" || format == "jpeg" || format == "tiff";
+  GONIO_ASSIGN(ImagePart part, by_module ? decoded_by_module(content, format, input.name(), inks)
+                                         : decoded_by_oiiotool(content, format, input.name()));
   Attributes colors = format == "png" ? png_colors(content) : Attributes();
-  const Turn turn = exif_turn(format == "webp" ? webp_orientation(content) : 1);
-  GONIO_ASSIGN(ImagePart part, read_through_module(std::move(content), format, input.name(), inks));
   if (colors.contains("oiio:ColorSpace")) part.attributes.erase("ICCProfile");
   for (auto& [name, value] : colors) part.attributes[name] = std::move(value);
   Image& image = part.image;
+  const Turn turn = exif_turn(exif_orientation(content, format));
   if (turn.any()) image.data = upright(image.data, image.width, image.height, image.channels, turn);
   return part;
 }

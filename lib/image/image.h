@@ -1,6 +1,6 @@
-// Float images in memory, and the files they come from and go to. OpenEXR and Radiance HDR are read here; PNG, JPEG,
-// TIFF, PNM, DPX, WebP, BMP and TGA through OpenImageIO, loaded on first need (300 ms) and run in a child process. The
-// path "-" is standard input or standard output everywhere.
+// Float images in memory, and the files they come from and go to. OpenEXR, Radiance HDR and PNM are read here; PNG, JPEG
+// and TIFF by their own libraries, in a child process; DPX, WebP, BMP and TGA by the program oiiotool of OpenImageIO,
+// where it is installed. The path "-" is standard input or standard output everywhere.
 #pragma once
 
 #include <cstddef>

@@ -48,7 +48,7 @@ chmod +x "$folder"/others/*
   moved/bin/paint-batch merge batch
   grep -q '1 pictures' <(moved/bin/paint-batch merge batch 2>&1)
 )
-for file in bin/fit-paint lib/goniochrome/goniochrome-oiio.so share/man/man1/fit-paint.1 share/man/man5/goniochrome-paint.5 \
+for file in bin/fit-paint lib/goniochrome/goniochrome-codecs.so share/man/man1/fit-paint.1 share/man/man5/goniochrome-paint.5 \
   share/bash-completion/completions/fit-paint share/goniochrome/paint.xsd share/goniochrome/testdata/studio.exr; do
   [ -s "$folder/moved/$file" ] || {
     echo "not installed: $file"

@@ -14,7 +14,7 @@ foreach(module ${modules})
     FILES_MATCHING
     PATTERN "*.h"
     PATTERN "*_for_test.h" EXCLUDE
-    PATTERN "oiio" EXCLUDE)
+    PATTERN "codecs" EXCLUDE)
 endforeach()
 
 include(CMakePackageConfigHelpers)

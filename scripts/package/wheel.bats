@@ -27,7 +27,7 @@ works() {
     "$command" --help >help || { echo "$command: does not start"; return 1; }
     grep -q "$command" help
   done
-  [ -s "$1/lib/goniochrome/goniochrome-oiio.so" ]
+  [ -s "$1/lib/goniochrome/goniochrome-codecs.so" ]
   [ -s "$1/lib/goniochrome/studio.html" ] || [ ! -f "$GONIOCHROME_BUILD/lib/goniochrome/studio.html" ]
   data=$1/share/goniochrome/testdata
   # The reader of other pictures is found beside the programs.

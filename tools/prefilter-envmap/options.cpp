@@ -157,8 +157,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "square with light in its corners, of which an angular probe has none, is reported as a likely photograph. "
       "Before "
       "a black ground the two cannot be told apart. Faces are those of OpenGL; an EXR whose envmap "
-      "attribute says cube is read by OpenEXR's own convention. EXR and Radiance HDR are read directly, and other "
-      "formats (TIFF, PNG) through OpenImageIO. Values are linear Rec.709 unless the file says otherwise, and are "
+      "attribute says cube is read by OpenEXR's own convention. EXR, Radiance HDR, PNG, JPEG, TIFF and PNM are read "
+      "directly; DPX, WebP, BMP and TGA through oiiotool, where OpenImageIO is installed. Values are linear Rec.709 unless the file says otherwise, and are "
       "converted to linear Rec.2020.",
       "An EXR is read in its display window: black where it has no pixels, and without overscan. Its colors are the "
       "channels R, G and B, or Y, in any case; those without a layer, or else of the only layer that has them. "

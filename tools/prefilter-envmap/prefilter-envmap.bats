@@ -113,18 +113,44 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   [ ! -e x.env.exr ]
 }
 
-@test "a missing module for other formats is told with its remedy" {
+@test "a missing module for PNG, JPEG and TIFF is told with its remedy" {
   printf 'P6\n2 1\n255\n123123' >tiny.ppm
-  GONIOCHROME_MODULE_PATH=/nowhere run prefilter-envmap -e 6 tiny.ppm -o x.env.exr
+  oiiotool tiny.ppm -o tiny.png
+  GONIOCHROME_MODULE_PATH=/nowhere run prefilter-envmap -e 6 tiny.png -o x.env.exr
   [ "$status" -eq 3 ]
-  [[ "$output" =~ "/nowhere/goniochrome-oiio.so: cannot be loaded" ]]
+  [[ "$output" =~ "/nowhere/goniochrome-codecs.so: cannot be loaded" ]]
   [[ "$output" =~ "GONIOCHROME_MODULE_PATH" ]]
-  run prefilter-envmap -q -e 6 --size 4 tiny.ppm -o x.env.exr
+  run prefilter-envmap -q -e 6 --size 4 tiny.png -o x.env.exr
   [ "$status" -eq 0 ]
   [ -s x.env.exr ]
 }
 
-@test "EXR and Radiance HDR need no module" {
+@test "a missing oiiotool is told with its remedy, and one that gives up with its reason" {
+  printf 'P6\n2 1\n255\n123123' >tiny.ppm
+  oiiotool tiny.ppm -o tiny.bmp
+  tool=$(command -v prefilter-envmap)
+  PATH=/nowhere run "$tool" -e 6 tiny.bmp -o x.env.exr
+  echo "$output"
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "tiny.bmp: is a picture of the format BMP, which OpenImageIO reads" ]]
+  [[ "$output" =~ "install openimageio-tools, or OpenImageIO by pip, or convert" ]]
+  head -c 30 tiny.bmp >cut.bmp
+  run prefilter-envmap -q -e 6 --size 4 cut.bmp -o x.env.exr
+  echo "$output"
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "cut.bmp: cannot be read as an image: " ]]
+  run prefilter-envmap -q -e 6 --size 4 tiny.bmp -o x.env.exr
+  [ "$status" -eq 0 ]
+  [ -s x.env.exr ]
+  # Nothing stays in the folder of temporary files.
+  mkdir temporary
+  TMPDIR=$PWD/temporary prefilter-envmap -q -e 6 --size 4 tiny.bmp -o x.env.exr
+  [ -z "$(ls temporary)" ]
+}
+
+@test "EXR, Radiance HDR and PNM need no module" {
+  printf 'P6\n2 1\n255\n123123' >tiny.ppm
+  GONIOCHROME_MODULE_PATH=/nowhere prefilter-envmap -q -e 6 --size 4 tiny.ppm -o p.env.exr
   printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n12341234' >tiny.hdr
   GONIOCHROME_MODULE_PATH=/nowhere run prefilter-envmap -q -e 6 --size 4 tiny.hdr -o x.env.exr
   [ "$status" -eq 0 ]

@@ -129,8 +129,6 @@ Result<void> gather(const Options& options, Material& material) {
   if (!options.residual.empty() && !options.residual.ends_with(".png"))
     return usage_error("--residual is \"{}\": give a name that ends in .png", options.residual);
   sketch::SketchInput& input = material.input;
-  // The files are read one after the other. OpenImageIO, when it is loaded while another thread works, crashes where
-  // memory runs out.
   const auto view = options.view == "plain" ? sketch::PictureView::kPlain : sketch::PictureView::kPaint;
   Result<sketch::Picture> picture = sketch::read_picture(options.image, view);
   Result<image::AovFile> buffers = image::read_aov_file(options.buffers);

@@ -13,7 +13,8 @@ namespace goniochrome::image {
 // is, if that can be told, and what to convert it to. `name` is what errors call the file.
 Result<std::string> content_format(std::string_view content, const std::string& name);
 
-// The EXIF orientation of a WebP file, which OpenImageIO does not read; 1 where there is none.
-int webp_orientation(std::string_view content);
+// The EXIF orientation of a PNG, JPEG or WebP file, 1 to 8; 1 where it has none, and for other formats, whose decoders
+// turn pictures.
+int exif_orientation(std::string_view content, std::string_view format);
 
 }  // namespace goniochrome::image
