@@ -478,7 +478,7 @@ without_threads() {
       [ "$(head -c 3 o.$ending)" = old ]
     done
   done < <(every_tool; echo "png render-osmesa -q --engine path --mesh tri.off --light 0,20 --size 16x12 --samples 1")
-  # OpenEXR's, log4cplus's, TBB's and Mesa's: without that many this test would have met no library.
+  # OpenEXR's, TBB's and Mesa's: without that many this test would have met no library.
   [ "$lacking" -ge 12 ]
 }
 

@@ -42,6 +42,13 @@ works() {
   fit-paint --quiet --basis "$data/b7.basis.xml" "$data/paints.paints.xml#silver_fine" -o tool.paints.xml
   plot-paint --quiet tool.paints.xml -o tool.svg
   cmp silver.svg tool.svg
+  prefilter-envmap --quiet --basis "$data/b7.basis.xml" --size 16 "$data/studio.exr" -o studio.env.exr
+  render-osmesa --quiet --mesh "$data/speed-shape.obj" --paint tool.paints.xml --env studio.env.exr --size 32x24 -o shape.png
+  relight --quiet --from D65 --to A shape.png -o shape.exr
+  if [ -s "$1/lib/goniochrome/studio.html" ]; then
+    paint-studio --quiet --mesh "$data/speed-shape.obj" --env studio.env.exr --basis "$data/b7.basis.xml" "$data/paints.paints.xml" -o page.html
+    [ -s page.html ]
+  fi
   printf 'sample,geometry,illuminant,observer,L,a,b\none,45as15,D65,10,50,10,5\none,45as45,D65,10,40,8,4\none,45as110,D65,10,30,6,3\n' >one.csv
   paint-book one.csv --basis "$data/b5.basis.xml" --size 32x24 --quiet -o one.html
   [ -s one.html ]
@@ -75,10 +82,25 @@ works() {
   [ "$(project_says 'project["project"]["version"]')" = "$(fit-paint --version | cut -d' ' -f2)" ]
 }
 
-@test "the wheel that GONIOCHROME_WHEEL names works in a fresh environment" {
-  [ -n "$wheel" ] || skip "GONIOCHROME_WHEEL names no wheel; pip wheel --no-deps . makes one"
+# foreign PREFIX PATH...: what the programs and libraries there load from outside the prefix, but the C library, libstdc++ and libgcc_s.
+foreign() {
+  local file prefix=$1
+  shift
+  find "$@" -type f | while read -r file; do
+    [ "$(head -c 4 "$file" | tr -d '\0')" = $'\x7fELF' ] || continue
+    ldd "$file" | grep -vE "$prefix/|linux-vdso|ld-linux|lib(c|m|dl|pthread|rt|stdc\+\+|gcc_s)\.so" | sed "s|^|${file##*/}:|" || true
+  done
+}
+
+@test "the wheel that GONIOCHROME_WHEEL names works in a fresh environment, with libraries of its own" {
+  [ -n "$wheel" ] || skip "GONIOCHROME_WHEEL names no wheel; scripts/make-wheel makes one"
   /usr/bin/python3 -m venv env || skip "python3-venv is not installed"
   env/bin/pip install "$wheel"
+  foreign "$PWD/env" env/bin env/lib/goniochrome env/lib/python3*/site-packages/goniochrome >foreign
+  [ ! -s foreign ] || { cat foreign; false; }
+  # The control: a program of the system loads other libraries from there.
+  [ -n "$(foreign "$PWD/env" "$(command -v oiiotool)")" ]
+  [ "$(stat -c %s "$wheel")" -le 80000000 ]
   unset PYTHONPATH
   works "$PWD/env" env/bin/python
 }
