@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/angles.h"
+#include "render/path/path_loop.h"
 
 namespace goniochrome::render {
 
@@ -38,6 +39,43 @@ struct LobePoint::Ray {
 struct LobePoint::Sent {
   color::Rgb base, gloss, deeper, fixed;
   color::Rgb total() const { return base + gloss + deeper; }
+};
+
+// Light that one surface reflects, by the class of its reflection: base, or gloss and mirror.
+class LobePoint::Classes {
+ public:
+  static constexpr bool kWeighsLamps = false;
+  struct Reflected {
+    Float3 base, gloss;
+    float pdf = 0;
+  };
+  Classes(const LobePoint& point, Sent& sent) : point_(point), sent_(sent) {}
+
+  Reflected reflected(const Transport::Vertex& vertex, const Float3& to_light) const {
+    const PaintedPoint::Parts parts = vertex.painted.parts(to_light);
+    return {parts.diffuse + parts.lobes - parts.gloss, parts.gloss, vertex.painted.at(to_light).pdf};
+  }
+  void add_reflected(const Transport::Vertex&, const Reflected& f, double scale, const PathLight& light) {
+    const auto s = static_cast<float>(scale);
+    sent_.base += point_.reflect(s * f.base, light.rgb), sent_.gloss += point_.reflect(s * f.gloss, light.rgb);
+  }
+  void add(double scale, const PathLight& light) {
+    const auto s = static_cast<float>(scale);
+    sent_.base += point_.reflect(s * base_, light.rgb), sent_.gloss += point_.reflect(s * gloss_, light.rgb);
+  }
+  void reflect(const Transport::Vertex&, const Reflected& f, double scale) {
+    base_ = static_cast<float>(scale) * f.base, gloss_ = static_cast<float>(scale) * f.gloss;
+  }
+  void mirror(const Transport::Vertex& vertex, double scale) {
+    base_ = {}, gloss_ = static_cast<float>(scale) * vertex.painted.mirror();
+  }
+  // Of light that further surfaces send.
+  color::Rgb shown(const color::Rgb& light) const { return point_.reflect(base_ + gloss_, light); }
+
+ private:
+  const LobePoint& point_;
+  Sent& sent_;
+  Float3 base_, gloss_;
 };
 
 // Of each sequence and column, the mean over its directions: light of the environment from free and from blocked
@@ -116,8 +154,7 @@ std::vector<LobePoint::Ray> LobePoint::traced_rays(int directions, std::uint64_t
   return rays;
 }
 
-// As Transport::bounced() at its first surface, whose reflection is told in two parts here. What comes from further
-// surfaces is told apart.
+// A path whose first surface is told in two parts. What comes from further surfaces is told apart.
 LobePoint::Sent LobePoint::sent(const Hit& hit, const Float3& direction, const Sequence& sequence,
                                 std::uint32_t index) const {
   Sent sent;
@@ -127,73 +164,19 @@ LobePoint::Sent LobePoint::sent(const Hit& hit, const Float3& direction, const S
     sent.fixed = floor.fixed, sent.deeper = floor.bounced;
     return sent;
   }
-  const rays::Spot at = t.rays_->spot(hit, spot_.start, direction);
-  const PaintedPoint painted = t.painted(at, -direction);
-  if (painted.black()) return sent;
-  const double mirror = painted.mirror_weight(),
-               mirror_chance = mirror > 0 ? mirror / (mirror + painted.lobes_weight()) : 0, others = 1 - mirror_chance;
-  const Float3& start = at.start;
-  const auto add = [&](const Float3& to_light, double scale, const color::Rgb& light) {
-    const PaintedPoint::Parts parts = painted.parts(to_light);
-    const auto s = static_cast<float>(scale);
-    sent.base += reflect(s * (parts.diffuse + parts.lobes - parts.gloss), light);
-    sent.gloss += reflect(s * parts.gloss, light);
-  };
-  const std::array<double, 4> numbers = sequence.point(index, 4), onward = sequence.point(index, 5);
-  if (!t.lights_.empty()) {
-    const Transport::LampSample lamp = t.drawn_lamp(start, numbers[2], numbers[3]);
-    if (rays::dot(at.shading, lamp.direction) > 0 && !t.rays_->blocked(start, lamp.direction, lamp.reach))
-      add(lamp.direction, 1, lamp.light);
+  const Transport::Vertex vertex(t, t.rays_->spot(hit, spot_.start, direction), -direction);
+  if (vertex.painted.black()) return sent;
+  Classes light(*this, sent);
+  const Transport::Next next = t.step(vertex, sequence.point(index, 4), sequence.point(index, 5), light);
+  if (!next.goes_on() || !next.hit.any()) return sent;
+  const int further = options_.bounces - 1;
+  if (t.is_laid(next.hit)) {
+    const Transport::FloorLight floor = t.off_floor(next.hit, next.start, next.direction, further, sequence, index, 6);
+    light.add(1, {floor.fixed});
+    sent.deeper = light.shown(floor.bounced);
+  } else if (further > 0) {
+    sent.deeper = light.shown(t.bounced(next.hit, next.start, next.direction, further, sequence, index, 6));
   }
-  if (t.environment_) {
-    const LightSample light = t.environment_->drawn(numbers[0], numbers[1]);
-    const Reflection reflection = light.pdf > 0 ? painted.at(light.direction) : Reflection{};
-    if (reflection.pdf > 0 && !t.rays_->blocked(start, light.direction))
-      add(light.direction, 1 / (light.pdf + others * reflection.pdf), light.radiance);
-  }
-  if (!t.emitters_.empty()) {
-    const EmitterSample light = t.emitters_.drawn(lit_point(at), onward[3], numbers[2], numbers[3]);
-    const Reflection reflection = light.pdf > 0 ? painted.at(light.direction) : Reflection{};
-    if (reflection.pdf > 0 && !t.rays_->blocked(start, light.direction, kShort * light.distance))
-      add(light.direction, 1 / (light.pdf + others * reflection.pdf), light.radiance);
-  }
-  // The next ray: along the mirror direction, or drawn from the lobes.
-  const bool mirrored = onward[0] < mirror_chance;
-  Reflection drawn;
-  if (mirrored) {
-    drawn.direction = painted.mirrored();
-  } else {
-    drawn = painted.drawn((onward[0] - mirror_chance) / others, onward[1], onward[2]);
-    if (!(drawn.pdf > 0)) return sent;
-  }
-  const double pdf = others * drawn.pdf;
-  const Hit next = t.rays_->closest(start, drawn.direction);
-  color::Rgb end, deeper;
-  double light_pdf = 0;
-  PathOptions further = options_;
-  --further.bounces;
-  if (t.is_laid(next)) {
-    const Transport::FloorLight floor = t.off_floor(next, start, drawn.direction, further.bounces, sequence, index, 6);
-    end = floor.fixed, deeper = floor.bounced;
-  } else if (next.any()) {
-    end = t.emitters_.radiance(t.rays_->part(next.triangle));
-    if (end != color::Rgb{} && !mirrored)
-      light_pdf = t.emitters_.pdf(lit_point(at), next.triangle, drawn.direction, next.distance);
-    if (further.bounces > 0) deeper = t.bounced(next, start, drawn.direction, further, sequence, index, 6);
-  } else if (t.environment_) {
-    const LightSample light = t.environment_->at(drawn.direction);
-    end = light.radiance;
-    if (!mirrored) light_pdf = light.pdf;
-  }
-  if (mirrored) {
-    if (!t.lights_.empty()) end += t.mirrored_lamps(start, drawn.direction, next);
-    sent.gloss += (1 / mirror_chance) * reflect(painted.mirror(), end);
-  } else if (end != color::Rgb{}) {
-    add(drawn.direction, 1 / (pdf + light_pdf), end);
-  }
-  if (deeper == color::Rgb{}) return sent;
-  sent.deeper =
-      mirrored ? (1 / mirror_chance) * reflect(painted.mirror(), deeper) : (1 / pdf) * reflect(drawn.f_cos, deeper);
   return sent;
 }
 
@@ -506,19 +489,18 @@ void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* 
     if (!(kernels.at(lamp.direction, sent) > 0) || t.rays_->blocked(at.start, lamp.direction, lamp.reach)) continue;
     for (std::size_t l = 0; l < count; ++l) once[l] += static_cast<double>(sent[l]) * lamp.light;
   }
-  PathOptions further = options_;
-  --further.bounces;
+  const int further = options_.bounces - 1;
   const auto add = [&](const Float3& toward, double share, std::uint32_t set) {
     const Hit next = t.rays_->closest(at.start, toward);
     color::Rgb light, bounced;
     if (t.is_laid(next)) {
-      const Transport::FloorLight floor = t.off_floor(next, at.start, toward, further.bounces, sequence, index, set);
+      const Transport::FloorLight floor = t.off_floor(next, at.start, toward, further, sequence, index, set);
       light = floor.fixed, bounced = floor.bounced;
     } else if (!next.any()) {
       if (t.environment_) light = t.environment_->at(toward).radiance;
     } else {
       light = t.emitters_.radiance(t.rays_->part(next.triangle));
-      if (further.bounces > 0) bounced = t.bounced(next, at.start, toward, further, sequence, index, set);
+      if (further > 0) bounced = t.bounced(next, at.start, toward, further, sequence, index, set);
     }
     for (std::size_t l = 0; l < count; ++l)
       once[l] += (share * sent[l]) * light, deeper[l] += (share * sent[l]) * bounced;

@@ -76,6 +76,7 @@ class LobePoint {
  private:
   struct Ray;
   struct Sent;
+  class Classes;
   struct Sums;
   Ray drawn_ray(const std::array<double, 4>& numbers) const;
   std::vector<Ray> traced_rays(int directions, std::uint64_t seed, bool& any_blocked) const;

@@ -295,7 +295,7 @@ LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& 
                     (pdf + transport_.emitters_.pdf(lit_point(spot_), hit.triangle, ray.direction, hit.distance)) *
                     emission;
       if (options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse))
-        sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
+        sent = transport_.bounced(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
     }
   }
   add_sent(ray.direction, sent, scaled, shares);
@@ -345,7 +345,7 @@ LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, co
         transport_.off_floor(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
     arriving += floor.fixed, sent = floor.bounced;
   } else if (blocked && options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse)) {
-    sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
+    sent = transport_.bounced(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
   }
   shares.direct += reflect(scaled * reflection.f_cos, arriving);
   add_sent(ray.direction, sent, scaled, shares);
@@ -382,7 +382,7 @@ LightShares PointTransport::mirrored(const Sequence& sequence, std::uint32_t beg
           transport_.off_floor(mirror_hit_, spot_.start, painted_.mirrored(), options_.bounces, sequence, i, 4);
       fixed += floor.fixed, sent += floor.bounced;
     } else {
-      sent += transport_.bounced(mirror_hit_, spot_.start, painted_.mirrored(), options_, sequence, i, 4);
+      sent += transport_.bounced(mirror_hit_, spot_.start, painted_.mirrored(), options_.bounces, sequence, i, 4);
     }
   }
   LightShares shares;

@@ -5,6 +5,7 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "render/path/path_loop.h"
 
 namespace goniochrome::render {
 
@@ -12,13 +13,9 @@ namespace {
 
 using color::kBands;
 using rays::Float3;
-using rays::Hit;
 using rays::Spot;
 using Floats = std::array<float, kBands>;
 
-// As paths of three channels end, see transport.cpp.
-constexpr int kRouletteFrom = 3, kEndlessFrom = 64, kMostBounces = 4096;
-constexpr float kEndlessChance = 0.9F, kLeastChance = 0.05F;
 
 Floats floats(const color::Bands& bands, double scale = 1) {
   Floats result;
@@ -32,6 +29,10 @@ void add(Floats& sum, float scale, const Floats& x) {
 
 void add_product(Floats& sum, float scale, const Floats& x, const Floats& y, const Floats& z) {
   for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += scale * x[b] * y[b] * z[b];
+}
+
+void add_product(Floats& sum, float scale, const Floats& x, const Floats& y) {
+  for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += scale * x[b] * y[b];
 }
 
 void multiply(Floats& path, float scale, const Floats& x) {
@@ -141,71 +142,76 @@ Result<Transport> SpectralPaths::transport(const PathScene& path_scene) {
   return transport;
 }
 
-// A surface on the way of a path: its paint as it is drawn from, and in bands.
-class SpectralPaths::Vertex {
+// Light in bands along a path, in the sum of many paths. The lamps and emitters of the transport are gray; their bands
+// are those of this scene.
+class SpectralPaths::Bands {
  public:
-  Vertex(const Transport& transport, const std::vector<Paint>& paints, const Spot& at, const Float3& to_viewer)
-      : spot(at),
-        painted(transport.painted(at, to_viewer)),
-        receiver(transport.receiver(at, painted)),
-        paint_(&paints[static_cast<std::size_t>(at.part)]),
-        between_(painted.between()) {
-    const double mirror = painted.mirror_weight(), lobes = painted.lobes_weight();
-    mirror_chance = mirror > 0 ? mirror / (mirror + lobes) : 0;
-    lobes_chance = (1 - mirror_chance) * (1 - receiver.chance());
-  }
-  // Matt white.
-  Vertex(const Spot& at, const Float3& to_viewer)
-      : spot(at), painted(Float3{rays::kInversePi, rays::kInversePi, rays::kInversePi}, at.shading, to_viewer) {}
+  static constexpr bool kWeighsLamps = true;
+  Bands(const SpectralPaths& scene, Carrier& sum) : scene_(scene), sum_(sum) { path_.fill(1); }
 
-  // f cos_i.
-  Carrier reflected(const PaintedPoint::Shares& shares) const {
+  PaintedPoint::Shares reflected(const Transport::Vertex& vertex, const Float3& to_light) const {
+    return vertex.painted.shares(to_light);
+  }
+  void add_reflected(const Transport::Vertex& vertex, const PaintedPoint::Shares& f, double scale,
+                     const PathLight& light) {
+    const Light of = light_of(light);
+    add_product(sum_, static_cast<float>(scale * of.size), path_, f_cos(vertex, f), of.bands);
+  }
+  void add(double scale, const PathLight& light) {
+    const Light of = light_of(light);
+    add_product(sum_, static_cast<float>(scale * of.size), path_, of.bands);
+  }
+  void reflect(const Transport::Vertex& vertex, const PaintedPoint::Shares& f, double scale) {
+    multiply(path_, static_cast<float>(scale), f_cos(vertex, f));
+  }
+  void mirror(const Transport::Vertex& vertex, double scale) {
     Carrier sum{};
-    if (paint_ == nullptr) {
+    const float coat = vertex.painted.coat_mirror();
+    blend(vertex, [&](const View& view, float part) { render::add(sum, part * coat, view.mirror); });
+    multiply(path_, static_cast<float>(scale), sum);
+  }
+  void scale(double factor) {
+    for (float& band : path_) band *= static_cast<float>(factor);
+  }
+  double size() const { return std::ranges::max(path_); }
+
+ private:
+  struct Light {
+    double size;
+    const Carrier& bands;
+  };
+  Light light_of(const PathLight& light) const {
+    if (light.source == PathLight::Source::kEmitter) return {1, scene_.emission(light.number)};
+    return {light.rgb.y, scene_.lights_[static_cast<std::size_t>(light.number)]};
+  }
+  Carrier f_cos(const Transport::Vertex& vertex, const PaintedPoint::Shares& shares) const {
+    Carrier sum{};
+    if (vertex.is_white) {
       sum.fill(rays::kInversePi * shares.diffuse);
       return sum;
     }
     sum.fill(shares.coat);
-    blend([&](const View& view, float part) {
-      add(sum, part * shares.diffuse, view.diffuse);
+    blend(vertex, [&](const View& view, float part) {
+      render::add(sum, part * shares.diffuse, view.diffuse);
       for (std::size_t j = 0; j < view.gloss.size(); ++j) {
         if (shares.directional_diffuse[j] > 0)
-          add(sum, part * shares.directional_diffuse[j], view.directional_diffuse[j]);
-        if (shares.gloss[j] > 0) add(sum, part * shares.gloss[j], view.gloss[j]);
+          render::add(sum, part * shares.directional_diffuse[j], view.directional_diffuse[j]);
+        if (shares.gloss[j] > 0) render::add(sum, part * shares.gloss[j], view.gloss[j]);
       }
     });
     return sum;
   }
-  Carrier mirrored() const {
-    Carrier sum{};
-    const float coat = painted.coat_mirror();
-    blend([&](const View& view, float part) { add(sum, part * coat, view.mirror); });
-    return sum;
-  }
-
-  Spot spot;
-  PaintedPoint painted;
-  double mirror_chance = 0;  // that the path goes on along the mirror direction
-  BrightPlaces::Receiver receiver;
-  double lobes_chance = 1;  // that it goes on by the lobes
-
- private:
   template <class Visit>
-  void blend(const Visit& visit) const {
-    if (between_.share < 1) visit(paint_->views[between_.low], 1 - between_.share);
-    if (between_.share > 0) visit(paint_->views[between_.high], between_.share);
+  void blend(const Transport::Vertex& vertex, const Visit& visit) const {
+    const Paint& paint = scene_.paints_[static_cast<std::size_t>(vertex.spot.part)];
+    const PaintedPoint::Between& between = vertex.painted.between();
+    if (between.share < 1) visit(paint.views[between.low], 1 - between.share);
+    if (between.share > 0) visit(paint.views[between.high], between.share);
   }
-  const Paint* paint_ = nullptr;
-  PaintedPoint::Between between_;
-};
 
-// Where a path goes on.
-struct SpectralPaths::Next {
-  Float3 start, direction;
-  // By the lobes, which are what finds light that was drawn for itself as well. 0: nowhere; infinite along the mirror
-  // direction.
-  double pdf = 0;
-  Hit hit;
+  const SpectralPaths& scene_;
+  Carrier& sum_;
+  Carrier path_;
 };
 
 color::Rgb SpectralPaths::emitted(const Spot& spot) const {
@@ -215,116 +221,16 @@ color::Rgb SpectralPaths::emitted(const Spot& spot) const {
   return sum;
 }
 
-// A point on an emitter and one on a lamp, each weighed against the next ray, which may find it too (the balance
-// heuristic, [Veach1995] 3.1).
-void SpectralPaths::add_direct(const Transport& transport, const Vertex& vertex, const Carrier& path,
-                               const std::array<double, 4>& emitter, const std::array<double, 4>& lamp,
-                               Carrier& sum) const {
-  const rays::RayScene& rays = transport.rays();
-  const Float3& start = vertex.spot.start;
-  if (!transport.emitters_.empty()) {
-    const EmitterSample light = transport.emitters_.drawn(lit_point(vertex.spot), emitter[0], emitter[1], emitter[2]);
-    if (light.pdf > 0) {
-      const PaintedPoint::Shares shares = vertex.painted.shares(light.direction);
-      if (shares.pdf > 0 && !rays.blocked(start, light.direction, Transport::kShort * light.distance))
-        add_product(sum, static_cast<float>(1 / (light.pdf + vertex.lobes_chance * shares.pdf)), path,
-                    vertex.reflected(shares), emission(light.part));
-    }
-  }
-  if (transport.lights_.empty()) return;
-  const auto count = static_cast<double>(transport.lights_.size());
-  const double at = lamp[0] * count;
-  const std::size_t number = std::min(transport.lights_.size() - 1, static_cast<std::size_t>(at));
-  const Transport::SeenLamp seen = transport.seen_lamp(number, start);
-  const Transport::LampSample sample = Transport::drawn_from(seen, at - static_cast<double>(number), lamp[1]);
-  const PaintedPoint::Shares shares = vertex.painted.shares(sample.direction);
-  if (!(shares.pdf > 0) || rays.blocked(start, sample.direction, sample.reach)) return;
-  const double half_sine = std::sin(0.5 * seen.light.radius_rad), extent_sr = 4 * kPi * half_sine * half_sine;
-  const double share = 1 / (1 + extent_sr * count * vertex.lobes_chance * shares.pdf);
-  add_product(sum, static_cast<float>(share * count * sample.light.y), path, vertex.reflected(shares), lights_[number]);
-}
-
-SpectralPaths::Next SpectralPaths::next_ray(const Transport& transport, const Vertex& vertex,
-                                            const std::array<double, 4>& numbers, Carrier& path) const {
-  Next next;
-  next.start = vertex.spot.start;
-  const double others = 1 - vertex.mirror_chance;
-  if (numbers[0] < vertex.mirror_chance) {
-    multiply(path, static_cast<float>(1 / vertex.mirror_chance), vertex.mirrored());
-    next.direction = vertex.painted.mirrored();
-    next.pdf = std::numeric_limits<double>::infinity();
-    next.hit = transport.rays().closest(next.start, next.direction);
-    return next;
-  }
-  if (!(vertex.painted.lobes_weight() > 0)) return next;
-  const Transport::Onward onward =
-      transport.onward(vertex.spot, vertex.receiver, vertex.painted, (numbers[0] - vertex.mirror_chance) / others,
-                       numbers[1], numbers[2]);
-  if (!(onward.lobes_chance > 0)) return next;
-  const PaintedPoint::Shares shares = vertex.painted.shares(onward.direction);
-  if (!(shares.pdf > 0)) return next;
-  next.direction = onward.direction, next.hit = onward.hit;
-  next.pdf = vertex.lobes_chance * shares.pdf;
-  multiply(path, static_cast<float>(1 / (next.pdf + others * onward.places_pdf)), vertex.reflected(shares));
-  return next;
-}
-
-// The emitter and the lamps that the next ray found.
-void SpectralPaths::add_found(const Transport& transport, const Vertex& vertex, const Next& next, const Carrier& path,
-                              Carrier& sum) const {
-  static constexpr Carrier kWhole = [] {
-    Carrier ones{};
-    ones.fill(1);
-    return ones;
-  }();
-  const bool mirrored = std::isinf(next.pdf);
-  const auto count = static_cast<double>(transport.lights_.size());
-  for (std::size_t i = 0; i < transport.lights_.size(); ++i) {
-    const Transport::SeenLamp lamp = transport.seen_lamp(i, next.start);
-    if (!(lamp.light.radius_rad > 0) || !lamp.light.meets(rays::vec3(next.direction)) ||
-        (next.hit.any() && next.hit.distance < lamp.reach))
-      continue;
-    const double half_sine = std::sin(0.5 * lamp.light.radius_rad), extent_sr = 4 * kPi * half_sine * half_sine;
-    const double share = mirrored ? 1 : next.pdf / (next.pdf + 1 / (count * extent_sr));
-    add_product(sum, static_cast<float>(share * lamp.light.radiance().y), path, kWhole, lights_[i]);
-  }
-  if (!next.hit.any() || next.hit.triangle == rays::kFloor) return;
-  const int part = transport.rays().part(next.hit.triangle);
-  if (transport.emitters_.radiance(part) == color::Rgb{}) return;
-  const double light_pdf =
-      transport.emitters_.pdf(lit_point(vertex.spot), next.hit.triangle, next.direction, next.hit.distance);
-  const double share = mirrored ? 1 : next.pdf / (next.pdf + light_pdf);
-  add_product(sum, static_cast<float>(share), path, kWhole, emission(part));
-}
-
 void SpectralPaths::add_path(const Transport& transport, const PathOptions& options, const Spot& spot,
                              const Float3& to_viewer, const Sequence& sequence, std::uint32_t index,
                              Carrier& sum) const {
-  Carrier path;
-  path.fill(1);
-  Spot at = spot;
-  Float3 viewer = to_viewer;
-  const int most = std::min(options.bounces, kMostBounces);
-  std::uint32_t set = 0;
-  for (int surfaces = 0;; ++surfaces) {
-    const Vertex vertex = surfaces == 0 && options.white ? Vertex(at, viewer) : Vertex(transport, paints_, at, viewer);
-    if (vertex.painted.black()) return;
-    const std::array<double, 4> onward = sequence.point(index, set++), emitter = sequence.point(index, set++),
-                                lamp = transport.lights_.empty() ? emitter : sequence.point(index, set++);
-    add_direct(transport, vertex, path, emitter, lamp, sum);
-    const Next next = next_ray(transport, vertex, onward, path);
-    if (!(next.pdf > 0)) return;
-    add_found(transport, vertex, next, path, sum);
-    if (!next.hit.any() || surfaces == most) return;
-    if (surfaces >= kRouletteFrom) {
-      const float worth = std::ranges::max(path) * static_cast<float>(transport.brightness(next.hit)),
-                  chance = std::clamp(worth, kLeastChance, surfaces >= kEndlessFrom ? kEndlessChance : 1.0F);
-      if (onward[3] >= chance) return;
-      for (float& band : path) band /= chance;
-    }
-    at = transport.rays().spot(next.hit, next.start, next.direction);
-    viewer = -next.direction;
-  }
+  const Transport::Vertex seen =
+      options.white ? Transport::Vertex(spot, to_viewer) : Transport::Vertex(transport, spot, to_viewer);
+  if (seen.painted.black()) return;
+  Bands light(*this, sum);
+  const Transport::Next next = transport.step(seen, sequence.point(index, 0), sequence.point(index, 1), light);
+  if (next.goes_on() && next.hit.any() && options.bounces > 0)
+    transport.follow(next.hit, next.start, next.direction, options.bounces, sequence, index, 2, light);
 }
 
 color::Rgb SpectralPaths::shown(const Transport& transport, const PathOptions& options, const Spot& spot,

@@ -35,15 +35,8 @@ class SpectralPaths {
   struct Paint {
     std::vector<View> views;
   };
-  class Vertex;
-  struct Next;
+  class Bands;
   static Paint laid_out(const paint::BandLobes& lobes, double gloss_deg, bool rough);
-  void add_direct(const Transport& transport, const Vertex& vertex, const Carrier& path,
-                  const std::array<double, 4>& emitter, const std::array<double, 4>& lamp, Carrier& sum) const;
-  Next next_ray(const Transport& transport, const Vertex& vertex, const std::array<double, 4>& numbers,
-                Carrier& path) const;
-  void add_found(const Transport& transport, const Vertex& vertex, const Next& next, const Carrier& path,
-                 Carrier& sum) const;
   void add_path(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
                 const rays::Float3& to_viewer, const Sequence& sequence, std::uint32_t index, Carrier& sum) const;
   const Carrier& emission(int part) const {

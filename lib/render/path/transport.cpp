@@ -7,6 +7,7 @@
 #include "brdf/lobe_model.h"
 #include "render/effects.h"
 #include "render/panes.h"
+#include "render/path/path_loop.h"
 #include "render/path/spectral_paths.h"
 #include "render/surface_layer.h"
 
@@ -18,16 +19,8 @@ using rays::Float3;
 using rays::Hit;
 using rays::Spot;
 
-// From the third surface on a path goes on by chance; so many surfaces later never with more than this chance, so that
-// paths end between walls that send back everything.
-constexpr int kRouletteFrom = 3, kEndlessFrom = 64, kMostBounces = 4096;
-constexpr double kEndlessChance = 0.9, kLeastChance = 0.05;
 // Ground of a smaller extent is drawn as PointTransport::shown_over_ground() has it.
 constexpr double kEvenGround_sr = 5;
-
-color::Rgb rgb(const Float3& c) {
-  return rays::vec3(c);
-}
 
 // The tilts that draw each part's lobes, as render/reference.h has them for the truth.
 std::vector<std::vector<brdf::Tilt>> tilts_for(const PathScene& scene) {
@@ -116,10 +109,8 @@ std::shared_ptr<const BrightPlaces> Transport::find_bright_places(int bounces, s
   if (emitters_.empty() || bounces == 0) return nullptr;
   Transport by_lobes = *this;
   by_lobes.draw_toward(nullptr);
-  PathOptions options;
-  options.bounces = bounces;
   const auto sent = [&](const Hit& hit, const Float3& direction, const Sequence& sequence, std::uint32_t index) {
-    const color::Rgb light = by_lobes.bounced(hit, {}, direction, options, sequence, index, 2);
+    const color::Rgb light = by_lobes.bounced(hit, {}, direction, bounces, sequence, index, 2);
     return (light.x + light.y + light.z) / 3;
   };
   return BrightPlaces::find(*rays_, emitters_, sent, seed);
@@ -127,11 +118,9 @@ std::shared_ptr<const BrightPlaces> Transport::find_bright_places(int bounces, s
 
 void Transport::shade_ground(GroundRequest request, int bounces) {
   if (!ground_) return;
-  PathOptions options;
-  options.bounces = bounces;
   if (bounces > 0)
     request.sent = [&](const Hit& hit, const Float3& from, const Float3& direction, const Sequence& sequence,
-                       std::uint32_t index) { return bounced(hit, from, direction, options, sequence, index, 1); };
+                       std::uint32_t index) { return bounced(hit, from, direction, bounces, sequence, index, 1); };
   shaded_ = std::make_shared<const ShadedGround>(rays_, *ground_, lights_, mesh_box_, mesh_radius_, request);
 }
 
@@ -207,30 +196,6 @@ std::vector<int> Transport::gaining_parts() const {
   return parts;
 }
 
-// A surface on the way of a path.
-struct Transport::Vertex {
-  Spot spot;
-  PaintedPoint painted;
-  double mirror_chance;  // that the path goes on along the mirror direction
-  BrightPlaces::Receiver receiver;
-  double lobes_chance;  // that it goes on by the lobes
-  // Whether it is a floor that shows the environment. What that shows in the open is known, and paths add what the mesh
-  // changes: along rays that nothing blocks there is nothing to add.
-  bool is_laid = false;
-  color::Rgb open;  // what such a floor shows in the open
-
-  Vertex(const Transport& transport, const Spot& at, const Float3& to_viewer)
-      : spot(at),
-        painted(transport.painted(at, to_viewer)),
-        receiver(transport.receiver(at, painted)),
-        is_laid(transport.is_laid(at)),
-        open(is_laid ? transport.open_ground(at) : color::Rgb{}) {
-    const double mirror = painted.mirror_weight(), lobes = painted.lobes_weight();
-    mirror_chance = mirror > 0 ? mirror / (mirror + lobes) : 0;
-    lobes_chance = (1 - mirror_chance) * (1 - receiver.chance());
-  }
-};
-
 bool Transport::is_laid(const Spot& spot) const {
   return ground_ && spot.triangle == rays::kFloor;
 }
@@ -244,15 +209,6 @@ PaintedPoint Transport::painted(const Spot& spot, const Float3& to_viewer) const
   if (is_laid(spot)) return {rays::float3(ground_->paint(open_ground(spot))), spot.shading, to_viewer};
   return {spot, paints_[static_cast<std::size_t>(spot.part)], to_viewer};
 }
-
-// Where a path goes on.
-struct Transport::Next {
-  Float3 start, direction;
-  // By the lobes, which are what finds light that was drawn for itself as well. 0: nowhere; infinite along the mirror
-  // direction.
-  double pdf = 0;
-  Hit hit;
-};
 
 Transport::SeenLamp::SeenLamp(const Light& of) : light(of) {
   const double half = std::sin(0.5 * light.radius_rad);
@@ -276,12 +232,12 @@ Transport::SeenLamp Transport::seen_lamp(std::size_t lamp, const Float3& from) c
 Transport::LampSample Transport::drawn_from(const SeenLamp& lamp, double u, double v) {
   const Light& light = lamp.light;
   const color::Rgb whole = kPi * light.white;
-  if (!(light.radius_rad > 0)) return {rays::float3(light.direction), lamp.reach, whole};
+  if (!(light.radius_rad > 0)) return {rays::float3(light.direction), lamp.reach, whole, 0, 0};
   const double versine = lamp.versine * u, ring = std::sqrt(versine * (2 - versine));
   const float phi = 2 * rays::kFloatPi * static_cast<float>(v);
   const Vec3 direction = (1 - versine) * light.direction + (ring * static_cast<double>(std::cos(phi))) * lamp.across +
                          (ring * static_cast<double>(std::sin(phi))) * lamp.along;
-  return {rays::float3(direction), lamp.reach, (2 / (2 - lamp.versine)) * whole};
+  return {rays::float3(direction), lamp.reach, (2 / (2 - lamp.versine)) * whole, 0, lamp.extent_sr()};
 }
 
 Transport::LampSample Transport::drawn_lamp(const Float3& from, double choice, double v) const {
@@ -289,7 +245,7 @@ Transport::LampSample Transport::drawn_lamp(const Float3& from, double choice, d
   const double at = choice * count;
   const std::size_t lamp = std::min(lights_.size() - 1, static_cast<std::size_t>(at));
   LampSample sample = drawn_from(seen_lamp(lamp, from), at - static_cast<double>(lamp), v);
-  sample.light = count * sample.light;
+  sample.light = count * sample.light, sample.extent_sr *= count, sample.number = static_cast<int>(lamp);
   return sample;
 }
 
@@ -305,48 +261,6 @@ color::Rgb Transport::mirrored_lamps(const Float3& from, const Float3& toward, c
     if (!(lights_[i].radius_rad > 0) || !lights_[i].mirrored) continue;
     const SeenLamp lamp = seen_lamp(i, from);
     if (lamp.light.meets(rays::vec3(toward)) && !(hit.any() && hit.distance < lamp.reach)) sum += lamp.light.radiance();
-  }
-  return sum;
-}
-
-// Light that is drawn at a vertex, weighed against the same light found by the next ray (the balance heuristic,
-// [Veach1995] 3.1): together they count it once.
-color::Rgb Transport::direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,
-                                   double choice) const {
-  color::Rgb sum;
-  const auto add = [&](const Float3& f_cos, double scale, const color::Rgb& light) {
-    PathProduct here = path;
-    if (vertex.is_laid) {
-      here.reflect_plain(scale * rgb(f_cos));
-    } else {
-      here.reflect(scale * rgb(f_cos));
-    }
-    sum += here.shown(light);
-  };
-  const bool laid = vertex.is_laid;
-  const double sign = laid ? -1 : 1;
-  const Float3& start = vertex.spot.start;
-  if (!lights_.empty()) {
-    const LampSample lamp = drawn_lamp(start, numbers[2], numbers[3]);
-    const Reflection reflection = vertex.painted.at(lamp.direction);
-    if (reflection.pdf > 0 && rays_->blocked(start, lamp.direction, lamp.reach) == laid)
-      add(reflection.f_cos, sign, lamp.light);
-  }
-  if (environment_) {
-    const LightSample light = environment_->drawn(numbers[0], numbers[1]);
-    if (light.pdf > 0) {
-      const Reflection reflection = vertex.painted.at(light.direction);
-      if (reflection.pdf > 0 && rays_->blocked(start, light.direction) == laid)
-        add(reflection.f_cos, sign / (light.pdf + vertex.lobes_chance * reflection.pdf), light.radiance);
-    }
-  }
-  if (!emitters_.empty()) {
-    const EmitterSample light = emitters_.drawn(lit_point(vertex.spot), choice, numbers[2], numbers[3]);
-    if (light.pdf > 0) {
-      const Reflection reflection = vertex.painted.at(light.direction);
-      if (reflection.pdf > 0 && !rays_->blocked(start, light.direction, kShort * light.distance))
-        add(reflection.f_cos, 1 / (light.pdf + vertex.lobes_chance * reflection.pdf), light.radiance);
-    }
   }
   return sum;
 }
@@ -373,89 +287,14 @@ Transport::Onward Transport::onward(const Spot& spot, const BrightPlaces::Receiv
   return onward;
 }
 
-Transport::Next Transport::next_ray(const Vertex& vertex, PathProduct& path,
-                                    const std::array<double, 4>& numbers) const {
-  Next next;
-  next.start = vertex.spot.start;
-  if (numbers[0] < vertex.mirror_chance) {
-    path.reflect((1 / vertex.mirror_chance) * rgb(vertex.painted.mirror()));
-    next.direction = vertex.painted.mirrored();
-    next.pdf = std::numeric_limits<double>::infinity();
-    next.hit = rays_->closest(vertex.spot.start, next.direction);
-    return next;
-  }
-  if (!(vertex.painted.lobes_weight() > 0)) return next;
-  const double others = 1 - vertex.mirror_chance;
-  const Onward onward = this->onward(vertex.spot, vertex.receiver, vertex.painted,
-                                     (numbers[0] - vertex.mirror_chance) / others, numbers[1], numbers[2]);
-  if (!(onward.lobes_chance > 0)) return next;
-  const Reflection drawn = vertex.painted.at(onward.direction);
-  if (!(drawn.pdf > 0)) return next;
-  next.direction = onward.direction, next.hit = onward.hit;
-  next.pdf = vertex.lobes_chance * drawn.pdf;
-  const double pdf = next.pdf + others * onward.places_pdf;
-  if (vertex.is_laid) {
-    path.reflect_plain((1 / pdf) * rgb(drawn.f_cos));
-  } else {
-    path.reflect((1 / pdf) * rgb(drawn.f_cos));
-  }
-  return next;
-}
-
-// The environment or an emitter that the next ray found.
-color::Rgb Transport::light_at_end(const Vertex& vertex, const Next& next, const PathProduct& path) const {
-  const bool laid = vertex.is_laid;
-  const auto share = [&](double light_pdf) { return std::isinf(next.pdf) ? 1 : next.pdf / (next.pdf + light_pdf); };
-  color::Rgb sum;
-  if (std::isinf(next.pdf) && !lights_.empty()) sum += path.shown(mirrored_lamps(next.start, next.direction, next.hit));
-  if (next.hit.any() == laid && environment_) {
-    const LightSample light = environment_->at(next.direction);
-    const color::Rgb radiance = std::isinf(next.pdf) ? mirrored_environment(next.direction) : light.radiance;
-    sum += (laid ? -1 : 1) * share(light.pdf) * path.shown(radiance);
-  }
-  if (!next.hit.any()) return sum;
-  const color::Rgb& emission = emitters_.radiance(rays_->part(next.hit.triangle));
-  if (emission == color::Rgb{}) return sum;
-  return sum + share(emitters_.pdf(lit_point(vertex.spot), next.hit.triangle, next.direction, next.hit.distance)) *
-                   path.shown(emission);
-}
-
-// What the surface at `hit` sends back along the ray, its own emission apart.
-color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const PathOptions& options,
+color::Rgb Transport::bounced(const Hit& hit, const Float3& origin, const Float3& direction, int bounces,
                               const Sequence& sequence, std::uint32_t index, std::uint32_t set) const {
-  PathProduct path(reflection_);
-  color::Rgb sum;
-  const int most = std::min(options.bounces, kMostBounces);
-  for (int bounce = 1, surfaces = 0;; ++bounce) {
-    if (shaded_ != nullptr && is_laid(hit))
-      return sum + path.shown(met_ground(hit, origin, direction, sequence.point(index, set)[0]).sum());
-    const std::array<double, 4> to_light = sequence.point(index, set), onward = sequence.point(index, set + 1);
-    if (environment_) environment_->fetch(to_light[0], to_light[1]);
-    const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
-    if (vertex.is_laid) {
-      sum += path.shown(vertex.open);
-    } else if (++surfaces > most) {
-      break;
-    }
-    if (vertex.painted.black()) break;
-    set += 2;
-    sum += direct_light(vertex, path, to_light, onward[3]);
-    const Next next = next_ray(vertex, path, onward);
-    if (!(next.pdf > 0)) break;
-    sum += light_at_end(vertex, next, path);
-    if (!next.hit.any() || (surfaces == most && !is_laid(next.hit))) break;
-    if (bounce >= kRouletteFrom) {
-      const double most_chance = bounce >= kEndlessFrom ? kEndlessChance : 1;
-      const double chance = std::clamp(path.size() * brightness(next.hit), kLeastChance, most_chance);
-      if (sequence.point(index, set++)[0] >= chance) break;
-      path.scale(1 / chance);
-    }
-    hit = next.hit, origin = vertex.spot.start, direction = next.direction;
-  }
-  return sum;
+  Channels light(reflection_);
+  follow(hit, origin, direction, bounces, sequence, index, set, light);
+  return light.sum();
 }
 
-// As bounced() at a vertex on such a floor.
+// As follow() at a vertex on such a floor.
 Transport::FloorLight Transport::off_floor(const Hit& hit, const Float3& origin, const Float3& direction, int bounces,
                                            const Sequence& sequence, std::uint32_t index, std::uint32_t set) const {
   if (shaded_ != nullptr) {
@@ -463,18 +302,12 @@ Transport::FloorLight Transport::off_floor(const Hit& hit, const Float3& origin,
     return {shown.direct, bounces > 0 ? shown.into_diffuse : color::Rgb{}};
   }
   const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
-  FloorLight light{vertex.open, {}};
-  if (vertex.painted.black()) return light;
-  PathProduct path(reflection_);
-  const std::array<double, 4> to_light = sequence.point(index, set), onward = sequence.point(index, set + 1);
-  light.fixed += direct_light(vertex, path, to_light, onward[3]);
-  const Next next = next_ray(vertex, path, onward);
-  if (!(next.pdf > 0)) return light;
-  light.fixed += light_at_end(vertex, next, path);
-  if (!next.hit.any() || bounces == 0) return light;
-  PathOptions further;
-  further.bounces = bounces;
-  light.bounced = path.shown(bounced(next.hit, vertex.spot.start, next.direction, further, sequence, index, set + 2));
+  if (vertex.painted.black()) return {vertex.open, {}};
+  Channels fixed(reflection_);
+  const Next next = step(vertex, sequence.point(index, set), sequence.point(index, set + 1), fixed);
+  FloorLight light{vertex.open + fixed.sum(), {}};
+  if (!next.goes_on() || !next.hit.any() || bounces == 0) return light;
+  light.bounced = fixed.shown(bounced(next.hit, next.start, next.direction, bounces, sequence, index, set + 2));
   return light;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/angles.h"
 #include "base/result.h"
 #include "render/effects.h"
 #include "render/path/bright_places.h"
@@ -133,7 +134,7 @@ class Transport {
   friend class LobePoint;
   friend class SpectralPaths;
   explicit Transport(std::shared_ptr<const rays::RayScene> rays) : rays_(std::move(rays)) {}
-  color::Rgb bounced(rays::Hit hit, rays::Float3 origin, rays::Float3 direction, const PathOptions& options,
+  color::Rgb bounced(const rays::Hit& hit, const rays::Float3& origin, const rays::Float3& direction, int bounces,
                      const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
   // Light that a floor that shows the environment sends back: what no paint of the mesh changes, which is what the
   // floor shows in the open less what the mesh takes from it, and what the mesh sends to it.
@@ -152,8 +153,22 @@ class Transport {
                          double number) const;
   // A ray to a point of an emitter ends this part of the way short of it.
   static constexpr float kShort = 1 - 1e-4F;
+  // The one loop of paths and its step, see path_loop.h.
   struct Vertex;
   struct Next;
+  class Channels;
+  template <class Carrier>
+  void add_direct(const Vertex& vertex, const std::array<double, 4>& numbers, double choice, Carrier& carrier) const;
+  template <class Carrier>
+  Next next_ray(const Vertex& vertex, const std::array<double, 4>& numbers, Carrier& carrier) const;
+  template <class Carrier>
+  void add_found(const Vertex& vertex, const Next& next, Carrier& carrier) const;
+  template <class Carrier>
+  Next step(const Vertex& vertex, const std::array<double, 4>& to_light, const std::array<double, 4>& onward,
+            Carrier& carrier) const;
+  template <class Carrier>
+  void follow(rays::Hit hit, rays::Float3 origin, rays::Float3 direction, int bounces, const Sequence& sequence,
+              std::uint32_t index, std::uint32_t set, Carrier& carrier) const;
   // Narrow lobes find what they show better than places do.
   BrightPlaces::Receiver receiver(const rays::Spot& spot, const PaintedPoint& painted) const {
     if (places_ == nullptr || is_laid(spot)) return {};
@@ -170,10 +185,6 @@ class Transport {
   };
   Onward onward(const rays::Spot& spot, const BrightPlaces::Receiver& receiver, const PaintedPoint& painted,
                 double choice, double u, double v) const;
-  color::Rgb direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,
-                          double choice) const;
-  Next next_ray(const Vertex& vertex, PathProduct& path, const std::array<double, 4>& numbers) const;
-  color::Rgb light_at_end(const Vertex& vertex, const Next& next, const PathProduct& path) const;
   // A lamp as the point sees it, and how far a ray to it goes (local).
   struct SeenLamp {
     Light light;
@@ -184,6 +195,7 @@ class Transport {
     double versine = 0;
 
     explicit SeenLamp(const Light& light);
+    double extent_sr() const { return 2 * kPi * versine; }
   };
   SeenLamp seen_lamp(std::size_t lamp, const rays::Float3& from) const;
   // A direction to a lamp, drawn evenly from its disc by numbers in [0,1), and the radiance times solid angle of the
@@ -192,6 +204,8 @@ class Transport {
     rays::Float3 direction;
     float reach = 0;
     color::Rgb light;
+    int number = 0;        // of the lamp, where one of them was drawn
+    double extent_sr = 0;  // 1 over the density of the direction
   };
   static LampSample drawn_from(const SeenLamp& lamp, double u, double v);
   // The same of any one lamp.
