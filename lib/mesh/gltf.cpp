@@ -122,7 +122,7 @@ class Reader {
   Reader(const Source& source, std::string folder) : source_(source), folder_(std::move(folder)) {}
 
   Result<Polygons> polygons(const std::string& content) {
-    const std::optional<std::string> changed = with_buffers_of_bytes(content);
+    const std::optional<std::string> changed = acceptable_to_library(content);
     GONIO_TRY(load(changed ? *changed : content));
     GONIO_TRY(unpack_views());
     std::size_t bytes = content.size();

@@ -34,10 +34,40 @@ bool is_fallback(const Json& buffer) {
   return false;
 }
 
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+
+// Gives the indices of primitives that Draco packs a view, which the library wants to see and nothing reads. Returns
+// true where one had none.
+bool gave_views_to_packed_indices(Json& document) {
+  const auto list_of = [](Json& of, const char* name) -> Json::array_t* {
+    return of.is_object() && of.contains(name) ? of[name].get_ptr<Json::array_t*>() : nullptr;
+  };
+  Json::array_t *meshes = list_of(document, "meshes"), *accessors = list_of(document, "accessors");
+  if (meshes == nullptr || accessors == nullptr) return false;
+  bool gave = false;
+  for (Json& mesh : *meshes) {
+    Json::array_t* primitives = list_of(mesh, "primitives");
+    if (primitives == nullptr) continue;
+    for (Json& primitive : *primitives) {
+      if (!primitive.is_object() || !primitive.contains("extensions") || !primitive["extensions"].is_object() ||
+          !primitive["extensions"].contains(kDraco) || !primitive.contains("indices") ||
+          !primitive["indices"].is_number_unsigned())
+        continue;
+      const auto index = primitive["indices"].get<std::size_t>();
+      if (index >= accessors->size() || !(*accessors)[index].is_object() || (*accessors)[index].contains("bufferView"))
+        continue;
+      (*accessors)[index]["bufferView"] = 0;
+      gave = true;
+    }
+  }
+  return gave;
+}
+
 }  // namespace
 
-std::optional<std::string> with_buffers_of_bytes(std::string_view content) {
-  if (content.find("_meshopt_compression") == std::string_view::npos) return std::nullopt;
+std::optional<std::string> acceptable_to_library(std::string_view content) {
+  if (content.find("_meshopt_compression") == std::string_view::npos && content.find(kDraco) == std::string_view::npos)
+    return std::nullopt;
   const bool binary = content.starts_with("glTF");
   std::string_view text = content, rest;
   if (binary) {
@@ -48,7 +78,7 @@ std::optional<std::string> with_buffers_of_bytes(std::string_view content) {
   }
   Json json = Json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return std::nullopt;
-  bool changed = false;
+  bool changed = gave_views_to_packed_indices(json);
   for (Json& buffer : json["buffers"])
     if (is_fallback(buffer)) {
       buffer["byteLength"] = 1, buffer["uri"] = "data:application/octet-stream;base64,AA==";

@@ -11,8 +11,9 @@
 namespace goniochrome::mesh {
 
 // A glTF text or GLB file in which each buffer without bytes of its own, which stands for what meshoptimizer packed, is
-// a buffer of one byte: tinygltf refuses others. Nothing where there is no such buffer, or the text is no JSON.
-std::optional<std::string> with_buffers_of_bytes(std::string_view content);
+// a buffer of one byte, and in which indices that Draco packs have a view: tinygltf refuses others. Nothing where there
+// is neither, or the text is no JSON.
+std::optional<std::string> acceptable_to_library(std::string_view content);
 
 // A bufferView that is packed by meshoptimizer (EXT_meshopt_compression).
 struct MeshoptView {
