@@ -26,11 +26,10 @@ constexpr std::size_t kFewestCells = 8, kChunk = 8192;
 constexpr double kFace_deg = 15;                              // the least of the export angles
 constexpr double kReach_deg = 2;                              // an angle this close to one seen counts as seen
 constexpr std::size_t kSearchCells = 700, kFirstCells = 400;  // that the answer and the way to it look at
-constexpr double kSameCost = 1.05, kSameCostBy = 0.005;  // costs of two values of gloss that the pixels cannot tell
 
-constexpr std::size_t kMostPixels = 6000;   // of an environment's picture, looked at for the answer; more change it by
-                                            // less than 0.05 dE
-constexpr std::size_t kFirstPixels = 1000;  // and on the way to it
+constexpr std::size_t kAnswerPixels = 6000;  // of an environment's picture, looked at for the answer; more change it by
+                                             // less than 0.05 dE
+constexpr std::size_t kFirstPixels = 1000;   // and on the way to it
 constexpr std::size_t kFewestPixels = 30;
 
 // What of a color the edited picture could show.
@@ -482,7 +481,7 @@ SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const S
                    const SketchLimits& limits, bool with_differences, const Looked* lamps) {
   const SearchFitters fitters(light.basis, light.coat_index);
   const LobeSearch search(fitters, lamps != nullptr ? samples_of(input, lamps->answer, light, lamps->answer.size())
-                                                    : samples_of(input, pixels.used, light, kMostPixels));
+                                                    : samples_of(input, pixels.used, light, kAnswerPixels));
   SketchFit fit;
   PaintWeights weights{std::vector<color::Rgb>(search_columns(light.basis))};
   std::vector<Vec3> columns(weights.all.size());

@@ -11,7 +11,7 @@ namespace goniochrome::sketch {
 
 namespace {
 
-constexpr double kBin_deg = 10;
+constexpr double kResidualBin_deg = 10;
 
 // The angle that a residual goes by: from specular where lamps alone light the picture, else of the viewer.
 class ResidualAngle {
@@ -33,7 +33,7 @@ class ResidualAngle {
 };
 
 AngleResidual residual_of(int bin, const std::vector<PixelPair>& pixels) {
-  AngleResidual residual{kBin_deg * bin, kBin_deg * (bin + 1), pixels.size(), 0, {}};
+  AngleResidual residual{kResidualBin_deg * bin, kResidualBin_deg * (bin + 1), pixels.size(), 0, {}};
   std::vector<double> de76;
   for (const PixelPair& pixel : pixels) {
     de76.push_back(pixel.de76());
@@ -64,7 +64,8 @@ void take_residual(const image::AovFile& buffers, const std::vector<std::uint32_
     de76.push_back(apart), squares += apart * apart;
     if (all) fit.pixels.push_back(pixel);
     if (fit.residual_angle.empty()) continue;
-    if (const double at = angle.at(used[i]); std::isfinite(at)) bins[static_cast<int>(at / kBin_deg)].push_back(pixel);
+    if (const double at = angle.at(used[i]); std::isfinite(at))
+      bins[static_cast<int>(at / kResidualBin_deg)].push_back(pixel);
   }
   if (de76.empty()) return;
   fit.rms_de76 = std::sqrt(squares / static_cast<double>(de76.size()));

@@ -19,9 +19,8 @@ constexpr std::array<double, 3> kThree_deg = {15, 45, 110};
 constexpr std::size_t kByAppearance = 8, kByThree = 10;  // numbers of a paint found
 // A paint of fewer numbers is believed where its cost is at most this part more than that of free lobes, whose gain may
 // be the noise's, or where it explains the picture to RMS 0.01 dE.
-constexpr double kSameCost = 1.05, kExactCost = 1e-4;
+constexpr double kExactCost = 1e-4;
 constexpr double kLessCost = 0.999;     // of a paint of fewer numbers, for more: two numbers gain less from noise
-constexpr double kSameCostBy = 0.005;   // and of two values of gloss that the samples cannot tell
 constexpr double kRoundingCost = 1e-6;  // RMS 0.001 dE
 constexpr double kHopelessCost = 1.5;   // of enough, in a part of the samples
 // Where lobes alone leave much open: log(1 + dE^2) of RMS 0.03, 0.14 and half a dE, and the gain that free rows must

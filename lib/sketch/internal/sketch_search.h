@@ -12,6 +12,10 @@
 
 namespace goniochrome::sketch {
 
+// Two values of gloss cannot be told apart where the cost of one is at most this share of the other's and this part of
+// all.
+inline constexpr double kSameCost = 1.05, kSameCostBy = 0.005;
+
 // A paint found: eight numbers (face, flop, travel, gloss), ten (Lab at 15, 45 and 110 deg, gloss), or sixteen (Lab at
 // the export angles, gloss), which are read off lobes of any weight.
 struct FoundPaint {
