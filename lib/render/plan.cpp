@@ -17,6 +17,7 @@
 #include "render/panes.h"
 #include "render/plan/effect_list.h"
 #include "render/plan/effect_words.h"
+#include "render/plan/highlights.h"
 #include "render/plan/kept.h"
 #include "render/plan/prober.h"
 #include "render/plan/ray_plan.h"
@@ -52,14 +53,8 @@ double share_of(const Scene& scene, const std::vector<VisiblePoint>& points, Has
 
 // Lobes without any weight are not drawn, nor their maps uploaded.
 void tidy(Effects& effects) {
+  leave_out_idle(effects);
   std::erase_if(effects.lobes, [](const Effects::LobeUse& use) { return !use.directional_diffuse && !use.gloss; });
-  const bool gloss = effects.mirror ||
-                     std::any_of(effects.lobes.begin(), effects.lobes.end(), [](const auto& use) { return use.gloss; });
-  effects.fresnel = effects.fresnel && gloss;
-  effects.horizon = effects.horizon && !effects.lobes.empty();
-  if (!effects.horizon) effects.spots = 0;
-  effects.anisotropy = effects.anisotropy && !effects.lobes.empty();
-  effects.texture_filter = effects.texture_filter && effects.texture;
 }
 
 // What one frame of such pictures consists of.
@@ -157,13 +152,11 @@ bool tilted(const std::vector<EffectSwitch>& switches, const std::vector<bool>& 
   return false;
 }
 
-// Leaves out, cheapest to miss first, what all together cannot be seen. The gloss of a lamp stays: its highlight may
-// lie between the points, and is the first thing that is seen.
+// Leaves out, cheapest to miss first, what all together cannot be seen: at 95 of 100 points, nor at any highlight.
 void drop_unseen(Prober& prober, const std::vector<EffectSwitch>& switches, const std::vector<PlanItem>& items,
-                 bool lamps, double tolerance, Choice& choice) {
+                 double tolerance, Choice& choice) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    if (lamps && switches[i].is_highlight) continue;
     if (switches[i].left_to_tilts && tilted(switches, choice.on)) continue;
     if (choice.on[i] && !choice.forced[i] && items[i].de00_p95 <= tolerance) order.push_back(i);
   }
@@ -178,7 +171,9 @@ void drop_unseen(Prober& prober, const std::vector<EffectSwitch>& switches, cons
     const std::vector<bool> before = choice.on;
     choice.on[i] = false;
     settle(switches, choice.on);
-    if (prober.seen(wanted, prober.colors(choice.on)) > kSafety * tolerance) choice.on = before;
+    const std::vector<color::Rgb> colors = prober.colors(choice.on);
+    if (prober.difference(wanted, colors) > kSafety * tolerance || prober.most(wanted, colors) > tolerance)
+      choice.on = before;
   }
 }
 
@@ -439,11 +434,13 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   // What each effect is worth.
   const std::vector<EffectSwitch> switches = effect_switches(scene, all, probe);
   const PaneProbe panes = pane_probe(rays.whole, scene, probe_pixels(gbuffers, kProbe));
-  std::vector<VisiblePoint> with_behind = probe;
-  with_behind.insert(with_behind.end(), panes.behind.begin(), panes.behind.end());
-  const Compact compact = compacted(scene, with_behind);
-  Prober prober(compact.scene, all, switches, compact.points, with_behind, request.white_luminance, probers.all,
-                probers.component_wise(all), &panes);
+  std::vector<VisiblePoint> points = probe;
+  points.insert(points.end(), panes.behind.begin(), panes.behind.end());
+  const std::vector<VisiblePoint> highlights = highlight_points(scene, all, points);
+  points.insert(points.begin() + static_cast<std::ptrdiff_t>(probe.size()), highlights.begin(), highlights.end());
+  const Compact compact = compacted(scene, points);
+  Prober prober(compact.scene, all, switches, compact.points, points, probe.size(), request.white_luminance,
+                probers.all, probers.component_wise(all), &panes);
   const std::vector<bool> everything(switches.size(), true);
   const auto all_but = [&](std::size_t i) {
     std::vector<bool> without = everything;
@@ -487,10 +484,10 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   }
   const Stopwatch ray_clock;
   const RayChoice by_rays =
-      planned_rays(scene, gbuffers, request, words, rays, work.points, sums.open_de00, [&](const auto& points) {
-        const Compact probed = compacted(scene, points);
-        return Prober(probed.scene, all, switches, probed.points, points, request.white_luminance, probers.all,
-                      probers.component_wise(all))
+      planned_rays(scene, gbuffers, request, words, rays, work.points, sums.open_de00, [&](const auto& seen) {
+        const Compact probed = compacted(scene, seen);
+        return Prober(probed.scene, all, switches, probed.points, seen, seen.size(), request.white_luminance,
+                      probers.all, probers.component_wise(all))
             .colors(everything);
       });
   plan.ray_pricing_ms = 1000 * ray_clock.elapsed_s();
@@ -502,7 +499,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   const bool automatic = words.start == Start::kAuto && may_leave_out;
   for (std::size_t i = 0; i < switches.size() && may_leave_out; ++i)
     if (switches[i].beyond_maps) choice.on[i] = false, choice.forced[i] = true;
-  if (automatic) drop_unseen(prober, switches, plan.items, !scene.lights.empty(), tolerance, choice);
+  if (automatic) drop_unseen(prober, switches, plan.items, tolerance, choice);
   std::vector<Priced> prices = priced(engines, asked, work, prober.effects(choice.on));
   const Engine& engine = *chosen_of(prices, asked, request.frames).engine;
   plan.engine = engine.info().name;

@@ -15,14 +15,27 @@
 
 namespace goniochrome::render {
 
+// Turns off what draws nothing without lobes, or without gloss.
+inline void leave_out_idle(Effects& effects) {
+  const auto used = [](const auto& use) { return use.directional_diffuse || use.gloss; };
+  const bool lobes = std::ranges::any_of(effects.lobes, used);
+  effects.fresnel = effects.fresnel && (effects.mirror || std::ranges::any_of(effects.lobes, &Effects::LobeUse::gloss));
+  effects.horizon = effects.horizon && lobes;
+  if (!effects.horizon) effects.spots = 0;
+  effects.anisotropy = effects.anisotropy && lobes;
+  effects.texture_filter = effects.texture_filter && effects.texture;
+}
+
 // Shades the probe with any choice of effects.
 class Prober {
  public:
-  // `panes`, unless null, tells what is behind the first of the points, which are followed by those behind them.
+  // The first `shown` points are those of the picture; highlight_points() follow. `panes`, unless null, tells what is
+  // behind the first of the points; the points behind them come last.
   Prober(const Scene& scene, const Effects& all, const std::vector<EffectSwitch>& switches,
-         const std::vector<VisiblePoint>& points, const std::vector<VisiblePoint>& seen, double white,
-         CpuEngine& engine, CpuEngine& component_wise, const PaneProbe* panes = nullptr)
-      : scene_(scene),
+         const std::vector<VisiblePoint>& points, const std::vector<VisiblePoint>& seen, std::size_t shown,
+         double white, CpuEngine& engine, CpuEngine& component_wise, const PaneProbe* panes = nullptr)
+      : shown_(shown),
+        scene_(scene),
         all_(all),
         switches_(switches),
         points_(points),
@@ -37,6 +50,7 @@ class Prober {
     for (std::size_t i = 0; i < switches_.size(); ++i) {
       if (!on[i]) switches_[i].turn_off(effects);
     }
+    leave_out_idle(effects);
     return effects;
   }
 
@@ -51,19 +65,15 @@ class Prober {
 
   double difference(const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) const {
     std::vector<double> de00;
-    for (std::size_t i = 0; i < a.size(); ++i) de00.push_back(seen_difference(a[i], b[i], white_));
+    for (std::size_t i = 0; i < shown_; ++i) de00.push_back(seen_difference(a[i], b[i], white_));
     return percentile_95(std::move(de00));
   }
 
-  // What decides whether a change is seen: the difference that 95 % of the points stay below or, where few points hold
-  // all of it, as they do a highlight, the root mean square.
-  double seen(const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) const {
-    double squares = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const double de00 = seen_difference(a[i], b[i], white_);
-      squares += de00 * de00;
-    }
-    return std::max(difference(a, b), std::sqrt(squares / static_cast<double>(std::max<std::size_t>(a.size(), 1))));
+  // The largest difference at the points of the picture and at highlights, which may lie between them.
+  double most(const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) const {
+    double most = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, seen_difference(a[i], b[i], white_));
+    return most;
   }
 
   // Seconds that a point takes on all cores together, the best of a few runs, each long enough that starting the
@@ -109,6 +119,7 @@ class Prober {
     return colors;
   }
 
+  std::size_t shown_;
   const Scene& scene_;
   const Effects& all_;
   const std::vector<EffectSwitch>& switches_;

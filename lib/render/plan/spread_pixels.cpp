@@ -28,7 +28,7 @@ struct Tile {
   // Calls visit(x, y) for each of these pixels, along the same curve as tiles_of().
   template <class Visit>
   void for_each_visible(Visit visit) const {
-    static const std::array<std::array<int, 2>, kSide * kSide> places = [] {
+    static const std::array<std::array<int, 2>, kSide* kSide> places = [] {
       std::array<std::array<int, 2>, kSide * kSide> all{};
       for (std::uint32_t code = 0; code < all.size(); ++code)
         all[code] = {every_other_bit(code), every_other_bit(code >> 1)};
