@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/angles.h"
+#include "base/parallel.h"
 #include "brdf/coat_facets.h"
 #include "brdf/lobe_model.h"
 #include "brdf/tilted_lobes.h"
@@ -338,14 +339,16 @@ WeightTable weight_table(const Scene& scene, const Effects& effects, const std::
                     part_size = row * static_cast<std::size_t>(table.segments);
   table.rgba.assign(part_size * scene.paints.size(), 0.0F);
   const auto is_stretched = [&](std::size_t part) { return !stretched.empty() && stretched[part]; };
-  for (std::size_t part = 0; part < scene.paints.size(); ++part) {
-    float* rows = &table.rgba[part * part_size];
-    if (part > 0 && same_wear(scene, part, part - 1) && is_stretched(part) == is_stretched(part - 1)) {
-      std::copy_n(rows - part_size, part_size, rows);
-    } else {
-      fill_part(scene, effects, part, is_stretched(part), table, rows);
-    }
-  }
+  const auto is_like_last = [&](std::size_t part) {
+    return part > 0 && same_wear(scene, part, part - 1) && is_stretched(part) == is_stretched(part - 1);
+  };
+  parallel_for(scene.paints.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t part = begin; part < end; ++part)
+      if (!is_like_last(part))
+        fill_part(scene, effects, part, is_stretched(part), table, &table.rgba[part * part_size]);
+  });
+  for (std::size_t part = 0; part < scene.paints.size(); ++part)
+    if (is_like_last(part)) std::copy_n(&table.rgba[(part - 1) * part_size], part_size, &table.rgba[part * part_size]);
   return table;
 }
 

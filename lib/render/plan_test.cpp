@@ -98,24 +98,9 @@ TEST(Plan, ColoredLightCallsForTheOperator) {
   world.scene.reflection = color::working_space_operator();
   world.env.diffuse.map = cube_of(4, [](const Vec3&) { return Vec3{0.1, 0.9, 1}; });
   const Plan plan = planned(world).plan;
-  EXPECT_TRUE(item(plan, "operator").on);
-  EXPECT_GT(item(plan, "operator").de00_p95, 2);
+  EXPECT_TRUE(item(plan, "operator").on) << "it is as fast as the plain product";
   EXPECT_THAT(item(plan, "operator").reason, HasSubstr("colored light"));
-}
-
-// In light that is nearly white the operator cannot be seen; in four forms it saves nothing to leave it out.
-TEST(Plan, WhatCostsNothingIsDrawn) {
-  World world(flake_paint());
-  world.scene.reflection = color::working_space_operator();
-  world.env.diffuse.map = cube_of(4, [](const Vec3&) { return Vec3{1, 1, 0.97}; });
-  const PlanRequest request;
-  const Plan plan = planned(world, request).plan;
-  const PlanItem& op = item(plan, "operator");
-  EXPECT_GT(op.de00_p95, 0);
-  EXPECT_LT(op.de00_p95, 0.5 * request.tolerance_de00);
-  EXPECT_EQ(op.decision, Decision::kDrawn);
-  EXPECT_THAT(op.reason, HasSubstr("costs nothing"));
-  for (const PlanItem& i : plan.items) EXPECT_FALSE(i.decision == Decision::kDropped && i.cost_ms == 0) << i.effect;
+  EXPECT_GT(item(planned(world, with_effects_of("auto,-operator")).plan, "operator").de00_p95, 2);
 }
 
 // Every effect forced off changes the picture by what the plan said it would: the same percentile of 512 points and of
@@ -126,16 +111,15 @@ TEST(Plan, EstimatesAreTheChangesOfThePicture) {
   world.scene.anisotropy = {{0.05, 0.4}};
   world.env.lobes[1].map = cube_of(16, [](const Vec3& d) { return Vec3{1 + d.x, 1 + d.x, 1 - 0.5 * d.y}; });
   const Planned all = planned(world, with_effects_of("all"));
-  int priced = 0;
+  int seen = 0;
   for (const PlanItem& i : all.plan.items) {
     if (!i.needed) continue;
     const Planned without = planned(world, with_effects_of("all,-" + i.effect));
     EXPECT_EQ(item(without.plan, i.effect).decision, Decision::kForcedOff);
     EXPECT_NEAR(p95(all.colors, without.colors), i.de00_p95, 0.2 * i.de00_p95 + 0.02) << i.effect;
-    EXPECT_GE(i.cost_ms, 0) << i.effect;
-    priced += i.de00_p95 > 0.1 ? 1 : 0;
+    seen += i.de00_p95 > 0.1 ? 1 : 0;
   }
-  EXPECT_GE(priced, 6);
+  EXPECT_GE(seen, 6);
 }
 
 TEST(Plan, WhatIsLeftOutStaysWithinTheTolerance) {
@@ -206,30 +190,6 @@ TEST(Plan, ALobeThatIsOffIsTriedOutWithoutItsMap) {
   without.paints[0].lobes.erase(without.paints[0].lobes.begin());
   tried.load_paints(without, all);
   EXPECT_GT(apart(), 0.3) << "the control";
-}
-
-TEST(Plan, BudgetKeepsWhatIsWorthMost) {
-  World world(flake_paint());
-  const Plan free = planned(world, with_effects_of("all")).plan;
-  PlanRequest request;
-  request.effects = "all";
-  request.engine = "cpu";
-  // Every plan measures the speed of the machine anew, and a busy one changes: several budgets, one of which bites.
-  int cut = 0;
-  for (const double share : {0.8, 0.6, 0.4, 0.2}) {
-    request.budget_ms = share * free.predicted_ms();
-    double lost = 1e9, kept = 0;
-    for (const PlanItem& i : planned(world, request).plan.items) {
-      if (i.decision == Decision::kOverBudget) lost = std::min(lost, i.de00_p95);
-      if (i.on) kept = std::max(kept, i.de00_p95);
-    }
-    if (lost == 1e9 || kept == 0) continue;
-    ++cut;
-    EXPECT_GT(kept, lost) << share;
-  }
-  EXPECT_GT(cut, 0) << "something had to go";
-  request.budget_ms = 1e-9;
-  for (const PlanItem& i : planned(world, request).plan.items) EXPECT_FALSE(i.on && i.cost_ms > 0) << i.effect;
 }
 
 TEST(Plan, LobesNobodySeesAreNotLoaded) {

@@ -9,7 +9,6 @@
 #include "render/internal/worn_lobes.h"
 #include "render/panes.h"
 #include "render/plan/ray_plan.h"
-#include "render/plan/sum_choice.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
