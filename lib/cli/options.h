@@ -56,6 +56,12 @@ struct ReportKey {
 };
 
 // A tool's whole story.
+// An option that a tool had. It ends with exit status 2 and what to use instead.
+struct GoneOption {
+  std::string name;     // "budget"
+  std::string instead;  // a sentence without a full stop, after "--budget is gone: "
+};
+
 struct ToolSpec {
   std::string name = {};
   std::string summary = {};                   // one line: "fit paints to a basis of cosine lobes"
@@ -64,6 +70,7 @@ struct ToolSpec {
   std::optional<Positional> inputs = {};
   std::vector<Example> examples = {};
   std::vector<ReportKey> report = {};      // keys of `results` in --report
+  std::vector<GoneOption> gone = {};       // the last section of the man page
   std::vector<std::string> see_also = {};  // "fit-basis(1)"
 
   std::string heading = {};  // of the options that are added next

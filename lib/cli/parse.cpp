@@ -17,6 +17,8 @@ std::string dashed(const Option& option) {
 
 Error unknown_option(const ToolSpec& spec, const std::string& word) {
   const std::string name = word.substr(0, word.find('='));
+  for (const GoneOption& gone : spec.gone)
+    if (name == "--" + gone.name) return usage_error("{} is gone: {}", name, gone.instead);
   const Option* nearest = nullptr;
   std::size_t distance = 4;
   for (const Option& option : spec.options) {

@@ -113,6 +113,19 @@ TEST(Parse, AnAliasIsTheSameOption) {
   EXPECT_NE(help_text(spec).find("; also --width"), std::string::npos);
 }
 
+TEST(Parse, AnOptionThatIsGoneNamesWhatToUseInstead) {
+  Values v;
+  ToolSpec spec = table(v);
+  spec.gone = {{"width", "give --size"}};
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"--width", "3"}, {"--width=3"}, {"--width"}}) {
+    const auto result = parse(spec, words);
+    ASSERT_FALSE(result.ok());
+    EXPECT_EQ(result.error().message, "--width is gone: give --size");
+    EXPECT_EQ(exit_status(result.error()), 2);
+  }
+  EXPECT_TRUE(man_page(spec).ends_with(".SH OPTIONS THAT ARE GONE\n.TP\n.B \\-\\-width\nGive \\-\\-size.\n"));
+}
+
 TEST(Parse, ARequiredOptionIsAskedFor) {
   Values v;
   ToolSpec spec = table(v);

@@ -213,6 +213,9 @@ std::string man_page(const ToolSpec& spec) {
     text +=
         fmt::format(".BR {} {}{}\n", roff(page.substr(0, open)), page.substr(open), page == pages.back() ? "" : ",");
   }
+  if (!spec.gone.empty()) text += ".SH OPTIONS THAT ARE GONE\n";
+  for (const GoneOption& option : spec.gone)
+    text += fmt::format(".TP\n.B \\-\\-{}\n{}\n", roff(option.name), roff(sentence(option.instead)));
   return text;
 }
 

@@ -346,6 +346,15 @@ bool RayScene::any_above(const Float3& point, const Float3& normal, float margin
   return state_->tree->any_above(point, normal, margin);
 }
 
+bool RayScene::is_convex() const {
+  for (std::uint32_t triangle = 0; triangle < triangles(); ++triangle) {
+    const Vec3 area = doubled_area(triangle);
+    const double size = length(area);
+    if (size > 0 && any_above(corners(triangle)[0], float3((1 / size) * area), kLift)) return false;
+  }
+  return true;
+}
+
 namespace {
 
 SurfacePoint surface_point(const RayScene& scene, const Hit& hit, const Float3& origin, const Float3& direction) {

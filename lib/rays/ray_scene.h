@@ -129,6 +129,9 @@ class RayScene {
   // Whether any vertex of the mesh lies more than `margin` above the plane through the point. A point from which none
   // does sees its whole hemisphere, the floor apart.
   bool any_above(const Float3& point, const Float3& normal, float margin) const;
+  // Whether the mesh lies below the planes of all of its triangles, so that it blocks no light that reaches its
+  // outside.
+  bool is_convex() const;
 
  private:
   struct State;

@@ -293,6 +293,17 @@ TEST(RayScene, DuplicateAndCoplanarFacesDoNotBlockWhatStartsOnThem) {
   }
 }
 
+TEST(RayScene, KnowsAConvexMesh) {
+  EXPECT_TRUE(RayScene::create(sphere(48))->is_convex());
+  mesh::Mesh inside_out = sphere(48);
+  for (auto& t : inside_out.triangles) std::swap(t[0], t[1]);
+  EXPECT_FALSE(RayScene::create(inside_out)->is_convex());
+  mesh::Mesh dented = sphere(48);
+  for (Vec3& p : dented.positions)
+    if (p.y > 0.9) p = 0.8 * p;
+  EXPECT_FALSE(RayScene::create(dented)->is_convex());
+}
+
 TEST(RayScene, TellsWhetherAPointSeesItsWholeHemisphere) {
   const auto free_share = [](const mesh::Mesh& mesh) {
     const auto scene = RayScene::create(mesh);

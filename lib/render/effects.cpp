@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/angles.h"
+#include "base/parallel.h"
 #include "brdf/coat_facets.h"
 #include "brdf/lobe_model.h"
 #include "brdf/tilted_lobes.h"
@@ -42,9 +43,13 @@ class SlotValues {
         values_(static_cast<std::size_t>(table.slots)) {
     if (effects.fresnel)
       fresnel_scale_ = 1 / brdf::fresnel_dielectric(math::cos(gloss_deg * kDegree), brdf::kCoatIndex);
+    // Maps of lobes that are left out have no part in the mix: a picture does not load them.
     std::vector<double> wide;
-    for (const Effects::LobeUse& use : effects.lobes)
-      if (is_shifted(effects, use.exponent)) wide.push_back(use.exponent);
+    for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
+      if (!is_mixed(effects.lobes[j])) continue;
+      wide.push_back(effects.lobes[j].exponent);
+      mixed_.push_back(j);
+    }
     const auto diffuse = !effects.diffuse ? HorizonMix::Diffuse::kNone
                          : is_bare()      ? HorizonMix::Diffuse::kBare
                                           : HorizonMix::Diffuse::kCoated;
@@ -64,7 +69,7 @@ class SlotValues {
     std::vector<HorizonMix::Sent> wide;
     for (std::size_t j = 0; j < effects_.lobes.size(); ++j) {
       const Effects::LobeUse& use = effects_.lobes[j];
-      const bool is_wide = is_shifted(effects_, use.exponent);
+      const bool is_wide = is_mixed(use);
       if (is_wide) wide.emplace_back();
       const paint::Lobe* lobe = find_lobe(paint, use.exponent);
       if (lobe == nullptr) continue;
@@ -100,11 +105,14 @@ class SlotValues {
   void set(int slot, const color::Rgb& value) {
     for (std::size_t c = 0; c < 3; ++c) values_[static_cast<std::size_t>(slot)][c] = value[static_cast<int>(c)];
   }
-  // Wide lobes come first.
+  bool is_mixed(const Effects::LobeUse& use) const {
+    return is_shifted(effects_, use.exponent) && (use.directional_diffuse || use.gloss);
+  }
   void set_mixed(const HorizonMix::Weights& mixed) {
-    for (std::size_t j = 0; j < mixed.lobes.size(); ++j) {
-      set(WeightTable::lobe_slot(j), mixed.lobes[j]);
-      values_[static_cast<std::size_t>(table_.shift_slot(j))][j % 4] = mixed.shifts[j];
+    for (std::size_t k = 0; k < mixed.lobes.size(); ++k) {
+      const std::size_t j = mixed_[k];
+      set(WeightTable::lobe_slot(j), mixed.lobes[k]);
+      values_[static_cast<std::size_t>(table_.shift_slot(j))][j % 4] = mixed.shifts[k];
     }
     Texel& diffuse = values_[static_cast<std::size_t>(diffuse_slot())];
     for (std::size_t c = 0; c < 3; ++c) diffuse[c] += mixed.diffuse[static_cast<int>(c)];
@@ -119,7 +127,8 @@ class SlotValues {
   bool mapped_;
   double even_;  // what is left of even light on its way in
   double fresnel_scale_ = 1;
-  std::optional<HorizonMix> mix_;  // of wide lobes, with the effect horizon
+  std::optional<HorizonMix> mix_;   // of wide lobes, with the effect horizon
+  std::vector<std::size_t> mixed_;  // the numbers of these lobes
   std::vector<Texel> values_;
 };
 
@@ -330,14 +339,16 @@ WeightTable weight_table(const Scene& scene, const Effects& effects, const std::
                     part_size = row * static_cast<std::size_t>(table.segments);
   table.rgba.assign(part_size * scene.paints.size(), 0.0F);
   const auto is_stretched = [&](std::size_t part) { return !stretched.empty() && stretched[part]; };
-  for (std::size_t part = 0; part < scene.paints.size(); ++part) {
-    float* rows = &table.rgba[part * part_size];
-    if (part > 0 && same_wear(scene, part, part - 1) && is_stretched(part) == is_stretched(part - 1)) {
-      std::copy_n(rows - part_size, part_size, rows);
-    } else {
-      fill_part(scene, effects, part, is_stretched(part), table, rows);
-    }
-  }
+  const auto is_like_last = [&](std::size_t part) {
+    return part > 0 && same_wear(scene, part, part - 1) && is_stretched(part) == is_stretched(part - 1);
+  };
+  parallel_for(scene.paints.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t part = begin; part < end; ++part)
+      if (!is_like_last(part))
+        fill_part(scene, effects, part, is_stretched(part), table, &table.rgba[part * part_size]);
+  });
+  for (std::size_t part = 0; part < scene.paints.size(); ++part)
+    if (is_like_last(part)) std::copy_n(&table.rgba[(part - 1) * part_size], part_size, &table.rgba[part * part_size]);
   return table;
 }
 

@@ -15,7 +15,6 @@
 #include "render/effects.h"
 #include "render/gbuffer.h"
 #include "render/scene.h"
-#include "render/textures/texture_filter.h"
 
 namespace goniochrome::rays {
 class RayScene;
@@ -87,7 +86,8 @@ struct EngineInfo {
   std::unique_ptr<Engine> (*make)(Sight& sight);
 };
 
-// All engines, in the order in which they are listed. Of two that are predicted equally fast, the first is chosen.
+// All engines, in the order in which they are listed. Plans choose the first that they may choose and that can shade
+// the scene.
 const std::vector<const EngineInfo*>& engines();
 
 // The engine of that name. Error (usage): the names that there are.
@@ -95,31 +95,6 @@ Result<const EngineInfo*> engine_named(const std::string& name);
 
 // The names that an option takes: "auto", which lets the plan choose, and those of all engines.
 std::vector<std::string> engine_choices();
-
-// What one frame consists of, as far as it takes time.
-struct Workload {
-  const Scene* scene = nullptr;
-  const std::vector<VisiblePoint>* probe = nullptr;  // some of the visible points, evenly spread over the picture
-  double pixels = 0;                                 // samples of all pixels, whether the mesh is seen there or not
-  double points = 0;                                 // those of them that show the mesh
-  double textured = 0;                               // those points that show a texture
-  double mapped = 0;                                 // those points that show a color map
-  double behind_pixels = 0, behind_points = 0;       // the same as `pixels` and `points`, seen through panes
-  double tilts = 1;                                  // normals that lobes are drawn about, the mean over the points
-  double stretched = 0;                              // look-ups of rough coats, the mean over the points
-  std::vector<double> lookups = {};  // of tilted lobes, the mean over the points, by each level of Effects
-  int forms = 3;                     // in which the product of colors is taken; internal/product_forms.h
-  int texture_lobes = 0;             // of the texture that has most
-  FilterCost texture_filter = {};    // what a textured point takes with the filter, relative to one without it
-  double speed = 1;                  // nanoseconds on this machine for each nanosecond that was counted
-};
-
-// What an engine is predicted to take.
-struct Price {
-  double frame_ms = 0;    // shading of one frame
-  double once_ms = 0;     // what comes once, before the first frame
-  const char* once = "";  // and what that is, as in "to compile"
-};
 
 class Engine {
  public:
@@ -154,9 +129,6 @@ class Engine {
   // SurfaceLayer.
   virtual bool shades_layer() const { return false; }
   virtual bool shades_textures() const { return shades_layer(); }
-
-  // Predicts its time for such frames with these effects.
-  virtual Price price(const Workload& work, const Effects& effects) const = 0;
 };
 
 }  // namespace goniochrome::render

@@ -12,6 +12,12 @@ int Gbuffer::part(int x, int y) const {
   return static_cast<int>(std::abs(at(x, y)[3])) - 1;
 }
 
+bool Gbuffer::shows_inside() const {
+  for (std::size_t i = 3; i < data.size(); i += 4)
+    if (data[i] < 0) return true;
+  return false;
+}
+
 Vec3 Gbuffer::normal(int x, int y) const {
   const float* n = at(x, y);
   return normalized({n[0], n[1], n[2]});

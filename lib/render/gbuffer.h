@@ -53,6 +53,8 @@ struct Gbuffer {
   const float* at(int x, int y) const { return &data[index(x, y) * 4]; }
   // The part seen, or -1.
   int part(int x, int y) const;
+  // Whether any pixel shows the mesh from inside.
+  bool shows_inside() const;
   Vec3 normal(int x, int y) const;
   Vec3 to_viewer(int x, int y) const { return -rays.direction(x + 0.5, y + 0.5); }
   // What is seen at this pixel, with its place on each texture that `places` tells of: as many a pixel as there are,

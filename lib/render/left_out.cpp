@@ -5,7 +5,6 @@
 
 #include "render/internal/seen.h"
 #include "render/plan/ray_plan.h"
-#include "render/plan/sum_choice.h"
 
 namespace goniochrome::render {
 

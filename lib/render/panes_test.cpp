@@ -191,8 +191,6 @@ TEST(Panes, ShowTheShadowsBehindThem) {
     EXPECT_TRUE(plan.ok()) << plan.error().message;
     const auto& item = *std::ranges::find(plan->items, "panes", &PlanItem::effect);
     EXPECT_TRUE(item.needed && item.on);
-    EXPECT_GT(item.de00_p95, 10);
-    EXPECT_GT(item.cost_ms, 0);
     Frame frame;
     EXPECT_TRUE(renderer->draw(shop.view, frame).ok());
     return frame;

@@ -1,9 +1,9 @@
-// A plan decides, before a picture is drawn, with which effects and by which engine it is shaded. It measures on a
-// sample of the visible points what each effect is worth and what it costs, and leaves out what is not seen or not
-// affordable. goniochrome-theory(7), PLAN.
+// A plan decides, before a picture is drawn, with which effects and by which engine it is shaded. An effect is drawn
+// where the scene calls for it. What the lobes and look-ups of prefiltered maps show is tried out on some of the
+// visible points, and what nobody sees there is left out. What rays and sums change is told by the first pass of the
+// picture. goniochrome-theory(7), PLAN.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,39 +15,23 @@
 #include "render/scene.h"
 
 namespace goniochrome::envmap {
-class BlockTree;
 class Environment;
-}  // namespace goniochrome::envmap
-
-namespace goniochrome::rays {
-class RayScene;
 }
 
 namespace goniochrome::render {
 
+class CpuEngine;
 class Engine;
-class OpenResidual;
-class Transport;
+struct CorrectionNoise;
 
-// What the effects of rays are priced by.
+// What rays can add to a picture.
 struct RayContext {
-  const Transport* transport = nullptr;  // of the whole scene, not only what is seen of it; null: no rays
-  // The same over the floor that the picture calls for; null: none.
-  const Transport* over_floor = nullptr;
-  bool floor_forced = false;                         // whether that is asked for by name
-  const envmap::Environment* environment = nullptr;  // that rays meet
-  // What the engine path would trace, floor and all, made when it is asked for; null: it cannot. Empty: that engine is
-  // not priced.
-  std::function<const Transport*()> alone;
-  int bounces = 8;
-  std::uint64_t seed = 1;
-  std::string absent = "no rays are traced";  // why there is no transport
+  std::string absent = "no rays are traced";  // why none are traced; "" where they are
   bool refused = false;                       // whether that is because --effects says so
-  std::string no_floor;                       // why no floor is priced; "" where one is, or where nothing is said of it
-  const rays::RayScene* whole = nullptr;      // the mesh with its panes, of a scene that has any
-  // Of the light that rays meet, to measure by how much maps miss the open light; null: that is not measured.
-  const envmap::BlockTree* texels = nullptr;
-  OpenResidual* residual = nullptr;  // by which that is corrected; there where texels are
+  bool floor = false;                         // whether there is a floor to draw
+  bool floor_forced = false;                  // whether it is asked for by name
+  std::string no_floor;                       // why there is none; "" where there is, or where nothing is said of it
+  bool has_environment = false;               // whether the light is at hand of which sums are made
 };
 
 // What a picture may cost for which nobody asked how accurate it is to be, nor how long it may take: so many samples of
@@ -57,17 +41,15 @@ constexpr double kMostUnaskedInAll = 16e6;
 
 struct PlanRequest {
   double tolerance_de00 = 0.5;        // what leaving effects out may change, p95 over visible pixels, all together
-  double budget_ms = 0;               // of one frame's shading; 0 is none
   double most_ray_samples = 0;        // of all points of a picture; 0 is no limit
   std::string effects = "auto";       // auto, all or none, then +NAME and -NAME, separated by commas
-  std::optional<std::string> engine;  // by name; none: the one predicted fastest
+  std::optional<std::string> engine;  // by name; none: the first that draws by prefiltered maps
   double white_luminance = 1;         // what color differences are relative to
-  int samples = 1, frames = 1;
-  double pixels = 0;  // of one frame, seen or not; 0: those of the G-buffers
+  int samples = 1;
 };
 
 // What became of an effect.
-enum class Decision { kNotInScene, kDrawn, kDropped, kForcedOn, kForcedOff, kOverBudget };
+enum class Decision { kNotInScene, kDrawn, kDropped, kForcedOn, kForcedOff, kFirstPass };
 
 // As plans, reports and the headers of pictures spell it. image::read_aov_file() reads it back.
 const char* spelled(Decision decision);
@@ -76,18 +58,12 @@ struct PlanItem {
   std::string effect;
   bool needed = false;  // the scene calls for it
   std::string reason;
-  double de00_p95 = 0;  // what leaving it out alone changes
-  double cost_ms = 0;   // what it adds to a frame's shading; NaN of engines that draw all effects at once
+  // What leaving it out alone changes, at 95 of 100 points; NaN where it was not measured. Of rays and sums it is what
+  // the first pass found.
+  double de00_p95 = 0;
   bool on = false;
   Decision decision = Decision::kNotInScene;
   std::optional<double> truth_de00_p95;  // the same as de00_p95, by the reference integrator
-  std::optional<double> standard_error;  // of de00_p95, where it was measured by random samples
-};
-
-// The shading of a frame by one engine, predicted.
-struct EnginePrice {
-  std::string engine;
-  double frame_ms = 0, once_ms = 0;
 };
 
 struct Plan {
@@ -95,26 +71,19 @@ struct Plan {
   Effects effects;
   std::string engine;  // that was chosen
   std::string engine_reason;
-  std::vector<EnginePrice> prices;  // of the engines that could be chosen, and of the one that was asked for
-  double de00_p95 = 0;              // predicted for all that is left out together
-  double time_ms = 0;               // that planning took
-  double sums_ms = 0;               // predicted for the sums of the first frame, if they are drawn
-  double rays_ms = 0;               // predicted for the effects of rays of one frame that are on
-  double ray_pricing_ms = 0;        // of the time that planning took: what the effects of rays are worth
-  double path_ms = 0;               // predicted for a frame by rays alone within the tolerance; 0: not priced
-  double path_samples = 0;          // of a pixel then, the mean
-  double rays_noise_de00 = 0;       // the noise of these that is expected: a standard deviation at 95 of 100 points
-  // What the open light as planned misses of the exact sum, at some of the points, with the effects left out that the
-  // plan leaves out of it; none where it was not measured.
-  std::optional<double> open_de00_p95;
-  // Predicted for all that the picture is to miss: open light, effects of rays that are left out, and noise.
-  std::optional<double> whole_de00_p95;
-  // A sentence where the picture is not going to be within the tolerance: why, and what would be; "" where it is.
-  std::string not_kept;
-
-  // Of the engine that was chosen.
-  double predicted_ms() const;
+  double de00_p95 = 0;  // of all that is left out of the maps together
+  double time_ms = 0;   // that planning took, the maps loaded that the picture needs as well
 };
+
+// What the first pass finds that sums change at 95 of 100 points, and whether nobody sees it, so that they are left
+// out; nothing without sums.
+struct FoundSums {
+  std::optional<double> de00_p95;
+  bool stopped = false;
+};
+
+// Takes what the first pass of a picture found.
+void add_findings(const CorrectionNoise& rays, const FoundSums& sums, Plan& plan);
 
 // Error (usage): a word of --effects that names no effect, with the names that there are.
 Result<void> check_effects(const std::string& effects);
@@ -140,12 +109,12 @@ std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const G
 Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers);
 
 // Plans the drawing of `scene`, as seen_scene() has it, by one of these engines, of which there is at least one. The
-// engine that is asked for must be among them. The effects are tried out by the engine cpu. Error: as for loading that
-// engine with all effects of the scene, and as check_effects(). The effects of rays come last in the plan. With a
-// transport, all G-buffers must have the triangles of the scene's mesh.
+// engine that is asked for must be among them. The effects are tried out by `tried`, whose maps may serve the picture.
+// Error: as for loading it with all effects of the scene, and as check_effects(). Sums and the effects of rays come
+// last in the plan.
 Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
-                       const PlanRequest& request, const std::vector<const Engine*>& engines,
-                       const RayContext& rays = {});
+                       const PlanRequest& request, const std::vector<const Engine*>& engines, const RayContext& rays,
+                       CpuEngine& tried);
 
 // Fills in the truth of every effect that is needed: the change of the exact picture without it, at these points.
 void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& points, const envmap::Environment* env,

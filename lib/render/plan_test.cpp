@@ -6,6 +6,7 @@
 
 #include "color/color.h"
 #include "envmap/environment.h"
+#include "render/cpu/cpu_engine.h"
 #include "render/internal/seen.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
@@ -97,24 +98,9 @@ TEST(Plan, ColoredLightCallsForTheOperator) {
   world.scene.reflection = color::working_space_operator();
   world.env.diffuse.map = cube_of(4, [](const Vec3&) { return Vec3{0.1, 0.9, 1}; });
   const Plan plan = planned(world).plan;
-  EXPECT_TRUE(item(plan, "operator").on);
-  EXPECT_GT(item(plan, "operator").de00_p95, 2);
+  EXPECT_TRUE(item(plan, "operator").on) << "it is as fast as the plain product";
   EXPECT_THAT(item(plan, "operator").reason, HasSubstr("colored light"));
-}
-
-// In light that is nearly white the operator cannot be seen; in four forms it saves nothing to leave it out.
-TEST(Plan, WhatCostsNothingIsDrawn) {
-  World world(flake_paint());
-  world.scene.reflection = color::working_space_operator();
-  world.env.diffuse.map = cube_of(4, [](const Vec3&) { return Vec3{1, 1, 0.97}; });
-  const PlanRequest request;
-  const Plan plan = planned(world, request).plan;
-  const PlanItem& op = item(plan, "operator");
-  EXPECT_GT(op.de00_p95, 0);
-  EXPECT_LT(op.de00_p95, 0.5 * request.tolerance_de00);
-  EXPECT_EQ(op.decision, Decision::kDrawn);
-  EXPECT_THAT(op.reason, HasSubstr("costs nothing"));
-  for (const PlanItem& i : plan.items) EXPECT_FALSE(i.decision == Decision::kDropped && i.cost_ms == 0) << i.effect;
+  EXPECT_GT(item(planned(world, with_effects_of("auto,-operator")).plan, "operator").de00_p95, 2);
 }
 
 // Every effect forced off changes the picture by what the plan said it would: the same percentile of 512 points and of
@@ -125,16 +111,15 @@ TEST(Plan, EstimatesAreTheChangesOfThePicture) {
   world.scene.anisotropy = {{0.05, 0.4}};
   world.env.lobes[1].map = cube_of(16, [](const Vec3& d) { return Vec3{1 + d.x, 1 + d.x, 1 - 0.5 * d.y}; });
   const Planned all = planned(world, with_effects_of("all"));
-  int priced = 0;
+  int seen = 0;
   for (const PlanItem& i : all.plan.items) {
     if (!i.needed) continue;
     const Planned without = planned(world, with_effects_of("all,-" + i.effect));
     EXPECT_EQ(item(without.plan, i.effect).decision, Decision::kForcedOff);
     EXPECT_NEAR(p95(all.colors, without.colors), i.de00_p95, 0.2 * i.de00_p95 + 0.02) << i.effect;
-    EXPECT_GE(i.cost_ms, 0) << i.effect;
-    priced += i.de00_p95 > 0.1 ? 1 : 0;
+    seen += i.de00_p95 > 0.1 ? 1 : 0;
   }
-  EXPECT_GE(priced, 6);
+  EXPECT_GE(seen, 6);
 }
 
 TEST(Plan, WhatIsLeftOutStaysWithinTheTolerance) {
@@ -153,31 +138,58 @@ TEST(Plan, WhatIsLeftOutStaysWithinTheTolerance) {
     EXPECT_GE(here, dropped) << "a larger tolerance leaves out no less";
     dropped = here;
   }
-  EXPECT_GE(dropped, 3);
+  EXPECT_GE(dropped, 2);
 }
 
-TEST(Plan, BudgetKeepsWhatIsWorthMost) {
-  World world(flake_paint());
-  const Plan free = planned(world, with_effects_of("all")).plan;
-  PlanRequest request;
-  request.effects = "all";
-  request.engine = "cpu";
-  // Every plan measures the speed of the machine anew, and a busy one changes: several budgets, one of which bites.
-  int cut = 0;
-  for (const double share : {0.8, 0.6, 0.4, 0.2}) {
-    request.budget_ms = share * free.predicted_ms();
-    double lost = 1e9, kept = 0;
-    for (const PlanItem& i : planned(world, request).plan.items) {
-      if (i.decision == Decision::kOverBudget) lost = std::min(lost, i.de00_p95);
-      if (i.on) kept = std::max(kept, i.de00_p95);
-    }
-    if (lost == 1e9 || kept == 0) continue;
-    ++cut;
-    EXPECT_GT(kept, lost) << share;
-  }
-  EXPECT_GT(cut, 0) << "something had to go";
-  request.budget_ms = 1e-9;
-  for (const PlanItem& i : planned(world, request).plan.items) EXPECT_FALSE(i.on && i.cost_ms > 0) << i.effect;
+// A highlight lies between the points of a plan, and is all that such a picture shows. The control: at 95 of 100 points
+// the lamp is worth nothing, by which alone it would be left out.
+TEST(Plan, AHighlightBetweenThePointsIsDrawn) {
+  paint::LobeFit gloss = matt({0, 0, 0});
+  gloss.lobes = {{900, {}, {0.3, 0, 0}}};
+  World world(gloss);
+  world.scene.env = nullptr;
+  world.scene.lights = {{normalized({0.3, 0.4, 1}), {1, 1, 1}}};
+  const Planned some = planned(world), all = planned(world, with_effects_of("all"));
+  EXPECT_EQ(item(some.plan, "lights").de00_p95, 0) << "the control";
+  EXPECT_EQ(item(some.plan, "gloss-900").de00_p95, 0) << "the control";
+  EXPECT_TRUE(item(some.plan, "lights").on);
+  EXPECT_TRUE(item(some.plan, "gloss-900").on);
+  EXPECT_EQ(some.colors, all.colors);
+  EXPECT_GT(std::ranges::max(some.colors, {}, &color::Rgb::x).x, 0.01);
+  // A lobe that nobody sees in its highlight either is left out.
+  world.scene.paints[0].lobes = {{900, {}, {1e-6, 1e-6, 1e-6}}};
+  EXPECT_FALSE(item(planned(world).plan, "gloss-900").on);
+}
+
+// The horizon cuts a lobe by the maps of the others. A lobe that is off has no part in that, so that a plan tries out
+// what a picture without its map shows. The control keeps the map, and shows another picture.
+TEST(Plan, ALobeThatIsOffIsTriedOutWithoutItsMap) {
+  paint::LobeFit paint = matt({0.05, 0.05, 0.04});
+  paint.lobes = {{6, {1e-3, 1e-3, 1e-3}, {}}, {40, {0.3, 0.3, 0.2}, {}}};
+  World world(paint);
+  world.env.lobes[0].map = cube_of(8, [](const Vec3& d) { return d.y > 0 ? Vec3{0.1, 0.1, 0.1} : Vec3{8, 8, 8}; });
+  world.env.lobes[1].map = cube_of(16, [](const Vec3& d) { return d.y > 0 ? Vec3{2, 2, 2} : Vec3{0.1, 0.1, 0.1}; });
+  const Effects all = effects_of(world.scene);
+  Effects off = all, gone = all;
+  off.lobes[0].directional_diffuse = false;
+  gone.lobes.erase(gone.lobes.begin());
+  std::vector<VisiblePoint> points;
+  for (double t = 0; t < 1.5; t += 0.05) points.push_back({{0, 0, 1}, {0, std::sin(t), std::cos(t)}, 0});
+  CpuEngine tried, drawn;
+  ASSERT_TRUE(tried.load(world.scene, all).ok());
+  ASSERT_TRUE(drawn.load(world.scene, gone).ok());
+  tried.load_paints(world.scene, off);
+  const auto apart = [&] {
+    std::vector<double> de00;
+    const auto a = tried.colors(points), b = drawn.colors(points);
+    for (std::size_t i = 0; i < a.size(); ++i) de00.push_back(seen_difference(a[i], b[i], 1));
+    return std::ranges::max(de00);
+  };
+  EXPECT_LT(apart(), 0.01);
+  Scene without = world.scene;
+  without.paints[0].lobes.erase(without.paints[0].lobes.begin());
+  tried.load_paints(without, all);
+  EXPECT_GT(apart(), 0.3) << "the control";
 }
 
 TEST(Plan, LobesNobodySeesAreNotLoaded) {

@@ -60,6 +60,7 @@ Drawn drawn(const World& world, const std::string& effects, bool rays, int sampl
   EXPECT_TRUE(plan.ok()) << plan.error().message;
   Drawn result{*std::move(plan), {}};
   EXPECT_TRUE(renderer->draw(view, result.frame).ok());
+  add_findings(result.frame.rays, result.frame.sums, result.plan);
   return result;
 }
 
@@ -111,8 +112,26 @@ TEST(RayEffects, APictureWithThemIsTheTruth) {
   EXPECT_EQ(bad.shares.noise, 0);
   // What the maps err by is seen on top of the truth, which has its own noise and, of the better picture, more samples.
   EXPECT_NEAR(bad.shares.prefilter, good.shares.prefilter, 0.1 * PlanRequest{}.tolerance_de00);
-  // The plan knew what leaving shadows out is worth: 100 pixels of 95 % lie between the 90th and the 99th.
-  EXPECT_NEAR(item(without.plan, "shadow").de00_p95, bad.total.de00_p95, 0.3 * bad.total.de00_p95);
+  // The first pass tells what leaving shadows out is worth: 100 pixels of 95 % lie between the 90th and the 99th.
+  EXPECT_NEAR(item(with.plan, "shadow").de00_p95, bad.worth.shadow, 0.3 * bad.worth.shadow);
+  EXPECT_NEAR(item(with.plan, "self").de00_p95, bad.worth.self, 0.3 * bad.worth.self);
+  EXPECT_NEAR(item(with.plan, "bounce").de00_p95, bad.worth.bounce, 0.3 * bad.worth.bounce);
+}
+
+// A share that nobody sees gets no second pass: its first samples stay in the picture, which is the truth all the same.
+// The control: where it is seen, it goes on.
+TEST(RayEffects, WhatTheFirstPassShowsToBeUnseenStops) {
+  World dark(ball_in_a_cup());
+  dark.scene.paints.assign(dark.mesh.parts.size(), matt({0.006, 0.006, 0.006}));
+  const Drawn stopped = drawn(dark, "auto", true);
+  EXPECT_EQ(item(stopped.plan, "shadow").decision, Decision::kDrawn);
+  EXPECT_EQ(item(stopped.plan, "bounce").decision, Decision::kFirstPass);
+  EXPECT_EQ(item(stopped.plan, "self").decision, Decision::kFirstPass) << "there are no lobes";
+  EXPECT_LT(item(stopped.plan, "bounce").de00_p95, 0.25 * PlanRequest{}.tolerance_de00);
+  const TruthError error = against_truth(dark, stopped);
+  EXPECT_LT(error.total.de00_p95, 2 * PlanRequest{}.tolerance_de00);
+  const Drawn control = drawn(World(ball_in_a_cup()), "auto", true);
+  EXPECT_EQ(item(control.plan, "bounce").decision, Decision::kDrawn);
 }
 
 // The truth is known to a tenth of the difference because the few noisy points are traced on. The control: the same
@@ -134,18 +153,6 @@ TEST(RayEffects, NoisyPointsOfTheTruthAreTracedOn) {
   EXPECT_NEAR(on.total.de00_p95, same.total.de00_p95, 3 * same.standard_error);
 }
 
-// What the plan says of the whole: in even light it is the noise and what is left out. Control: with the shadow left
-// out it is what the check finds.
-TEST(RayEffects, TheWholeIsPredicted) {
-  const World world(ball_in_a_cup());
-  const Drawn with = drawn(world, "all", true), without = drawn(world, "all,-shadow", true);
-  ASSERT_TRUE(with.plan.whole_de00_p95.has_value());
-  ASSERT_TRUE(without.plan.whole_de00_p95.has_value());
-  EXPECT_LT(against_truth(world, with).total.de00_p95, 2 * *with.plan.whole_de00_p95);
-  EXPECT_LT(*with.plan.whole_de00_p95, 2 * PlanRequest{}.tolerance_de00);
-  EXPECT_GT(item(without.plan, "shadow").de00_p95, 5);
-}
-
 // The samples of a whole picture may be limited: it keeps to that, says which noise that leaves, and where effects are
 // asked for by name there is no such limit.
 TEST(RayEffects, APictureTakesNoMoreSamplesThanItMay) {
@@ -161,11 +168,7 @@ TEST(RayEffects, APictureTakesNoMoreSamplesThanItMay) {
   const Drawn limited = drawn(world, "auto", true, 1, 0.2 * taken);
   EXPECT_FALSE(limited.frame.rays.reached);
   EXPECT_LE(limited.frame.rays.samples * points(limited), 0.2 * taken);
-  // What is told beforehand of noise and samples holds to a third.
-  EXPECT_GT(limited.plan.rays_noise_de00, 1.3 * free.plan.rays_noise_de00);
-  EXPECT_LT(std::abs(std::log(limited.plan.rays_noise_de00 / limited.frame.rays.de00_p95)), std::log(1.33));
-  EXPECT_NE(limited.plan.not_kept.find("million samples"), std::string::npos) << limited.plan.not_kept;
-  EXPECT_EQ(free.plan.not_kept.find("million samples"), std::string::npos);
+  EXPECT_GT(limited.frame.rays.de00_p95, 1.3 * free.frame.rays.de00_p95);
   const Drawn named = drawn(world, "auto,+rays", true, 1, 0.2 * taken);
   EXPECT_TRUE(named.frame.rays.reached);
   EXPECT_GT(named.frame.rays.samples * points(named), 0.5 * taken);
@@ -221,7 +224,6 @@ TEST(RayEffects, AFloorIsDrawnAndShadedByEnginesWithMaps) {
       EXPECT_TRUE(plan->effects.rays.floor);
       EXPECT_EQ(plan->items.back().effect, "floor");
       EXPECT_TRUE(plan->items.back().on);
-      EXPECT_GE(plan->items.back().cost_ms, 0);
       Frame frame;
       ASSERT_TRUE(renderer->draw(view, frame).ok());
       std::vector<double> errors, without;

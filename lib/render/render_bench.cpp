@@ -223,7 +223,6 @@ void BM_Plan(benchmark::State& state) {
   state.counters["plan_ms"] = plan_ms;
   state.counters["frame_ms"] = left->planned_ms;
   state.counters["frame_all_ms"] = left->full_ms;
-  state.counters["predicted_ms"] = plan.predicted_ms();
   state.counters["de00_p95"] = left->de00_p95;
 }
 BENCHMARK(BM_Plan)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -23,10 +23,10 @@ namespace goniochrome::render {
 
 namespace {
 
-// G-buffers are kept up to this size together: 16 samples of 1280 x 720.
-constexpr std::size_t kMostKept = std::size_t{320} << 20;
-// What they show of textures takes up to this size together.
-constexpr std::size_t kMostSeen = std::size_t{128} << 20;
+constexpr std::size_t kMostKept = std::size_t{320} << 20;  // bytes of all G-buffers: 16 samples of 1280 x 720
+constexpr std::size_t kMostSeen = std::size_t{128} << 20;  // bytes of what they show of textures
+// Sums stop that change no more than this part of the tolerance; the rest is for what else the maps miss.
+constexpr double kStopSums = 0.5;
 constexpr std::size_t kPixelBytes = 4 * sizeof(float) + sizeof(std::uint32_t);
 
 bool same_view(const View& a, const View& b) {
@@ -69,7 +69,9 @@ struct Renderer::State : Sight {
   bool rough_rays = false;  // whether its rough coats are facets, as those of the picture that it corrects
   std::optional<envmap::BlockTree> ray_texels;  // of the environment of ray_setup; none: not yet
   std::unique_ptr<OpenResidual> residual;       // of these; null: not yet
-  std::optional<Error> ray_failure;             // of load_paints(), which cannot tell it
+  FoundSums sums_found;                         // by the first picture after a plan
+  bool sums_may_stop = false;
+  std::optional<Error> ray_failure;  // of load_paints(), which cannot tell it
   double white_luminance = 1, tolerance_de00 = 0.5;
   const mesh::Mesh* uploaded = nullptr;
   std::size_t uploaded_triangles = 0;
@@ -97,7 +99,7 @@ struct Renderer::State : Sight {
   Result<void> add_seen_through(int sample, float gain, image::Image& picture);
   CorrectionNoise correct(int first, int count, image::Image& picture);
   Result<Transport> traced_light(bool over_floor) const;
-  Result<std::optional<Transport>> transport_over_floor() const;
+  Result<RayContext> ray_context(const Scene& whole_scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers);
   Result<void> trace(const Scene& whole_scene, bool rough);
   Scene completed(const Scene& scene) const;
   // The light of which rays are drawn; a sun is asked for by itself.
@@ -113,7 +115,9 @@ struct Renderer::State : Sight {
   SeenPixels* seen_pixels(int sample) override;
   std::size_t number_kept(int sample);
   // By which the picture is corrected; null where it is not.
-  OpenResidual* summed() const { return effects.sums && engine->info().is_planned ? residual.get() : nullptr; }
+  OpenResidual* summed() const {
+    return effects.sums && !sums_found.stopped && engine->info().is_planned ? residual.get() : nullptr;
+  }
 };
 
 Engine& Renderer::State::engine_of(const EngineInfo& info) {
@@ -274,6 +278,10 @@ std::size_t Renderer::State::number_kept(int sample) {
 Result<void> Renderer::State::take(int first, int count, image::Image& picture) {
   const float gain = 1.0F / static_cast<float>(count);
   GONIO_TRY(take_samples(*this, *engine, scene, effects, first, count, picture));
+  if (summed() != nullptr && !sums_found.de00_p95) {
+    const double de00 = residual->change(*gbuffer(first), picture, white_luminance);
+    sums_found = {de00, sums_may_stop && de00 <= kStopSums * tolerance_de00};
+  }
   for (int i = first; summed() != nullptr && i < first + count; ++i) summed()->add(*gbuffer(i), gain, picture);
   for (int i = first; effects.panes && !engine->info().traces_rays && i < first + count; ++i)
     GONIO_TRY(add_seen_through(i, gain, picture));
@@ -316,6 +324,7 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
   request.most_samples = std::max(2 * kBatch, effects.most_ray_samples / groups);
   request.most_in_all = effects.most_samples_in_all / groups;
   request.progress = effort_asked.progress;
+  const Backdrop backdrop{effects.background, scene.background_color, ray_setup->environment};
   const image::Image before = picture;
   const Deadline deadline(effort_asked.time_limit_s);
   for (int group = 0; group < groups; ++group) {
@@ -327,15 +336,18 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
     for (int i = begin; i < end; ++i) {
       samples.push_back(drawn_surface(*scene.mesh, *gbuffer(i)));
       if (!effects.rays.floor) continue;
-      add_surroundings(*transport, *gbuffer(i), {effects.background, scene.background_color, ray_setup->environment},
-                       effects.rays, 1.0F / static_cast<float>(count), picture);
+      add_surroundings(*transport, *gbuffer(i), backdrop, effects.rays, 1.0F / static_cast<float>(count), picture);
     }
     const float gain = static_cast<float>(end - begin) / static_cast<float>(count);
     const CorrectionNoise one = add_correction(*transport, samples, request, before, gain, picture);
     all.de00_p95 += one.de00_p95 / std::sqrt(groups) / groups, all.free_share += one.free_share / groups;
     all.samples += one.samples, all.ms += one.ms;
-    all.reached = all.reached && one.reached;
+    all.reached = all.reached && one.reached, all.dark = (group == 0 || all.dark) && one.dark;
+    if (group == 0) all.found = one.found;
   }
+  if (effects.rays.floor)
+    all.found.back().de00_p95 = std::max(
+        all.found.back().de00_p95, floor_change(*transport, *gbuffer(first), backdrop, effects.rays, white_luminance));
   return all;
 }
 
@@ -376,11 +388,25 @@ Result<Transport> Renderer::State::traced_light(bool over_floor) const {
   return created;
 }
 
-// The same over the floor of the picture; none where there is no such floor.
-Result<std::optional<Transport>> Renderer::State::transport_over_floor() const {
-  if (!transport || !ray_setup->floor || ray_setup->environment == nullptr) return std::optional<Transport>();
-  GONIO_ASSIGN(Transport created, traced_light(true));
-  return std::optional<Transport>(std::move(created));
+// Nothing is in the way of light on a convex mesh that is seen from outside.
+Result<RayContext> Renderer::State::ray_context(const Scene& whole_scene,
+                                                const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers) {
+  RayContext context;
+  context.absent = ray_setup->absent, context.refused = ray_setup->refused, context.no_floor = ray_setup->no_floor;
+  context.floor = ray_setup->floor && ray_setup->environment != nullptr;
+  context.floor_forced = context.floor && ray_setup->floor_forced;
+  if (ray_setup->environment != nullptr) {
+    if (!ray_texels) ray_texels.emplace(*ray_setup->environment);
+    if (!residual) residual = std::make_unique<OpenResidual>(*ray_texels);
+    context.has_environment = true;
+  }
+  if (!context.absent.empty() || context.floor || whole_scene.mesh == nullptr) return context;
+  GONIO_TRY(show(*whole_scene.mesh));
+  GONIO_TRY(meet(whole_scene));
+  const auto shows_inside = [](const auto& gbuffer) { return gbuffer->shows_inside(); };
+  if (ray_mesh->is_convex() && std::ranges::none_of(gbuffers, shows_inside))
+    context.absent = "the mesh is convex: nothing is in the way of its light";
+  return context;
 }
 
 // With the light and the floor that rays meet, for engines that draw by them alone.
@@ -471,40 +497,15 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
   if (request.engine) {
     GONIO_ASSIGN(asked, engine_named(*request.engine));
   }
-  // Rays meet parts that the camera does not see.
-  const Scene seen = asked != nullptr && asked->traces_rays ? scene : seen_scene(scene, gbuffers);
+  const bool by_rays = asked != nullptr && asked->traces_rays;
+  const Scene seen = by_rays ? scene : seen_scene(scene, gbuffers);  // rays meet parts that the camera does not see
   RayContext rays;
-  std::optional<Transport> over_floor, alone;
-  Scene complete;
-  rays.alone = [&]() -> const Transport* {
-    complete = s.completed(scene);
-    if (complete.texels == nullptr || s.ray_mesh == nullptr) return nullptr;
-    std::shared_ptr<const rays::RayScene> mesh = s.whole != nullptr ? s.whole : s.ray_mesh;
-    if (complete.ground) mesh = std::make_shared<const rays::RayScene>(mesh->over({complete.ground->height}));
-    auto made = Transport::create(path_scene_of(complete, std::move(mesh)));
-    return made.ok() ? &alone.emplace(*std::move(made)) : nullptr;
-  };
-  rays.absent.clear();
-  if (s.ray_setup && !(asked != nullptr && asked->traces_rays)) {
-    rays.bounces = s.effort_asked.bounces, rays.seed = s.effort_asked.seed, rays.absent = s.ray_setup->absent;
-    rays.refused = s.ray_setup->refused, rays.no_floor = s.ray_setup->no_floor;
-    s.effects.rays = {};  // decided below
-    const Result<void> traced = s.trace(scene, effects_of(scene).stretch);
-    if (!traced.ok()) rays.absent = traced.error().message;
-    rays.transport = s.transport ? &*s.transport : nullptr;
-    GONIO_ASSIGN(over_floor, s.transport_over_floor());
-    rays.over_floor = over_floor ? &*over_floor : nullptr;
-    rays.floor_forced = s.ray_setup->floor_forced, rays.environment = s.ray_setup->environment;
-    if (s.ray_setup->environment != nullptr) {
-      if (!s.ray_texels) s.ray_texels.emplace(*s.ray_setup->environment);
-      if (!s.residual) s.residual = std::make_unique<OpenResidual>(*s.ray_texels);
-      rays.texels = &*s.ray_texels, rays.residual = s.residual.get();
-    }
+  if (s.ray_setup && !by_rays) {
+    GONIO_ASSIGN(rays, s.ray_context(scene, gbuffers));
   }
   if (has_panes(scene) && !s.given) {
     GONIO_TRY(s.show(*scene.mesh));
     GONIO_TRY(s.meet(scene));
-    rays.whole = s.whole.get();
   }
   std::vector<const Engine*> able;
   std::optional<Error> refusal;  // of the engine that was asked for, or of the first
@@ -516,14 +517,23 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
   }
   if (refusal && (request.engine || able.empty())) return *refusal;
   s.white_luminance = request.white_luminance;
-  GONIO_ASSIGN(Plan plan, make_plan(seen, gbuffers, request, able, rays));
-  const bool by_lobes = s.transport && s.rough_rays && !plan.effects.stretch;
-  if (by_lobes) {
-    s.rough_rays = false;
-    GONIO_ASSIGN(over_floor, s.traced_light(plan.effects.rays.floor));
+  auto tried = std::make_unique<CpuEngine>();
+  GONIO_ASSIGN(Plan plan, make_plan(seen, gbuffers, request, able, rays, *tried));
+  s.effects.rays = plan.effects.rays;
+  const Result<void> traced = plan.effects.rays.any() ? s.trace(scene, plan.effects.stretch) : Result<void>();
+  if (!traced.ok()) {
+    rays.absent = traced.error().message;
+    GONIO_ASSIGN(plan, make_plan(seen, gbuffers, request, able, rays, *tried));
   }
-  if (by_lobes || plan.effects.rays.floor) s.transport = std::move(over_floor);
+  s.sums_found = {};
+  s.sums_may_stop = is_drawn_unasked(plan, kSumsName);
   GONIO_ASSIGN(const EngineInfo* taken, engine_named(plan.engine));
+  if (taken == &CpuEngine::kInfo) {  // that which tried out the plan has the maps
+    tried->keep_maps();
+    Engine& old = s.engine_of(*taken);
+    if (s.engine == &old) s.engine = tried.get();
+    std::ranges::find(s.made, &old, &std::unique_ptr<Engine>::get)->reset(tried.release());
+  }
   GONIO_TRY(load(taken->traces_rays ? s.completed(scene) : seen, plan.effects, plan.engine));
   return plan;
 }
@@ -533,6 +543,7 @@ void Renderer::load_paints(const Scene& scene) {
   s.begin();
   s.scene = s.engine != nullptr && s.engine->info().traces_rays ? s.completed(scene) : scene;
   if (s.engine != nullptr) s.engine->load_paints(s.scene);
+  s.sums_found = {};
   Result<void> taken = s.summed() != nullptr ? s.summed()->load_paints(scene) : Result<void>();
   if (taken.ok() && s.effects.rays.any()) taken = s.trace(scene, s.effects.stretch);
   if (!taken.ok()) s.ray_failure = taken.error();
@@ -542,10 +553,6 @@ void Renderer::set_rays(const RaySetup& setup) {
   state_->ray_setup = setup;
   state_->residual.reset(), state_->ray_texels.reset(), state_->ray_table.reset(), state_->ray_sun.reset();
   if (setup.environment != nullptr && setup.absent.empty()) state_->ray_sun = envmap::sunlit_sky(*setup.environment);
-}
-
-const Transport* Renderer::transport() const {
-  return state_->transport ? &*state_->transport : nullptr;
 }
 
 Result<std::shared_ptr<const Gbuffer>> Renderer::look(const mesh::Mesh& mesh, const View& view) {
@@ -577,6 +584,7 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
     GONIO_TRY(s.take(1, view.samples, frame.picture));
     frame.rays = s.correct(1, view.samples, frame.picture);
   }
+  frame.sums = s.sums_found;
   frame.noise.reset();
   if (s.engine->noise() != nullptr) frame.noise = *s.engine->noise();
   frame.frame_ms = 1000 * whole.elapsed_s();

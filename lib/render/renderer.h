@@ -38,6 +38,7 @@ struct Frame {
   std::optional<Noise> noise;  // of the picture; none of engines that do not draw by random samples
   image::Image open_centers;   // of the pixel centers without the effects of rays; empty unless centers are asked for
   CorrectionNoise rays;        // of the effects of rays in `picture`; 0 where none are drawn
+  FoundSums sums;
 };
 
 // The light that rays meet beside the lights of the scene. How many bounces it takes, and which random numbers, is told
@@ -46,7 +47,7 @@ struct RaySetup {
   const envmap::Environment* environment = nullptr;  // none: dark
   std::string absent;                                // why plans cannot trace rays; "" where they can
   bool refused = false;                              // whether that is because nobody wants them
-  std::optional<Ground> floor;                       // that shows the environment: plans decide whether it is drawn
+  std::optional<Ground> floor;                       // that shows the environment
   bool floor_forced = false;  // whether it is asked for by name, so that it is drawn whatever it is worth
   std::string no_floor;       // why there is none
 };
@@ -64,7 +65,7 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   ~Renderer();
 
-  // From now on plans price the effects of rays, and pictures are drawn with those that are on. The environment must
+  // From now on plans have the effects of rays, and pictures are drawn with those that are on. The environment must
   // outlive the drawing. Without this call, no rays are traced.
   void set_rays(const RaySetup& setup);
 
@@ -87,8 +88,6 @@ class Renderer {
   Result<void> draw(const View& view, Frame& frame);
   Result<Frame> draw(const Camera& camera, int width, int height, int samples, bool with_centers = false);
 
-  // By which the effects of rays are drawn; null where none are loaded.
-  const Transport* transport() const;
   // For all pictures from now on, by engines that draw by random samples.
   void set_effort(Effort effort);
 

@@ -101,7 +101,7 @@ TEST(Stretch, EnginesAgree) {
   EXPECT_LE(most, 1e-3);
 }
 
-// The plan prices the look-ups, and leaves them out where they do not fit or where nothing is asked of them.
+// The plan tries out the look-ups, and leaves them out where nothing is asked of them.
 TEST(Stretch, IsPlanned) {
   World world("studio.exr");
   world.wear(satin(kCoats[1]));
@@ -117,7 +117,6 @@ TEST(Stretch, IsPlanned) {
   EXPECT_TRUE(item(plan, "stretch").on);
   EXPECT_TRUE(plan.effects.stretch);
   EXPECT_GT(item(plan, "stretch").de00_p95, 0.5);
-  EXPECT_GT(item(plan, "stretch").cost_ms, 0);
   PlanRequest loose;
   loose.tolerance_de00 = 20;
   EXPECT_FALSE(planned(loose).effects.stretch);

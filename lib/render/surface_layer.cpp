@@ -147,31 +147,7 @@ const TexturePlace& place_on(const VisiblePoint& point, std::size_t level) {
   return level == 0 || level > point.over.size() ? point.place : point.over[level - 1];
 }
 
-constexpr double kTexelsOfPlace = 4;  // between which a place lies
-
 }  // namespace
-
-FilterCost SurfaceLayer::filter_cost(const std::vector<VisiblePoint>& points) const {
-  FilterCost sum{0, 0};
-  double count = 0;
-  SeenTexels seen;
-  for (const VisiblePoint& point : points) {
-    const std::vector<Laid>& laid = laid_[static_cast<std::size_t>(point.part)];
-    if (!laid.empty()) ++count;
-    for (std::size_t k = 0; k < laid.size(); ++k) {
-      if (place_on(point, k).share == 0) continue;
-      const std::size_t which = laid[k].texture;
-      const TexturePlace place = repeated(place_on(point, k), laid[k].repeat);
-      const FilterProbes probes = shader_->probes(which, place, 1);
-      const PackedTexture &fine = shader_->packed(which), &level = shader_->packed(which, probes.level);
-      const double lobes = (1.0 + level.lobes) / (1.0 + fine.lobes);
-      const double texels = static_cast<double>(seen.of(place, 1, probes, level.width, level.height).size());
-      sum.probes += probes.count() * lobes;
-      sum.texels += std::max(texels / kTexelsOfPlace, 1.0) * lobes;
-    }
-  }
-  return count > 0 ? FilterCost{sum.probes / count, sum.texels / count} : FilterCost{};
-}
 
 double SurfaceLayer::covered_texels(const VisiblePoint& point) const {
   const std::vector<Laid>& laid = laid_[static_cast<std::size_t>(point.part)];

@@ -107,9 +107,6 @@ class SurfaceLayer {
   // where it matters which place is covered. Leaves it alone where it shows no texture or the G-buffer has no
   // triangles.
   void put_places(const Gbuffer& gbuffer, int x, int y, double scale, VisiblePoint& point) const;
-  // What a textured point takes with the effect texture_filter, where each place counts with the lobes of its level,
-  // relative to what it takes without it: the mean over the points.
-  FilterCost filter_cost(const std::vector<VisiblePoint>& points) const;
   // How many texels its footprint covers, 1 or more.
   double covered_texels(const VisiblePoint& point) const;
 

@@ -9,9 +9,9 @@
 #include "base/parallel.h"
 #include "render/internal/seen.h"
 #include "render/path/noise.h"
+#include "render/path/ray_correction.h"
+#include "render/path/ray_points.h"
 #include "render/path/transport.h"
-#include "render/plan/floor_probe.h"
-#include "render/plan/ray_probe.h"
 
 namespace goniochrome::render {
 
@@ -147,17 +147,18 @@ class Judge {
 
   // Compares the floor beside the mesh with what pixels there show without it.
   void look_beside(const Transport& over_floor, const Scene& scene) {
-    const FloorPixels pixels = floor_pixels(over_floor, scene, request_.environment, {frame_.gbuffer},
-                                            static_cast<std::size_t>(request_.count));
+    const std::vector<RayPoint> points =
+        floor_points(over_floor.rays(), *frame_.gbuffer, static_cast<std::size_t>(request_.count));
+    const Backdrop backdrop{scene.background, scene.background_color, request_.environment};
     PathOptions options;
     options.bounces = request_.bounces;
-    std::vector<double> values(pixels.points.size());
+    std::vector<double> values(points.size());
     parallel_for(values.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         PointTruth truth;
-        add_batches(over_floor, options, pixels.points[i].at, mixed(seed(), ~i), kFloorBatches, truth);
+        add_batches(over_floor, options, points[i], mixed(seed(), ~i), kFloorBatches, truth);
         values[i] = noiseless(truth, truth, [&](const LightShares& shown, const LightShares&) {
-          return seen_difference(shown.sum(), pixels.points[i].instead, white_);
+          return seen_difference(shown.sum(), backdrop.at(-points[i].to_viewer), white_);
         });
       }
     });

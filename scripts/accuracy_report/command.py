@@ -29,7 +29,7 @@ STUDIES = {
     "search": "search: library size, tree and scan against brute force",
     "growth": "growth of times with probes, maps, paints, pixels and lights, and where it is steepest",
     "paths": "paths: error against time for samples, engines, effects and bounces, and growth with triangles, pixels and lights",
-    "rays": "effects of rays: what each costs and is worth in ten scenes, predicted and true",
+    "rays": "effects of rays: what each changes in ten scenes, by the first pass and in truth",
     "chain": "the whole chain: where the error of a picture comes from, and what it costs to lower it",
 }
 

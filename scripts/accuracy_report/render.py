@@ -11,7 +11,6 @@ from .study import Figure, Reading, Study
 PAINTS = ("signal_red", "silver_black_flop", "blue_to_purple")
 QUARTERS = (2.9296875, 11.71875, 46.875, 187.5, 750, 3000)  # These exponents let one cube hold all lobes in its levels.
 DEFAULT = "0.5"
-SHARES = (0.5, 0.7, 0.85)  # budgets, as shares of the time that all effects take
 
 
 def choices(run):
@@ -42,16 +41,10 @@ def probed(scene, method, choice, *more, default=False):
 
 
 def plain(run, paint):
-    """Readings of a paint under the probe: every tolerance with each engine, and some budgets with the faster engine."""
+    """Readings of a paint under the probe: every tolerance with each engine."""
     scene = Scene(run, paint)
-    readings = [probed(scene, engine, choice, "--engine", engine, default=(engine, choice) == ("cpu", DEFAULT))
-                for engine in ("gl", "cpu") for choice in choices(run)]
-    all_ms = 1e3 * readings[-1].time_s
-    for share in (0.5,) if run.quick else SHARES:
-        budget = f"{share * all_ms:.3g}"
-        readings.append(probed(scene, "cpu, --budget", "0.1", "--engine", "cpu", "--budget", budget))
-        readings[-1].setting = f"cpu, --budget {budget}"
-    return readings
+    return [probed(scene, engine, choice, "--engine", engine, default=(engine, choice) == ("cpu", DEFAULT))
+            for engine in ("gl", "cpu") for choice in choices(run)]
 
 
 def staged(run, stage, scene, method, *more):
@@ -86,8 +79,8 @@ def study(run):
                               f"{name}: mean dE00 to the reference integrator against time", readings,
                               "time of shading every pixel once (s)", "dE00, mean"))
         rows += [(name, r.setting, r.numbers["effects"], 1e3 * r.time_s, r.error, r.numbers["p95"]) for r in readings]
-    return Study("Rendering", "Each point is a tolerance of render-osmesa, which leaves out the effects whose estimated worth is "
-                 "smaller. The time is that of shading every pixel once, since effects change nothing else; the error is that of "
+    return Study("Rendering", "Each point is a tolerance of render-osmesa, which leaves out the lobes and look-ups that change "
+                 "less. The time is that of shading every pixel once, since effects change nothing else; the error is that of "
                  "random visible pixels against the exact lobe model under the whole environment. The texture looks into a cube "
                  "for each exponent or into the levels of one cube (--texture-maps). The brushed paint is lit by a lamp and "
                  "drawn with tilted normals.", figures,

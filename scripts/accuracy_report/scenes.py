@@ -118,7 +118,7 @@ def scene_readings(stage, scene):
                                 default=effects == "auto", **times, numbers=numbers))
     ms = [1e3 * reading.time_s for reading in readings]
     return (named(scene), " ".join(gone) or "nothing", planned["plan_de00_p95"], left["de00_p95"],
-            planned["error"]["de00_p95"], full["error"]["de00_p95"], *ms, left["predicted_ms"], planned["plan_ms"]), readings
+            planned["error"]["de00_p95"], full["error"]["de00_p95"], *ms, planned["plan_ms"]), readings
 
 
 def effect_row(stage, effect, scene):
@@ -147,11 +147,11 @@ def study(run):
                     f"picture with all effects. Errors below {LEAST} are drawn at {LEAST}.")
     return Study("Scenes", "The first table shows what --effects auto leaves out of ten scenes at a tolerance of 0.5 dE00, and "
                  "how far the picture then is from the picture with all effects and from the exact integral. The second table "
-                 "shows, for every effect, what the plan says that it is worth, and the error of the picture without it. All "
+                 "shows, for every effect, what the plan says that it changes, and the error of the picture without it. All "
                  "differences are 95th percentiles of CIEDE2000; those to the exact integral are of random pixels, the others of "
                  "all pixels.",
                  [figure],
                  [("What is left out", ("scene", "left out", "predicted", "to all effects", "check, planned", "check, all",
-                                        "shading (ms)", "all effects (ms)", "predicted (ms)", "planning (ms)"), scenes),
+                                        "shading (ms)", "all effects (ms)", "planning (ms)"), scenes),
                   ("Each effect forced off where it matters",
                    ("effect", "scene", "predicted", "to all effects", "check", "exact, alone"), effects)])

@@ -28,7 +28,6 @@ _render_osmesa() {
     --light-sweep) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --effects) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --tolerance) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --budget) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --engine) COMPREPLY=($(compgen -W "auto cpu gl integral path" -- "$word")); return ;;
     --bounces) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --check) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -46,7 +45,7 @@ _render_osmesa() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --paint --basis --part --trim --split --texture --texture-maps --env --light --emit --spectral --floor --eye-height --operator --critical-angle --exposure --background --orbit --camera --fov --size --samples --turntable --light-sweep --effects --tolerance --budget --engine --gpu --bounces --print-shader --check --check-against --check-source --output --sheet --to --view --aov --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --paint --basis --part --trim --split --texture --texture-maps --env --light --emit --spectral --floor --eye-height --operator --critical-angle --exposure --background --orbit --camera --fov --size --samples --turntable --light-sweep --effects --tolerance --engine --gpu --bounces --print-shader --check --check-against --check-source --output --sheet --to --view --aov --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -183,45 +183,39 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "operator, panes (what lies behind glass), lights and extent (of lamps). spots draws the bright spots of the "
           "environment, such as its sun, as lamps that each horizon cuts by itself, and needs horizon. lobe-20, "
           "gloss-900 and texture-0 (lobe0 of the textures) are single lobes. satin draws the rough coat of a paint as "
-          "a surface of facets, which integral and path do; to other engines the plan tells what it is worth. stretch "
+          "a surface of facets, which integral and path do. stretch "
           "draws its image light by several look-ups along the plane of incidence, where the other engines would look "
           "about the mirror direction alone; it needs an environment without lamps. tilts "
           "are the tilted lobes that stand for color maps under an environment, "
           "tilts-1 is the set with the fewest of them, and each finer set, as tilts-2, needs the one before; while "
           "they are drawn, the lobes of these paints are not. sums corrects what the diffuse part and the lobes up to "
-          "exponent 100 gather of the environment by sums over its mirror part, where prefiltered maps miss it by more "
-          "than the tolerance allows. Brushed parts, color maps, textures and the gloss of rough coats stay as maps "
+          "exponent 100 gather of the environment by sums over its mirror part. Brushed parts, color maps, textures "
+          "and the gloss of rough coats stay as maps "
           "have them, and a picture that lacks horizon or fresnel by name has no sums. Where no rays are traced it is "
           "drawn if it is named, as in auto,-rays,+sums. Three more are drawn by tracing rays: shadow (the mesh "
           "blocks light), self (lobes and mirror see the body instead of black) and bounce (the same for the diffuse "
           "part). The last two need shadow, and rays names all three. They are drawn at those pixels alone that can "
           "see the mesh, so that a convex shape is drawn as without them. Rays are traced wherever a mesh is given; "
-          "auto,-rays traces none, which is much faster where the mesh blocks much light. Effects of rays that auto "
-          "decides to draw take at most 1024 samples of a point, and those that are named with a plus, as in "
-          "auto,+rays, take as many as --tolerance needs. The effect floor is that of --floor shadow and needs "
-          "shadow; it is priced where the environment is the background, and +floor asks for it as --floor shadow "
-          "does. auto leaves out the effects that change too little, as --tolerance and --budget say.");
+          "auto,-rays traces none, which is much faster where the mesh blocks much light. Effects of rays that nobody "
+          "names take at most 1024 samples of a point, and those that are named with a plus, as in auto,+rays, take as "
+          "many as --tolerance needs. The effect floor is that of --floor shadow and needs shadow; +floor asks for it "
+          "as --floor shadow does. An effect is drawn where the scene calls for it. auto leaves out the lobes and the "
+          "look-ups of maps that change too little, as --tolerance says, and the first pass of the picture tells what "
+          "rays and sums change: what stays below its part of the tolerance gets no second pass.");
   o.common.tolerance = 0.5;
   cli::add_tolerance(spec, o.common, "DE00", "largest difference from the truth, all errors together")
       .more(
-          "Before drawing, each effect that the scene calls for is priced: what it changes in the picture (the "
-          "95th percentile of the difference over visible pixels), and what it costs. What changes less than the "
-          "tolerance, all together, is left out. --explain prints the table, which is also in the report and in "
-          "the header of an EXR. The effects of rays are drawn with samples until the standard deviation of their "
-          "noise is within half of the tolerance at 95 of 100 points, which does not keep each point within it. "
-          "Where the prefiltered maps err by more than the tolerance, half of what they err by is enough, unless "
-          "--effects names effects of rays with a plus. Before drawing, the plan also compares what the "
-          "prefiltered maps show at some points with the exact sum, adds what is left out and the noise, and says "
-          "in a sentence if the whole is not going to be within the tolerance, and what would keep it. A picture for "
-          "which nobody asks how accurate it is to be, nor how long it may take, is to cost seconds: without "
-          "--tolerance, --time-limit and --check its rays take at most 16 million samples, or 8 of each point "
-          "where those are more, and the engine path is chosen where it is predicted to be faster and to need no more. "
-          "--engine "
+          "Before drawing, what each lobe and look-up of the maps changes is tried out on some hundred points, and on "
+          "highlights that may lie between them. What changes less than the tolerance, all together, at 95 of 100 "
+          "points and at every highlight, is left out. --explain prints the table, and after the first pass what rays "
+          "and sums change; the table is also in the report and in the header of an EXR. The effects of rays are drawn "
+          "with samples until the standard deviation of their noise is within half of the tolerance at 95 of 100 "
+          "points, which does not keep each point within it. What the prefiltered maps err by is told by --check. A "
+          "picture for which nobody asks how accurate it is to be, nor how long it may take, is to cost seconds: "
+          "without --tolerance, --time-limit and --check its noise may be the whole tolerance, and its rays take at "
+          "most 16 million samples, or 8 of each point where those are more. --engine "
           "path, --aov transport and shadow, self, bounce or rays with a plus have no such limit. The engine "
           "integral makes its sums as coarse as this tolerance allows at 95 of 100 points.");
-  spec.option("budget", "MS", "20", &o.budget_ms, "longest time for shading a frame; 0 is no limit")
-      .from(0, 1e6)
-      .more("Where the time is not enough, the effects that are worth least for their time are left out as well.");
 }
 
 void add_engines(cli::ToolSpec& spec, Options& o) {
@@ -229,13 +223,13 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
   spec.option("engine", "NAME", "cpu", &o.engine, "what shades the picture")
       .one_of(render::engine_choices())
       .more(engine_sentences() +
-            " The pictures of cpu and gl are the same, and auto takes the one that is predicted to be faster. "
+            " The pictures of cpu and gl are the same. auto draws by prefiltered maps and rays: it takes cpu. "
             "Prefiltered maps know one direction at each point. They cannot tell light that changes within that part "
             "of a broad lobe that is above the horizon, but for bright spots, and differ from the truth by some 0.2 to "
             "0.5 dE00 in the mean, and by more at single points. integral sums blocks of the image that are as coarse "
             "as --tolerance "
             "allows, and draws every effect. At the default tolerance it takes several hundred times as long as the "
-            "others, and a brushed paint takes another 50 times as long; --explain predicts the time. To pictures of "
+            "others, and a brushed paint takes another 50 times as long. To pictures of "
             "these three, what the mesh does to light is added by rays, see --effects. path also draws parts that "
             "shine, lamps at a place with their extent and floors that wear a paint. It takes the light from the image "
             "that the "
@@ -246,11 +240,7 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
             "integral and path as the rough surface that has the readings of the paint, with which --check compares "
             "every picture. Prefiltered maps have lobes that stand for it. Without lamps they lie along the plane of "
             "incidence, and typically differ from the rough surface by .4 to 1.1 dE00 at 95 of 100 points in a studio, "
-            "and by .6 to 1.7 in the sun; beside lamps they are round, and its light differs by 1.5 to 7. The effects "
-            "satin and "
-            "stretch of the plan tell by how much. auto takes path where the "
-            "prefiltered maps are "
-            "predicted not to keep --tolerance, and path is predicted to be faster than they and their rays. OpenGL is "
+            "and by .6 to 1.7 in the sun; beside lamps they are round, and its light differs by 1.5 to 7. OpenGL is "
             "OSMesa where that is installed, and else the software renderer of EGL; --explain tells which. Where there "
             "is neither, rays find what is visible for the other engines, and gl is an error.");
   spec.flag("gpu", &o.gpu, "draw on a GPU, by the engine gl")
@@ -369,24 +359,16 @@ void add_report(cli::ToolSpec& spec) {
        "--light 30,50 --size 320x180 -o '{name}.png'",
        "draw a picture of each paint of a library"}};
   spec.report = {
-      {"plan[]: effect, needed, reason, de00_p95, cost_ms, decision",
-       "what each effect is worth, and whether it is drawn; with --check and --explain, truth_de00_p95 stands beside "
-       "it"},
-      {"plan[]: standard_error", "of de00_p95, where it was measured by random samples"},
-      {"rays: noise_de00_p95, samples, free_share, reached, ms, predicted_ms",
+      {"plan[]: effect, needed, reason, de00_p95, decision",
+       "what each effect changes, and whether it is drawn: of maps as it was tried out, of rays and sums as the first "
+       "pass found it; with --check and --explain, truth_de00_p95 stands beside it"},
+      {"rays: noise_de00_p95, samples, free_share, reached, ms",
        "how the effects of rays were drawn, where any were: the noise of the picture, the samples of a visible point, "
        "the share of points that needed none, whether the noise is as low as it was to be, and the time"},
-      {"plan_open_de00_p95, plan_whole_de00_p95",
-       "predicted before drawing: what the open light errs by, and all errors together; null where they are not "
-       "known"},
-      {"plan_de00_p95, plan_ms, plan_rays_ms",
-       "change by all effects that are left out together, the time that planning took, and the part of it in which "
-       "the effects of rays were priced"},
+      {"plan_de00_p95, plan_ms",
+       "change by all effects of maps that are left out together, and the time that planning took"},
       {"plan_most_samples",
        "samples of rays that a picture may take, where neither accuracy nor time was asked for; null: no limit"},
-      {"plan_path_ms, plan_path_samples",
-       "predicted for a picture by the engine path within the tolerance: its time, and the samples of a pixel; null "
-       "where prefiltered maps keep it, so that it was not priced"},
       {"engine, engine_reason", "what shaded the picture (gl, cpu, integral, path or transport), and why"},
       {"transport: points, columns, bytes_per_point",
        "with --aov transport, or --gbuffer of it: visible pixels, columns of light, and what a pixel takes in memory"},
@@ -446,13 +428,15 @@ void add_report(cli::ToolSpec& spec) {
        "out; bounce, if it was left out; the noise of the effects of rays"},
       {"error: worth",
        "what shadow, self, bounce and floor are worth in the truth, by the 95th percentile over the checked pixels, "
-       "and for a floor over as many beside the mesh, as the plan predicts it"},
+       "and for a floor over as many beside the mesh, as the first pass tells it"},
       {"error: fit", "95th percentile of what the paints of the pixels miss of their own readings"},
       {"left_out: de00_mean, de00_p95, de00_max",
        "with --check: how far the picture is from that with all effects, over all visible pixels"},
-      {"left_out: shading_ms, shading_all_ms, predicted_ms",
-       "with --check: the time of one sample of each pixel as planned, the same with all effects, and what the plan "
-       "expected"}};
+      {"left_out: shading_ms, shading_all_ms",
+       "with --check: the time of one sample of each pixel as planned, and the same with all effects"}};
+  spec.gone = {{"budget",
+                "what lobes and look-ups may leave out is said by --tolerance, and how long rays may take by "
+                "--time-limit"}};
   spec.see_also = {"fit-paint(1)", "prefilter-envmap(1)", "goniochrome-paint(5)", "goniochrome-theory(7)"};
 }
 

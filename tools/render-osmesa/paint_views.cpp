@@ -95,7 +95,6 @@ class EngineViews : public PaintViews {
     white_luminance = white.luminance;
     request_.plan.white_luminance = white.luminance;
     request_.plan.tolerance_de00 = session_.common().tolerance;
-    request_.plan.pixels = static_cast<double>(request_.size.width) * request_.size.height;
     const Vec3 to_camera = -seen->rays.direction(0.5 * seen->width, 0.5 * seen->height);
     const double metered = render::metered_white(stage_.scene.env, stage_.scene.lights, to_camera);
     automatic_stops = metered > 0 ? -std::log2(metered) : 0;
@@ -147,7 +146,7 @@ class EngineViews : public PaintViews {
   }
 
   void tell(const render::Plan& plan) {
-    for (Json& row : plan_rows(plan, true)) session_.results()["plan"].push_back(std::move(row));
+    for (Json& row : plan_rows(plan)) session_.results()["plan"].push_back(std::move(row));
     session_.explain(plan_table(plan));
     for (const std::string& remark : renderer_.remarks()) session_.warn(remark);
   }

@@ -55,7 +55,7 @@ Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const 
                                                   const render::TransportParts* transport,
                                                   const cli::Session& session) {
   image::ImagePart part{"picture", frame.picture, provenance(session), image::PixelType::kHalf};
-  part.attributes["goniochrome:plan"] = plan_rows(plan, false).dump(-1, ' ', false, Json::error_handler_t::replace);
+  part.attributes["goniochrome:plan"] = plan_rows(plan).dump(-1, ' ', false, Json::error_handler_t::replace);
   part.attributes["goniochrome:engine"] = plan.engine;
   const float gain = static_cast<float>(std::exp2(stops));
   for (std::size_t i = 0; i < part.image.data.size(); ++i) part.image.data[i] *= i % 4 == 3 ? 1 : gain;

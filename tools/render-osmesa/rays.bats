@@ -15,20 +15,31 @@ setup() {
 # of KEY EFFECT: that key of the effect in the plan of r.json.
 of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
 
-@test "shadow, self and bounce are planned by default, and what is seen is drawn" {
+@test "shadow, self and bounce are drawn by default, and the first pass tells what they change" {
   render-osmesa -q $scene --effects auto,-rays -o before.exr --report r.json
   [ "$(of decision shadow)" = "forced off" ]
   [ "$(of de00_p95 shadow)" = null ]
   render-osmesa -q $scene --tolerance 2 -o out.exr --report r.json
   [ "$(of decision shadow)" = drawn ]
-  awk -v worth="$(of de00_p95 shadow)" -v error="$(of standard_error shadow)" \
-    'BEGIN { exit !(worth > 1 && error > 0 && error < worth / 4) }'
   [ "$(of needed bounce)" = true ]
-  # The noise is within half of the tolerance or of what the maps err by, unless the most samples were drawn.
-  jq -e '.results | .rays.noise_de00_p95 <= 0.5 * ([2, .plan_open_de00_p95] | max) or (.rays.reached | not)' r.json
+  # The noise is within half of the tolerance, unless the most samples were drawn.
+  jq -e '.results | .rays.noise_de00_p95 <= 1 or (.rays.reached | not)' r.json
   jq -e '.results.rays.samples | . > 0 and . <= 1024' r.json
-  jq -e '.results | .plan_whole_de00_p95 >= .plan_open_de00_p95 and .plan_open_de00_p95 > 0' r.json
   ! cmp -s before.exr out.exr
+  # Beforehand the table says what is drawn and why, and then what the first pass found.
+  run render-osmesa $scene --tolerance 2 --explain -o out.exr
+  [[ "$output" =~ shadow\ +yes\ +-\ +drawn\ +"rays tell where" ]]
+  [[ "$output" =~ "the first pass found".*shadow\ +[1-9][0-9.]*\ drawn ]]
+}
+
+@test "what the first pass shows to change little gets no second one, and the check sees no difference" {
+  render-osmesa -q ${scene/signal_white/jet_black} --tolerance 2 --check 40 -o out.exr --report r.json || [ $? -eq 1 ]
+  [ "$(of decision shadow)" = drawn ]
+  [ "$(of decision bounce)" = "first pass alone" ]
+  jq -e '.results.error | .bounce < 1e-6 and .noise < 2' r.json
+  # Control: where it is seen, it goes on.
+  render-osmesa -q $scene --tolerance 2 -o out.exr --report r.json
+  [ "$(of decision bounce)" = drawn ]
 }
 
 @test "a convex shape is drawn as without rays, bit for bit, and takes none" {
@@ -79,16 +90,6 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
   [ -s limited.exr ]
 }
 
-@test "a picture that is not going to be within the tolerance says so beforehand" {
-  run render-osmesa $scene --engine cpu --tolerance 0.2 -o out.exr
-  [ "$status" -eq 0 ]
-  [[ $output == *"predicted to miss the truth by dE00 "*", --tolerance is 0.2: "* ]]
-  # Control: where it is going to be, nothing is said.
-  run render-osmesa $scene --engine cpu --tolerance 30 -o out.exr
-  [ "$status" -eq 0 ]
-  [[ $output != *"predicted to miss"* ]]
-}
-
 @test "a picture of which nothing is asked costs no more than is said, and what is asked for is not cut" {
   run render-osmesa $scene --explain -o out.exr --report r.json
   [ "$status" -eq 0 ]
@@ -109,8 +110,7 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
   for engine in cpu gl; do
     render-osmesa -q $scene --tolerance 2 --engine $engine --background env -o $engine.exr --report r.json
     [ "$(of decision floor)" = drawn ]
-    awk -v worth="$(of de00_p95 floor)" -v error="$(of standard_error floor)" -v ms="$(of cost_ms floor)" \
-      'BEGIN { exit !(worth > 1 && error > 0 && ms >= 0) }'
+    awk -v worth="$(of de00_p95 floor)" 'BEGIN { exit !(worth > 1) }'
   done
   # As the engine path draws it: what they differ by in the mean is small against the floor's own share.
   render-osmesa -q $scene --engine path --tolerance 1 --background env -o path.exr
@@ -136,7 +136,7 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
   jq -e '.results.error | .occlusion < 1e-6 and .bounce < 2.1' r.json
 }
 
-@test "the check tells what the floor is worth, as the plan predicts it" {
+@test "the check tells what the floor is worth, as the first pass tells it" {
   render-osmesa -q $scene --engine cpu --tolerance 2 --background env --check 400 -o out.exr --report r.json || [ $? -eq 1 ]
   jq -e --argjson plan "$(of de00_p95 floor)" '.results.error.worth.floor | . > 1 and $plan < 1.3 * . and . < 1.3 * $plan' r.json
   # The control has none.

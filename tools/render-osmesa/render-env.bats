@@ -94,7 +94,7 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   to="--mesh $shape --env small.env.exr --size 64x36 --samples 1 --effects auto,-rays --check 40"
   render-osmesa -q $to -p paints.xml#flake --engine integral -o sum.exr --report r.json
   [ "$(jq '.results | .engine == "integral" and .error.de00_p95 <= 0.5 and .left_out.de00_p95 == 0' r.json)" = true ]
-  [ "$(jq '[.results.plan[] | select(.needed and .decision != "forced off") | .decision == "drawn" and .cost_ms == null] | all' r.json)" = true ]
+  [ "$(jq '[.results.plan[] | select(.needed and .decision != "forced off") | .decision == "drawn"] | all' r.json)" = true ]
   exrheader sum.exr | grep -q 'goniochrome:engine.*"integral"'
   render-osmesa -q $to -p paints.xml#flake --engine integral --tolerance 0.02 -o finer.exr --report finer.json
   [ "$(jq -s '.[0].results.error.de00_mean > .[1].results.error.de00_mean' r.json finer.json)" = true ]
@@ -103,9 +103,6 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   render-osmesa -q --gbuffer buffers.exr --env small.env.exr -p paints.xml#flake --engine integral --check 40 -o again.exr --report r.json
   [ "$(jq '.results.error.de00_p95 <= 0.5' r.json)" = true ]
   render-osmesa -q --mesh "$shape" --light 30,50 $small -p paints.xml#flake --engine integral -o lamp.exr
-  run render-osmesa $to -p paints.xml#flake --engine integral --budget 5 -o none.exr
-  [ "$status" -eq 2 ]
-  [[ "$output" =~ "--budget chooses effects of prefiltered maps" ]]
   run render-osmesa $to -p paints.xml#flake --engine integral --check-source nowhere.exr -o none.exr
   [ "$status" -eq 3 ]
   [ ! -e none.exr ]
@@ -207,7 +204,7 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
 
 # Maps are looked up along the plane of incidence, or with round lobes alone, which is the control; the reference has the
 # facets of the coat, and so has the engine integral.
-@test "a satin coat is compared with its facets, which the plan prices and integral draws" {
+@test "a satin coat is compared with its facets, which integral draws" {
   readings='<gloss angle="20">8</gloss><gloss angle="60">40</gloss><gloss angle="85">40</gloss>'
   sed '/name="reference_gray"/,/<\/paint>/s|<gloss angle="60">.*</gloss>|'"$readings|" "$TESTDATA/paints.paints.xml" >three.xml
   fit-paint -q -b "$TESTDATA/b7.basis.xml" three.xml#reference_gray -o satin.xml
@@ -215,10 +212,9 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   run render-osmesa $scene --explain -o maps.exr --report r.json
   [ "$status" -le 1 ]
   [[ "$output" =~ "prefiltered maps cannot show it, the engines integral and path do" ]]
-  [[ "$output" =~ "--engine integral sums it within the tolerance" ]]
   satin='.results.plan[] | select(.effect == "satin")'
   [ "$(jq -r "$satin | .decision" r.json)" = dropped ]
-  jq -e "$satin | .de00_p95 > 1 and .de00_p95 < 1.5 * .truth_de00_p95 and .truth_de00_p95 < 1.5 * .de00_p95" r.json
+  jq -e "$satin | .de00_p95 == null and .truth_de00_p95 > 1" r.json
   jq -e '.results.error.prefilter < 0.5' r.json
   run render-osmesa -q $scene --effects auto,-stretch -o round.exr --report round.json
   [ "$status" -le 1 ]

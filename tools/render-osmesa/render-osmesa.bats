@@ -251,7 +251,7 @@ refused() {
   [[ "$output" =~ "3 parts" ]]
   [[ "$output" =~ effect\ +needed ]]
   [[ "$output" =~ "solid paints: no flake lobes" ]]
-  [[ "$output" =~ "engine cpu: the faster: predicted" ]]
+  [[ "$output" =~ "engine cpu: prefiltered maps, and rays where" ]]
   [[ "$output" =~ "#version 330 core" ]]
   [[ ! "$output" =~ "what this program lacks" ]]
   # The plan has rasterized the view, and the report tells how long that took.
@@ -280,11 +280,22 @@ refused() {
   refused 2 'tolerance' --mesh "$shape" $light --tolerance -1
 }
 
-@test "--budget leaves out what takes too long, and says so" {
-  run render-osmesa --mesh "$shape" $light $small --budget 0.000001 --explain -o out.exr
-  [[ "$output" =~ "over budget" ]]
-  rm out.exr
-  refused 2 'budget' --mesh "$shape" $light --budget -1
+# A highlight is all that such a picture shows, and lies between the points of a plan.
+@test "a paint of gloss alone under a lamp is not drawn black" {
+  cat >gloss.xml <<'XML'
+<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="gloss"><lobes space="lin_rec2020_scene" basis="none" method="l1" max_de00="0" mean_de00="0"><diffuse r="0" g="0" b="0"/><lobe exponent="250" ddr="0" ddg="0" ddb="0" gr="0.3" gg="0" gb="0"/></lobes></paint></paints>
+XML
+  for effects in auto all; do
+    render-osmesa -q --mesh "$shape" -p gloss.xml --light 35,40@0 --size 96x54 --samples 1 --effects $effects,-rays -o $effects.exr
+  done
+  oiiotool auto.exr all.exr --fail 1e-5 --diff
+  oiiotool --stats all.exr | awk '/Stats Max/ { exit !($3 > 0.02) }'
+}
+
+@test "--budget is gone, and names what to use instead" {
+  refused 2 '--budget is gone: what lobes and look-ups may leave out is said by --tolerance' --mesh "$shape" $light --budget 5
+  refused 2 '--budget is gone' --mesh "$shape" $light --budget=5
+  refused 2 '--budget is gone' --mesh "$shape" $light --budget
 }
 
 @test "--operator: red paint in cyan light keeps some red" {

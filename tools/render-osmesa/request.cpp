@@ -67,7 +67,6 @@ Result<Request> request_of(const Options& options) {
   GONIO_ASSIGN(request.reflection, color::chosen_operator(options.reflection));
   GONIO_TRY(render::check_effects(options.effects));
   request.plan.effects = options.effects;
-  request.plan.budget_ms = options.budget_ms;
   request.samples = options.samples > 0 ? options.samples : options.gbuffer.empty() ? 4 : 1;
   request.plan.samples = request.samples;
   const std::optional<bool> floor_forced = render::floor_forced(options.effects);
@@ -93,8 +92,6 @@ Result<Request> request_of(const Options& options) {
   if (engine != "auto") {
     GONIO_ASSIGN(request.engine, render::engine_named(engine));
     request.plan.engine = engine;
-    if (!request.engine->is_planned && options.budget_ms > 0)
-      return usage_error("--budget chooses effects of prefiltered maps: leave it out, or --engine {}", options.engine);
   }
   const bool traces = request.engine != nullptr && request.engine->traces_rays;
   GONIO_ASSIGN(request.floor, parse_floor(floor, options.background == "env" && (traces || !options.env.empty())));

@@ -58,15 +58,15 @@ render::Frame open_frame(const render::Frame& frame) {
 Result<void> measure_plan(render::Renderer& renderer, const render::Scene& scene, const render::Plan& plan,
                           const render::View& view, double white, cli::Session& session) {
   GONIO_ASSIGN(const render::LeftOut measured, render::left_out(renderer, scene, plan, view, white));
-  const double predicted_ms = plan.predicted_ms();
-  session.results()["left_out"] = {
-      {"de00_mean", json_number(measured.de00_mean)}, {"de00_p95", json_number(measured.de00_p95)},
-      {"de00_max", json_number(measured.de00_max)},   {"shading_ms", measured.planned_ms},
-      {"shading_all_ms", measured.full_ms},           {"predicted_ms", predicted_ms / view.samples}};
+  session.results()["left_out"] = {{"de00_mean", json_number(measured.de00_mean)},
+                                   {"de00_p95", json_number(measured.de00_p95)},
+                                   {"de00_max", json_number(measured.de00_max)},
+                                   {"shading_ms", measured.planned_ms},
+                                   {"shading_all_ms", measured.full_ms}};
   session.say(fmt::format(
       "left out: dE00 p95 {:.2f} to the picture of all effects (predicted {:.2f}); shading {:.1f} ms a sample of each "
-      "pixel (predicted {:.1f}), with all effects {:.1f}",
-      measured.de00_p95, plan.de00_p95, measured.planned_ms, predicted_ms / view.samples, measured.full_ms));
+      "pixel, with all effects {:.1f}",
+      measured.de00_p95, plan.de00_p95, measured.planned_ms, measured.full_ms));
   return {};
 }
 
@@ -110,6 +110,7 @@ class Shooting {
   Result<void> write_frame(const std::string& content);
   Result<cli::Verdict> check_picture();
   void tell_plan(render::Plan plan, const std::string& shader);
+  void tell_findings(const render::Frame& frame);
 
   const Options& options_;
   Request request_;
@@ -167,22 +168,23 @@ Result<render::Plan> Shooting::load(render::Renderer& renderer, const DressedMes
 
 void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
   Json& results = session_.results();
-  for (Json& row : plan_rows(plan, true)) results["plan"].push_back(std::move(row));
   results["plan_de00_p95"] = json_number(plan.de00_p95);
-  results["plan_open_de00_p95"] = plan.open_de00_p95 ? json_number(*plan.open_de00_p95) : Json(nullptr);
-  results["plan_whole_de00_p95"] = plan.whole_de00_p95 ? json_number(*plan.whole_de00_p95) : Json(nullptr);
   results["plan_most_samples"] =
       plan.effects.most_samples_in_all > 0 ? json_number(plan.effects.most_samples_in_all) : Json(nullptr);
   results["plan_ms"] = plan.time_ms;
-  results["plan_rays_ms"] = plan.ray_pricing_ms;
-  results["plan_path_ms"] = plan.path_ms > 0 ? json_number(plan.path_ms) : Json(nullptr);
-  results["plan_path_samples"] = plan.path_ms > 0 ? json_number(plan.path_samples) : Json(nullptr);
   results["engine"] = plan.engine;
   results["engine_reason"] = plan.engine_reason;
   session_.explain(plan_table(plan));
-  if (!plan.not_kept.empty()) session_.say(plan.not_kept);
   if (options_.print_shader) std::fputs((shader_gaps(plan) + shader).c_str(), stdout);
   plan_ = std::move(plan);
+}
+
+// What the first picture shows of effects that no plan can know.
+void Shooting::tell_findings(const render::Frame& frame) {
+  const render::Plan before = plan_;
+  render::add_findings(frame.rays, frame.sums, plan_);
+  session_.explain(findings_text(before, plan_));
+  for (Json& row : plan_rows(plan_)) session_.results()["plan"].push_back(std::move(row));
 }
 
 Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool first) {
@@ -206,6 +208,7 @@ Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool f
       renderer.load_paints(stage_.scene);
     }
     GONIO_TRY(renderer.draw(view(shot, 1), i == 0 ? frame_ : other));
+    if (first) tell_findings(i == 0 ? frame_ : other);
     if (i == 1) put_right_half(other, frame_);
   }
   return {};
@@ -276,19 +279,17 @@ Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Disp
 
 // Of the effects of rays that an engine without rays was given.
 void Shooting::tell_rays() {
-  if (!plan_.effects.rays.any()) return;
   const render::CorrectionNoise& rays = frame_.rays;
+  if (!plan_.effects.rays.any() || (rays.dark && !plan_.effects.rays.floor)) return;
   const bool limited = session_.common().time_limit_s > 0;
   stopped_ |= limited && !rays.reached;
   session_.results()["rays"] = {{"noise_de00_p95", json_number(rays.de00_p95)},
                                 {"samples", rays.samples},
                                 {"free_share", rays.free_share},
                                 {"reached", rays.reached},
-                                {"ms", rays.ms},
-                                {"predicted_ms", plan_.rays_ms}};
+                                {"ms", rays.ms}};
   session_.say(fmt::format(
-      "rays: {:.0f} samples a point in {:.0f} ms (predicted {:.0f}), noise dE00 {:.2f} (p95){}", rays.samples, rays.ms,
-      plan_.rays_ms, rays.de00_p95,
+      "rays: {:.0f} samples a point in {:.0f} ms, noise dE00 {:.2f} (p95){}", rays.samples, rays.ms, rays.de00_p95,
       rays.reached ? "" : fmt::format(", stopped before it was within {}", shortest(plan_.effects.ray_noise_de00))));
 }
 
@@ -335,8 +336,6 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
   request_.plan.white_luminance = white_.luminance;
   request_.plan.tolerance_de00 = session_.common().tolerance;
   request_.plan.most_ray_samples = most_ray_samples();
-  request_.plan.frames = static_cast<int>(shots_.size());
-  request_.plan.pixels = static_cast<double>(request_.size.width) * request_.size.height;
   session_.explain(explanation(options_, stage_.mesh, stage_.dresses.front()));
   tell_opengl(renderer, session_);
   const render::Rays& through = looks_.front()->rays;

@@ -238,7 +238,7 @@ Result<void> set_laid_floor(const Options& options, const Request& request, cons
 }
 
 // What is below a floor is hidden by rays alone.
-Result<void> take_path_below(const Options& options, const mesh::Mesh& mesh, Request& request) {
+Result<void> take_path_below(const mesh::Mesh& mesh, Request& request) {
   const bool traces = request.engine != nullptr && request.engine->traces_rays;
   if (traces || request.floor.kind == FloorRequest::Kind::kNone || !request.floor.height) return {};
   const mesh::Box box = mesh::bounding_box(mesh);
@@ -250,8 +250,6 @@ Result<void> take_path_below(const Options& options, const mesh::Mesh& mesh, Req
         shortest(*request.floor.height), box.low.y);
   const auto tracer = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->traces_rays; });
   request.engine = *tracer, request.plan.engine = (*tracer)->name;
-  if (options.budget_ms > 0)
-    return usage_error("--budget chooses effects of prefiltered maps: leave it out, or the height of the floor");
   return {};
 }
 
@@ -296,7 +294,7 @@ Result<void> set_stage(const Options& options, Request& request, Stage& stage, c
   if (options.gbuffer.empty()) {
     GONIO_ASSIGN(stage.mesh, mesh::read_mesh(options.mesh));
     tell_repairs(stage.mesh, session);
-    GONIO_TRY(take_path_below(options, stage.mesh, request));
+    GONIO_TRY(take_path_below(stage.mesh, request));
   } else {
     GONIO_TRY(set_gbuffer(options, request, stage, session));
   }

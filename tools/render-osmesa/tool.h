@@ -36,7 +36,6 @@ struct Options {
   std::string critical_angle = "slide";
   std::vector<std::string> textures;
   std::string texture_maps = "cubes";
-  double budget_ms = 0;
   bool print_shader = false;
   std::vector<std::string> split;
   int turntable = 0, light_sweep = 0;

@@ -2,30 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/angles.h"
 #include "base/large_pages.h"
 #include "base/parallel.h"
 #include "render/internal/coat_stretch.h"
-#include "render/internal/map_cost.h"
 
 namespace goniochrome::render {
 
 namespace {
-
-// Measured by BM_PaintEdited and BM_Tilts.
-constexpr MapCost kCost = {.pixel = 2.5,
-                           .point = 6,
-                           .block = 3,
-                           .direction = 6,
-                           .light = 12,
-                           .lit_lobe = 5,
-                           .disc_lobe = 5,
-                           .view = 2,
-                           .tilted = 12,
-                           .lookup = 6,
-                           .pairs = true,
-                           .texture = {.point = 30, .lobe = 6, .fetches = 10, .lit = 3, .each_texel_once = true}};
 
 constexpr std::size_t kBlock = 8;  // floats of a texel: two maps of four forms, or one of six
 
@@ -141,6 +127,7 @@ void CpuEngine::stack(const SceneMaps& maps) {
     const auto same = std::ranges::find_if(
         other_stacks_, [&](const Stack& other) { return other.use == use && other.shape.maps == of.maps; });
     stacks_.push_back(same != other_stacks_.end() ? *same : interleaved(of, use, forms_));
+    stacks_.back().shape = of;  // lobes may have other numbers
   };
   add(maps.diffuse, MapUse::kNormal);
   for (const MapClass& lobes : maps.lobes) add(lobes, MapUse::kTilted);
@@ -161,11 +148,13 @@ void CpuEngine::take_out_spots(const Scene& scene, std::size_t spots) {
 
 Result<void> CpuEngine::load(const Scene& scene, const Effects& effects) {
   GONIO_ASSIGN(const SceneMaps maps, scene_maps(scene, effects));
+  const bool keeps = std::exchange(keeps_maps_, false) && effects.reflection == effects_.reflection;
+  other_stacks_ = keeps ? std::move(stacks_) : std::vector<Stack>();
   effects_ = effects;
-  other_stacks_.clear();
   background_map_ = {};
   forms_ = effects.reflection ? product_forms(scene.reflection) : ProductForms{};
   stack(maps);
+  other_stacks_.clear();
   if (effects.background == Background::kEnvironment) {
     background_map_ = interleaved(maps.mirror, MapUse::kMirror, {});
   }
@@ -374,14 +363,6 @@ Result<void> CpuEngine::shade(Sight& sight, int sample, float gain, bool add, im
 
 Result<std::vector<color::Rgb>> CpuEngine::shade(const std::vector<VisiblePoint>& points) const {
   return colors(points);
-}
-
-Price CpuEngine::price(const Workload& work, const Effects& effects) const {
-  return {.frame_ms = frame_ms(work, effects, kCost)};
-}
-
-double CpuEngine::counted_point_ns(const Workload& work, const Effects& effects) {
-  return point_ns(work, effects, kCost);
 }
 
 std::vector<color::Rgb> CpuEngine::colors(const std::vector<VisiblePoint>& points) const {

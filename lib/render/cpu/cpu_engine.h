@@ -30,10 +30,11 @@ class CpuEngine : public Engine {
   Result<void> can_shade(const Scene& scene) const override { return draws_placed_lamps(scene, kInfo.name); }
   // Interleaves the maps. Error: as scene_maps(), and more face sizes than there is room for.
   Result<void> load(const Scene& scene, const Effects& effects) override;
+  // The next load() is of the scene that was loaded, with other effects: interleaved maps are kept.
+  void keep_maps() { keeps_maps_ = true; }
   void load_paints(const Scene& scene) override { load_paints(scene, effects_); }
   Result<void> shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) override;
   Result<std::vector<color::Rgb>> shade(const std::vector<VisiblePoint>& points) const override;
-  Price price(const Workload& work, const Effects& effects) const override;
 
   // Takes other paints and some of the effects that were loaded: lobes and effects whose weights are 0 cost time, but
   // are not drawn.
@@ -41,9 +42,6 @@ class CpuEngine : public Engine {
   // Shades all pixels of a G-buffer, as shade() above. Bit-identical for any number of threads.
   void shade(const Gbuffer& gbuffer, float gain, bool add, image::Image& rgba) const;
   std::vector<color::Rgb> colors(const std::vector<VisiblePoint>& points) const;
-
-  // The nanoseconds that a visible point of this work is counted with; Workload::speed is relative to them.
-  static double counted_point_ns(const Workload& work, const Effects& effects);
 
  private:
   struct Stack {
@@ -74,6 +72,7 @@ class CpuEngine : public Engine {
   TiltStore tilt_store_;
   TiltShading tilt_shading_;  // of tilted lobes
   Background background_ = Background::kNone;
+  bool keeps_maps_ = false;
   color::Rgb background_color_;
   std::vector<PlacedLamp> placed_;
   const mesh::Mesh* mesh_ = nullptr;  // which lamps at a place need

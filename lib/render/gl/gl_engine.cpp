@@ -11,44 +11,10 @@
 #include "render/gl/shader_parts.h"
 #include "render/gl/tilt_shader.h"
 #include "render/internal/coat_stretch.h"
-#include "render/internal/map_cost.h"
 #include "render/page_weights.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
-
-namespace {
-
-// Measured by BM_PaintEdited and BM_Tilts. The pixel includes reading it back from OpenGL.
-constexpr MapCost kCost = {.pixel = 12,
-                           .point = 30,
-                           .block = 42,
-                           .direction = 0,
-                           .light = 40,
-                           .lit_lobe = 30,
-                           .disc_lobe = 40,
-                           .view = 12,
-                           .tilted = 40,
-                           .lookup = 60,
-                           .pairs = false,
-                           .texture = {.point = 60, .lobe = 10, .fetches = 45, .lit = 6, .each_texel_once = false}};
-// Of a GPU: reading the picture back is all that is felt.
-constexpr MapCost kGpuCost = {
-    .pixel = 5,
-    .point = 0.1,
-    .block = 0.05,
-    .direction = 0,
-    .light = 0.05,
-    .lit_lobe = 0.05,
-    .disc_lobe = 0.1,
-    .view = 0.05,
-    .tilted = 0.1,
-    .lookup = 0.1,
-    .pairs = false,
-    .texture = {.point = 0.3, .lobe = 0.05, .fetches = 0.1, .lit = 0.05, .each_texel_once = false}};
-constexpr double kCompileMs = 110;
-
-}  // namespace
 
 const EngineInfo GlEngine::kInfo = {
     .name = "gl",
@@ -65,14 +31,6 @@ const EngineInfo GlEngine::kInfo = {
 Result<void> GlEngine::can_shade(const Scene& scene) const {
   if (gl_ != nullptr) return draws_placed_lamps(scene, kInfo.name);
   return usage_error("the engine gl draws the mesh: a G-buffer that is given is shaded by cpu");
-}
-
-Price GlEngine::price(const Workload& work, const Effects& effects) const {
-  if (gl_ == nullptr || !gl_->on_gpu()) return {frame_ms(work, effects, kCost), kCompileMs, "to compile"};
-  // The speed and the number of the cores count for the processor alone.
-  Workload on_gpu = work;
-  on_gpu.speed = threads();
-  return {frame_ms(on_gpu, effects, kGpuCost), kCompileMs, "to compile"};
 }
 
 // Float texels: a half would have to be rounded first, since llvmpipe truncates, and is no faster to fetch.

@@ -33,7 +33,6 @@ class GlEngine : public Engine {
   Result<void> shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) override;
   void finish(image::Image& rgba) override;
   bool shades_textures() const override { return true; }
-  Price price(const Workload& work, const Effects& effects) const override;
 
  private:
   Result<void> resize(int width, int height);

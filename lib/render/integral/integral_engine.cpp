@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/clock.h"
 #include "render/exact.h"
 
 namespace goniochrome::render {
@@ -13,35 +12,9 @@ namespace {
 // Points that are summed together: enough that no thread waits, few enough to hold.
 constexpr std::size_t kTogether = 1 << 14;
 
-// Points that a frame is timed by, and how long that may take.
-constexpr std::size_t kTimed = 256;
-constexpr double kEnough_s = 0.05;
-
 std::vector<color::Rgb> integrals(const std::vector<VisiblePoint>& points, const Scene& scene, const Effects& effects) {
   if (scene.texels == nullptr) return exact_radiance(points, scene, effects, nullptr);
   return exact_radiance(points, scene, effects, Surroundings(*scene.texels, spread_for(effects.tolerance_de00)));
-}
-
-// At most `count` of the points, evenly spread.
-std::vector<VisiblePoint> thinned(const std::vector<VisiblePoint>& points, std::size_t count) {
-  std::vector<VisiblePoint> few;
-  const std::size_t step = std::max<std::size_t>(1, points.size() / count);
-  for (std::size_t i = 0; i < points.size(); i += step) few.push_back(points[i]);
-  return few;
-}
-
-// Seconds that one of these points takes on all cores together.
-double seconds_per_point(const std::vector<VisiblePoint>& points, const Scene& scene, const Effects& effects) {
-  if (points.empty()) return 0;
-  const Stopwatch clock;
-  std::size_t done = 0;
-  for (std::size_t few = 32; done < points.size() && clock.elapsed_s() < kEnough_s; few *= 2) {
-    const std::size_t end = std::min(points.size(), done + few);
-    integrals({points.begin() + static_cast<std::ptrdiff_t>(done), points.begin() + static_cast<std::ptrdiff_t>(end)},
-              scene, effects);
-    done = end;
-  }
-  return clock.elapsed_s() / static_cast<double>(done);
 }
 
 }  // namespace
@@ -107,10 +80,6 @@ Result<void> IntegralEngine::shade(Sight& sight, int sample, float gain, bool ad
   }
   flush();
   return {};
-}
-
-Price IntegralEngine::price(const Workload& work, const Effects& effects) const {
-  return {.frame_ms = 1000 * seconds_per_point(thinned(*work.probe, kTimed), *work.scene, effects) * work.points};
 }
 
 }  // namespace goniochrome::render

@@ -27,8 +27,6 @@ class IntegralEngine : public Engine {
   Result<void> shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) override;
   Result<std::vector<color::Rgb>> shade(const std::vector<VisiblePoint>& points) const override;
   bool shades_layer() const override { return true; }
-  // Times some points of the probe.
-  Price price(const Workload& work, const Effects& effects) const override;
 
  private:
   CpuEngine behind_;  // the mesh: it draws the background alone

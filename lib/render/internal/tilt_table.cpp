@@ -116,35 +116,6 @@ TiltTable tilt_table(const Scene& scene, const Effects& effects, const std::vect
   return table;
 }
 
-namespace {
-
-// Look-ups of these points in the sets of their parts, the mean.
-template <class SetOf>
-double mean_lookups_in(const std::vector<VisiblePoint>& points, const SetOf& set_of_part) {
-  double sum = 0;
-  for (const VisiblePoint& point : points) {
-    const paint::TiltedLobes* set = set_of_part(static_cast<std::size_t>(point.part));
-    if (set == nullptr) continue;
-    const double view_deg = math::acos(std::clamp(dot(point.normal, point.to_viewer), 0.0, 1.0)) / kDegree;
-    const paint::TiltedView view = brdf::at_view(*set, view_deg);
-    for (std::size_t k = 0; k < set->lobes.size(); ++k)
-      if (view.weights[k] != color::Rgb{}) sum += set->lobes[k].lookups();
-  }
-  return sum / static_cast<double>(std::max<std::size_t>(1, points.size()));
-}
-
-}  // namespace
-
-double mean_lookups(const Scene& scene, int level, const std::vector<VisiblePoint>& points) {
-  return mean_lookups_in(points, [&](std::size_t part) { return set_of(scene.paints[part], level); });
-}
-
-double mean_stretch_lookups(const Scene& scene, const Effects& effects, const std::vector<VisiblePoint>& points) {
-  std::vector<std::shared_ptr<const paint::TiltedLobes>> sets;
-  for (std::size_t part = 0; part < scene.paints.size(); ++part) sets.push_back(drawn_stretch(scene, effects, part));
-  return mean_lookups_in(points, [&](std::size_t part) { return sets[part].get(); });
-}
-
 void leave_to_tilts(const Scene& scene, Effects& effects) {
   if (effects.tilt_level <= 0 || !effects.environment || effects.lights > 0) return;
   for (Effects::LobeUse& use : effects.lobes) {

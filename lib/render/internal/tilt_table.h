@@ -37,12 +37,6 @@ std::vector<double> tilt_exponents(const Scene& scene, const Effects& effects);
 // The look-ups in maps of those exponents. Lobes of other exponents are left out.
 TiltTable tilt_table(const Scene& scene, const Effects& effects, const std::vector<double>& exponents);
 
-// Look-ups of these points, the mean; by the sets of a level (1 is the first).
-double mean_lookups(const Scene& scene, int level, const std::vector<VisiblePoint>& points);
-
-// The same of the lobes of rough coats, where these effects draw them.
-double mean_stretch_lookups(const Scene& scene, const Effects& effects, const std::vector<VisiblePoint>& points);
-
 // Takes flake lobes out of the effects that no paint shows: all that have them are drawn by tilted lobes. Under lights
 // they stay, since color maps are drawn there as a difference from the lobes.
 void leave_to_tilts(const Scene& scene, Effects& effects);

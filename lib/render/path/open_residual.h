@@ -35,10 +35,10 @@ class OpenResidual {
   // for any number of threads.
   void add(const Gbuffer& seen, float gain, image::Image& picture);
   std::vector<color::Rgb> at(const std::vector<VisiblePoint>& points);
+  // What it changes of a picture without it, at 95 of 100 points, told from some of them: CIEDE2000.
+  double change(const Gbuffer& seen, const image::Image& picture, double white_luminance);
 
-  // How many sums there are by now, and how many more a picture of these pixels takes.
-  std::size_t count() const;
-  std::size_t missing(const Gbuffer& seen) const;
+  std::size_t count() const;  // of sums by now
 
  private:
   static constexpr std::int32_t kNone = -1;

@@ -34,7 +34,6 @@ class PathEngine : public Engine {
   std::vector<std::string> remarks() const override;
   const Noise* noise() const override { return noise_ ? &*noise_ : nullptr; }
   bool shades_layer() const override { return true; }
-  Price price(const Workload&, const Effects&) const override { return {}; }
 
  private:
   // With Background::kNone what the scene covers of each pixel, alone.

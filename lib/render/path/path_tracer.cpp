@@ -27,6 +27,8 @@ constexpr double kLeastRound = 1.0 / 16;
 // A point's own variance counts by its freedom, that of its neighborhood as so many.
 constexpr double kNeighborhood = 4;
 constexpr int kPixelReach = 2;  // pixels to each side of the neighborhood
+// Points at which the shares of the first round are compared.
+constexpr std::size_t kCompared = 4096;
 
 std::uint64_t seed_of(std::uint64_t seed, std::uint64_t point, int batch) {
   return mixed(mixed(seed, point), static_cast<std::uint64_t>(batch));
@@ -119,20 +121,22 @@ class Picture {
     std::vector<int> more(points_.size(), kFirstFours);
     double noise = 0;
     bool reached = false;
+    if (request_.stop_de00 > 0) first_.resize(points_.size());
     while (true) {
       const double before = drawn();
       pace_.start();
       sample(more);
-      first_round_ = false;  // which no time limit cuts, so that every point is seen
       pace_.end(drawn() - before);
+      if (first_round_ && request_.stop_de00 > 0) stop_shares();
+      first_round_ = false;  // which no time limit cuts, so that every point is seen
       noise = judge();
-      if (request_.progress) request_.progress(noise, clock_.elapsed_s());
-      reached = request_.tolerance_de00 > 0 && noise <= request_.tolerance_de00;
+      if (request_.progress) request_.progress(std::hypot(noise, found_.stopped_de00), clock_.elapsed_s());
+      reached = request_.tolerance_de00 > 0 && noise <= tolerance();
       if (reached || deadline_.passed() || !plan(noise, more) || !cut(more)) break;
     }
     PathPicture picture;
-    picture.reached = reached;
-    picture.noise_p95_de00 = noise;
+    picture.reached = reached, picture.found = found_.of;
+    picture.noise_p95_de00 = std::hypot(noise, found_.stopped_de00);
     const double count = std::max<double>(1, static_cast<double>(points_.size()));
     for (std::size_t i = 0; i < points_.size(); ++i) {
       PathPoint& point = points_[i];
@@ -140,6 +144,7 @@ class Picture {
       picture.noise_mean_de00 += point.noise_de00;
       picture.samples_mean += point.samples;
       picture.free_share += point.samples == 0 ? 1 : 0;
+      picture.dark = picture.dark && point.radiance == color::Rgb{};
     }
     picture.noise_mean_de00 /= count, picture.samples_mean /= count, picture.free_share /= count;
     picture.points = std::move(points_);
@@ -154,7 +159,7 @@ class Picture {
     for (int y = 0; y < g.height; ++y)
       for (int x = 0; x < g.width; ++x) add_point(x, y);
     states_.resize(points_.size());
-    whole_ = request_.options;
+    options_ = whole_ = request_.options;
     whole_.correction = false;
     const bool given = seen_ != nullptr || count_ == 1;  // the surfaces of all samples
     if (request_.options.correction && base_ != nullptr && given) find_hidden();
@@ -182,7 +187,7 @@ class Picture {
                                [&](const VisibleSurface& seen) { return transport_.meets_pane(seen.hits[at]); });
   }
 
-  const PathOptions& options_of(std::size_t i) const { return states_[i].hidden ? whole_ : request_.options; }
+  const PathOptions& options_of(std::size_t i) const { return states_[i].hidden ? whole_ : options_; }
 
   void add_point(int x, int y) {
     const std::size_t at = place(x, y);
@@ -251,11 +256,88 @@ class Picture {
     const SeenPoint at(transport_, options_of(i), spot, rays::float3(g.to_viewer(point.x, point.y)));
     state.certain = at.certain();
     state.sure = at.sure();
-    if (state.certain) return;
+    if (state.certain && state.sums.fours() == 0) return;
     const Round round(fours);
-    color::Rgb means[Round::kSequences];
-    for (int fan = 0; fan < round.fans(); ++fan) add_fan(at, i, round, fan, means);
-    state.sums.add(round, means);
+    LightShares means[Round::kSequences];
+    // Without the shares that stopped, nothing may be left.
+    for (int fan = 0; fan < round.fans() && !state.certain; ++fan) add_fan(at, i, round, fan, means);
+    add_round(i, round, means);
+  }
+
+  void add_round(std::size_t i, const Round& round, const LightShares (&means)[Round::kSequences]) {
+    color::Rgb drawn[Round::kSequences];
+    for (int k = 0; k < Round::kSequences; ++k) drawn[k] = sum_of(means[k], drawn_);
+    states_[i].sums.add(round, drawn);
+    if (first_.empty()) return;
+    for (std::size_t k = 0; k < first_[i].size(); ++k) {
+      const color::Rgb& share = means[k / kShareCount].*kShares[k % kShareCount];
+      for (int c = 0; c < 3; ++c) first_[i][k][static_cast<std::size_t>(c)] = static_cast<float>(share[c]);
+    }
+  }
+
+  // Of one sequence of the first round.
+  LightShares first_shares(std::size_t i, std::size_t sequence) const {
+    LightShares shares;
+    for (std::size_t k = 0; k < kShareCount; ++k) {
+      const std::array<float, 3>& share = first_[i][sequence * kShareCount + k];
+      shares.*kShares[k] = {share[0], share[1], share[2]};
+    }
+    return shares;
+  }
+
+  // What the first round shows of a point, with what is known without samples.
+  LightShares first_shares(std::size_t i) const {
+    LightShares shares = first_shares(i, 0);
+    shares += first_shares(i, 1);
+    shares = 0.5 * shares;
+    shares.direct += states_[i].sure;
+    if (states_[i].hidden) shares.direct += -1.0 * base_at(points_[i]);
+    return shares;
+  }
+
+  // The mean over the neighborhood of a point.
+  SharedPoint mean_around(const PathPoint& point) const {
+    SharedPoint sum;
+    int count = 0;
+    visit_neighborhood(point, [&](std::size_t i) {
+      sum.shares += first_shares(i);
+      if (base_ != nullptr) sum.base += base_at(points_[i]);
+      ++count;
+    });
+    return {(1.0 / count) * sum.shares, (1.0 / count) * sum.base};
+  }
+
+  void stop_shares() {
+    std::vector<SharedPoint> own, smooth;
+    const std::size_t step = points_.size() / kCompared | 1;
+    for (std::size_t i = step / 2; i < points_.size(); i += step) {
+      own.push_back({first_shares(i), base_ != nullptr ? base_at(points_[i]) : color::Rgb{}});
+      smooth.push_back(mean_around(points_[i]));
+    }
+    found_ = found_shares(own, smooth, request_.stop_de00, request_.white_luminance);
+    if (found_.stopped != 0) draw_without(found_.stopped);
+    first_ = {};
+  }
+
+  // What the first round found of these shares stays as it is.
+  void draw_without(unsigned stopped) {
+    drawn_ = kAllShares & ~stopped;
+    options_.into_lobes = options_.into_lobes && (drawn_ & 2U) != 0;
+    options_.into_diffuse = options_.into_diffuse && (drawn_ & 4U) != 0;
+    if (!options_.into_lobes && !options_.into_diffuse) options_.bounces = 0;
+    whole_ = options_, whole_.correction = false;
+    kept_.resize(points_.size());
+    const Round round(kFirstFours);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (states_[i].sums.fours() == 0) continue;
+      color::Rgb drawn[Round::kSequences];
+      for (std::size_t k = 0; k < Round::kSequences; ++k) {
+        const LightShares shares = first_shares(i, k);
+        drawn[k] = sum_of(shares, drawn_), kept_[i] += 0.5 * sum_of(shares, stopped);
+      }
+      states_[i].sums = {};
+      states_[i].sums.add(round, drawn);
+    }
   }
 
   // What a sample of a pixel sees, which is something.
@@ -276,12 +358,12 @@ class Picture {
 
   // Each round at a point has sequences of its own.
   void add_fan(const SeenPoint& at, std::size_t i, const Round& round, int fan,
-               color::Rgb (&means)[Round::kSequences]) const {
+               LightShares (&means)[Round::kSequences]) const {
     const int which = round.sequence_of(fan);
     const Sequence sequence(seed_of(request_.seed, i, states_[i].sums.fours() + which),
                             static_cast<std::uint32_t>(kOfFour * round.length));
     means[which] += (static_cast<double>(round.together()) / round.length) *
-                    at.part_of(sequence, round.first_of(fan), static_cast<std::uint32_t>(kOfFour * round.together()));
+                    at.shares_of(sequence, round.first_of(fan), static_cast<std::uint32_t>(kOfFour * round.together()));
   }
 
   // The fans take the samples of the pixel in turn from one drawn by chance: the mean over all fans has the right
@@ -295,7 +377,7 @@ class Picture {
     if (first_time) state.uncertain = 0, state.sure = {};
     const unsigned first =
         (static_cast<unsigned>(mixed(request_.seed, i) >> 32) + static_cast<unsigned>(state.sums.fours())) % count;
-    color::Rgb means[Round::kSequences];
+    LightShares means[Round::kSequences];
     for (unsigned sample = 0; sample < count; ++sample) {
       if ((covered >> sample & 1U) == 0) continue;
       auto fan = static_cast<int>((sample + count - first) % count);
@@ -310,7 +392,7 @@ class Picture {
       for (; fan < round.fans(); fan += static_cast<int>(count)) add_fan(at, i, round, fan, means);
     }
     state.certain = state.uncertain == 0;
-    if (!state.certain) state.sums.add(round, means);
+    if (!state.certain) add_round(i, round, means);
   }
 
   // Radiance, error and noise of every point from its sums; the 95th percentile of the noise.
@@ -319,6 +401,7 @@ class Picture {
       for (std::size_t i = begin; i < end; ++i) {
         points_[i].radiance = states_[i].sure + states_[i].sums.mean();
         if (states_[i].hidden) points_[i].radiance += -1.0 * base_at(points_[i]);
+        if (!kept_.empty()) points_[i].radiance += kept_[i];
         points_[i].samples = kOfFour * states_[i].sums.fours();
       }
     });
@@ -336,6 +419,19 @@ class Picture {
     return std::max(percentile_95(std::move(mesh)), percentile_95(std::move(floor)));
   }
 
+  // Calls visit(number) for each point near this one, itself among them.
+  template <class Visit>
+  void visit_neighborhood(const PathPoint& point, const Visit& visit) const {
+    for (int y = std::max(0, point.y - kPixelReach); y <= std::min(surface_.gbuffer.height - 1, point.y + kPixelReach);
+         ++y) {
+      for (int x = std::max(0, point.x - kPixelReach); x <= std::min(surface_.gbuffer.width - 1, point.x + kPixelReach);
+           ++x) {
+        const std::int32_t number = number_[place(x, y)];
+        if (number >= 0) visit(static_cast<std::size_t>(number));
+      }
+    }
+  }
+
   // Few estimates tell little of their variance, and a point none of whose rays was blocked knows nothing of its
   // neighbor's shadow: the mean over the neighborhood stands in.
   void judge(std::size_t i) {
@@ -349,18 +445,12 @@ class Picture {
     Covariance around{};
     color::Rgb light;
     int count = 0;
-    for (int y = std::max(0, point.y - kPixelReach); y <= std::min(surface_.gbuffer.height - 1, point.y + kPixelReach);
-         ++y) {
-      for (int x = std::max(0, point.x - kPixelReach); x <= std::min(surface_.gbuffer.width - 1, point.x + kPixelReach);
-           ++x) {
-        const std::int32_t number = number_[place(x, y)];
-        const auto other = static_cast<std::size_t>(number);
-        if (number < 0 || other == i || states_[other].sums.fours() == 0) continue;
-        ++count;
-        light += points_[other].radiance;
-        for (std::size_t k = 0; k < 6; ++k) around[k] += states_[other].sums.of_four()[k];
-      }
-    }
+    visit_neighborhood(point, [&](std::size_t other) {
+      if (other == i || states_[other].sums.fours() == 0) return;
+      ++count;
+      light += points_[other].radiance;
+      for (std::size_t k = 0; k < 6; ++k) around[k] += states_[other].sums.of_four()[k];
+    });
     const double freedom = state.sums.freedom();
     for (std::size_t k = 0; k < 6; ++k)
       point.covariance[k] =
@@ -384,7 +474,11 @@ class Picture {
     return {rgb[0], rgb[1], rgb[2]};
   }
 
-  double tolerance() const { return request_.tolerance_de00 > 0 ? request_.tolerance_de00 : 1e-9; }
+  // What the shares leave of it that stopped.
+  double tolerance() const {
+    const double whole = request_.tolerance_de00, stopped = found_.stopped_de00;
+    return whole > stopped ? std::sqrt(whole * whole - stopped * stopped) : 1e-9;
+  }
 
   // How many fours each point is to get next: as many as its neighborhood's noise asks for, at most so many
   // times what it has. The twentieth part of the points that would need most get no more than the rest. Where the
@@ -429,7 +523,7 @@ class Picture {
 
   const Transport& transport_;
   const VisibleSurface& surface_;
-  PathOptions whole_;                                  // without correction
+  PathOptions options_, whole_;                        // of what is drawn; the second without correction
   const std::vector<VisibleSurface>* seen_ = nullptr;  // of each sample of a pixel; null: rays find what is seen
   const image::Image* base_;
   const PathRequest& request_;
@@ -443,6 +537,10 @@ class Picture {
   std::vector<std::int32_t> number_;           // of the point of each pixel, or -1
   std::vector<PathPoint> points_;
   std::vector<State> states_;
+  unsigned drawn_ = kAllShares;  // the shares that are drawn on
+  FoundShares found_;
+  std::vector<std::array<std::array<float, 3>, 2 * kShareCount>> first_;  // by sequences; empty: not kept
+  std::vector<color::Rgb> kept_;                                          // of shares that stopped
 };
 
 }  // namespace

@@ -2,10 +2,12 @@
 // goniochrome-theory(7), PATHS.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
 #include "image/image.h"
+#include "render/path/found_shares.h"
 #include "render/path/noise.h"
 #include "render/path/transport.h"
 #include "render/path/visible_surface.h"
@@ -19,10 +21,13 @@ constexpr double kMostlyHidden = 0.5;
 struct PathRequest {
   PathOptions options = {};
   double tolerance_de00 = 0.5;  // of the picture's noise; 0: until another limit ends it
-  double time_limit_s = 0;      // 0: none
-  int most_samples = 1 << 16;   // of a pixel
-  double most_in_all = 0;       // of all pixels together, but no less than a first round of 8; 0: no limit
-  double white_luminance = 1;   // what noise is seen before
+  // The shares of light that together change no more than this in the first round get no further samples, and their
+  // pixels stay as they are: a part of the tolerance. 0: none stops, nor is told.
+  double stop_de00 = 0;
+  double time_limit_s = 0;     // 0: none
+  int most_samples = 1 << 16;  // of a pixel
+  double most_in_all = 0;      // of all pixels together, but no less than a first round of 8; 0: no limit
+  double white_luminance = 1;  // what noise is seen before
   std::uint64_t seed = 1;
   // Of a pixel, as sample_shifts() has them; with 1 the pixel centers are seen. Paths are spread over them.
   int pixel_samples = 1;
@@ -53,7 +58,9 @@ struct PathPicture {
   double samples_mean = 0;  // of all points
   double free_share = 0;    // of points that needed no samples
   double time_s = 0;
-  bool reached = false;  // whether the noise is within the tolerance
+  bool reached = false;                       // whether the noise is within the tolerance
+  bool dark = true;                           // whether no point shows any light at all
+  std::array<FoundShare, kShareCount> found;  // with PathRequest::stop_de00
 };
 
 // `base`: with PathOptions::correction what the points show without the mesh in the way, R G B in the first channels of

@@ -322,7 +322,7 @@ LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, co
     const Reflection reflection = painted_.at(hidden);
     if (reflection.pdf > 0) {
       const LightSample light = light_from(hidden);
-      shares.direct = -1.0 * reflect(scale(horizon_.pdf(light), reflection) * reflection.f_cos, light.radiance);
+      shares.from_floor = -1.0 * reflect(scale(horizon_.pdf(light), reflection) * reflection.f_cos, light.radiance);
     }
   }
   if (!ray.above || (!blocked && correction_)) return shares;
@@ -343,11 +343,11 @@ LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, co
   if (transport_.is_laid(hit)) {
     const Transport::FloorLight floor =
         transport_.off_floor(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
-    arriving += floor.fixed, sent = floor.bounced;
+    shares.from_floor += reflect(scaled * reflection.f_cos, floor.fixed), sent = floor.bounced;
   } else if (blocked && options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse)) {
     sent = transport_.bounced(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
   }
-  shares.direct += reflect(scaled * reflection.f_cos, arriving);
+  shares.direct = reflect(scaled * reflection.f_cos, arriving);
   add_sent(ray.direction, sent, scaled, shares);
   return shares;
 }

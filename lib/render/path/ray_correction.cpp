@@ -1,16 +1,19 @@
 #include "render/path/ray_correction.h"
 
 #include <cmath>
-#include <limits>
 
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "render/internal/seen.h"
+#include "render/path/ray_points.h"
 
 namespace goniochrome::render {
 
 namespace {
+
 constexpr std::size_t kCorrectedRowsAtOnce = 8;
-}
+
+}  // namespace
 
 VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer) {
   VisibleSurface surface;
@@ -31,24 +34,31 @@ VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer) {
 
 namespace {
 
-// The place of the floor that a pixel sees, or nothing above the horizon.
-rays::Hit floor_hit(const rays::RayScene& scene, const rays::Float3& eye, const rays::Float3& direction) {
-  const float distance = scene.floor_distance(eye, direction);
-  if (!(distance < std::numeric_limits<float>::infinity())) return {};
-  return {rays::kFloor, 0, 0, distance};
-}
+// The part of the noise that the effects may make up which the first pass shows to change so little.
+constexpr double kStopShare = 0.5;
 
 }  // namespace
+
+color::Rgb Backdrop::at(const rays::Float3& direction) const {
+  if (background == Background::kColor) return color;
+  if (background == Background::kNone || environment == nullptr) return {};
+  return smooth_radiance(*environment, rays::vec3(direction));
+}
+
+double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Backdrop& backdrop,
+                    const RayEffects& effects, double white_luminance) {
+  constexpr std::size_t kPoints = 1024;
+  std::vector<double> de00;
+  for (const RayPoint& point : floor_points(transport.rays(), gbuffer, kPoints))
+    de00.push_back(seen_difference(transport.shaded_ground(point.spot).shown(effects), backdrop.at(-point.to_viewer),
+                                   white_luminance > 0 ? white_luminance : 1));
+  return percentile_95(std::move(de00));
+}
 
 void add_surroundings(const Transport& transport, const Gbuffer& g, const Backdrop& backdrop, const RayEffects& effects,
                       float gain, image::Image& picture) {
   const rays::RayScene& scene = transport.rays();
   const rays::Float3 eye = scene.local(g.rays.eye);
-  const auto sky = [&](const rays::Float3& direction) {
-    if (backdrop.background == Background::kColor) return backdrop.color;
-    if (backdrop.background == Background::kNone || backdrop.environment == nullptr) return color::Rgb{};
-    return smooth_radiance(*backdrop.environment, rays::vec3(direction));
-  };
   parallel_for(static_cast<std::size_t>(g.height), kCorrectedRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < g.width; ++x) {
@@ -58,8 +68,8 @@ void add_surroundings(const Transport& transport, const Gbuffer& g, const Backdr
         if (!hit.any() && backdrop.background == Background::kNone) continue;
         float* pixel = &picture.data[g.index(x, y) * static_cast<std::size_t>(picture.channels)];
         if (picture.channels > 3) pixel[3] += gain;
-        const color::Rgb light =
-            hit.any() ? transport.shaded_ground(scene.spot(hit, eye, direction)).shown(effects) : sky(direction);
+        const color::Rgb light = hit.any() ? transport.shaded_ground(scene.spot(hit, eye, direction)).shown(effects)
+                                           : backdrop.at(direction);
         for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>(light[c]);
       }
     }
@@ -77,7 +87,7 @@ CorrectionNoise add_correction(const Transport& transport, const std::vector<Vis
   paths.options.into_lobes = request.effects.self;
   paths.options.into_diffuse = request.effects.bounce;
   paths.options.correction = true;
-  paths.tolerance_de00 = request.tolerance_de00;
+  paths.tolerance_de00 = request.tolerance_de00, paths.stop_de00 = kStopShare * request.tolerance_de00;
   paths.white_luminance = request.white_luminance > 0 ? request.white_luminance : 1;
   paths.seed = request.seed;
   paths.most_samples = request.most_samples, paths.most_in_all = request.most_in_all;
@@ -92,7 +102,7 @@ CorrectionNoise add_correction(const Transport& transport, const std::vector<Vis
   noise.de00_p95 = drawn.noise_p95_de00;
   noise.samples = drawn.samples_mean;
   noise.free_share = drawn.free_share;
-  noise.reached = drawn.reached;
+  noise.reached = drawn.reached, noise.dark = drawn.dark, noise.found = drawn.found;
   noise.ms = 1000 * clock.elapsed_s();
   return noise;
 }

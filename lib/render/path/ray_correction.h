@@ -2,6 +2,7 @@
 // changes of its light. goniochrome-theory(7), PLAN, Effects of rays.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 
@@ -34,6 +35,9 @@ struct CorrectionNoise {
   double free_share = 0;
   double ms = 0;
   bool reached = true;  // whether the noise is within the tolerance
+  bool dark = false;    // whether the mesh changes nothing at all
+  // What each of the effects changes, in the order of plans, and whether the first pass was its last.
+  std::array<FoundShare, kShareCount> found;
 };
 
 // What is seen beside the mesh of a picture with a floor that shows the environment.
@@ -41,7 +45,13 @@ struct Backdrop {
   Background background = Background::kNone;
   color::Rgb color;
   const envmap::Environment* environment = nullptr;
+
+  color::Rgb at(const rays::Float3& direction) const;
 };
+
+// What the floor changes beside the mesh, at 95 of 100 pixels that show it: CIEDE2000 to the backdrop.
+double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Backdrop& backdrop,
+                    const RayEffects& effects, double white_luminance);
 
 // Adds `gain` times what the pixels show beside the mesh: the floor, whose ground is shaded, or, above the horizon, the
 // background. Where these points are the floor, it adds their coverage.

@@ -28,10 +28,10 @@ class SeenPoint {
     for (const Behind& point : behind_) sum += static_cast<double>(point.passed) * point.at.sure();
     return sum;
   }
-  color::Rgb part_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count) const {
-    color::Rgb sum = front_.certain() ? color::Rgb{} : front_.part_of(sequence, first, count);
+  LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count) const {
+    LightShares sum = front_.certain() ? LightShares{} : front_.shares_of(sequence, first, count);
     for (const Behind& point : behind_)
-      if (!point.at.certain()) sum += static_cast<double>(point.passed) * point.at.part_of(sequence, first, count);
+      if (!point.at.certain()) sum += static_cast<double>(point.passed) * point.at.shares_of(sequence, first, count);
     return sum;
   }
 

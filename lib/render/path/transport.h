@@ -66,24 +66,30 @@ struct LightShares {
   color::Rgb direct;
   color::Rgb into_lobes;    // passed on by surfaces to the lobes and the mirror of the point
   color::Rgb into_diffuse;  // passed on by surfaces to the diffuse part of the point
+  // With PathOptions::correction over a floor whose ground is shaded: the light of the floor, less what the environment
+  // has below the horizon.
+  color::Rgb from_floor = {};
 
-  color::Rgb sum() const { return direct + into_lobes + into_diffuse; }
+  color::Rgb sum() const { return direct + into_lobes + into_diffuse + from_floor; }
   // What pictures with these effects show of it.
   color::Rgb shown(const RayEffects& effects) const {
     color::Rgb shown;
-    if (effects.shadow) shown += direct;
+    if (effects.shadow) shown += direct + from_floor;
     if (effects.shadow && effects.self) shown += into_lobes;
     if (effects.shadow && effects.bounce) shown += into_diffuse;
     return shown;
   }
   LightShares& operator+=(const LightShares& o) {
-    direct += o.direct, into_lobes += o.into_lobes, into_diffuse += o.into_diffuse;
+    direct += o.direct, into_lobes += o.into_lobes, into_diffuse += o.into_diffuse, from_floor += o.from_floor;
     return *this;
   }
 };
 constexpr LightShares operator*(double scale, const LightShares& a) {
-  return {scale * a.direct, scale * a.into_lobes, scale * a.into_diffuse};
+  return {scale * a.direct, scale * a.into_lobes, scale * a.into_diffuse, scale * a.from_floor};
 }
+// In the order in which plans list the effects of rays.
+inline constexpr color::Rgb LightShares::*kShares[] = {&LightShares::direct, &LightShares::into_lobes,
+                                                       &LightShares::into_diffuse, &LightShares::from_floor};
 
 // How many samples are drawn together from one sequence. Their mean is one independent estimate.
 constexpr int kBatch = 16;
@@ -264,10 +270,6 @@ class PointTransport {
     return shares_of(Sequence(seed, kBatch), first, count, any_blocked);
   }
   // The same of any sequence.
-  color::Rgb part_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count) const {
-    return shares_of(sequence, first, count).sum();
-  }
-  // The same by shares, as batch_shares().
   LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count,
                         bool* any_blocked = nullptr) const;
 

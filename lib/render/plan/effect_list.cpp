@@ -9,7 +9,6 @@
 #include "render/internal/worn_lobes.h"
 #include "render/panes.h"
 #include "render/plan/ray_plan.h"
-#include "render/plan/sum_choice.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -55,8 +54,7 @@ void add_lobes(const Scene& scene, const Effects& all, bool gloss, std::vector<E
                     [=](Effects& e) {
                       remove_weight(e, exponent, gloss);
                       if (gloss) e.satin = e.stretch = false;
-                    },
-                    gloss});
+                    }});
     list.back().left_to_tilts = !gloss && std::ranges::any_of(scene.paints, [&](const paint::LobeFit& paint) {
       return !paint.tilts.empty() && wears_lobe(paint, exponent, LobeWeight::kDirectionalDiffuse);
     });
@@ -177,7 +175,7 @@ void add_texture_lobes(const Scene& scene, const Effects& all, std::vector<Effec
   const int lobes = all.texture ? scene.layer->lobes() : 0;
   for (int lobe = 0; lobe < lobes; ++lobe) {
     list.push_back({fmt::format("texture-{}", lobe), "texture-lobes", true, fmt::format("lobe{} of the textures", lobe),
-                    [=](Effects& e) { e.texture_lobes &= ~(1U << lobe); }, true});
+                    [=](Effects& e) { e.texture_lobes &= ~(1U << lobe); }});
   }
   if (lobes == 0) list.push_back({"texture-lobes", "texture-lobes", false, "no texture has lobes", [](Effects&) {}});
 }
@@ -222,7 +220,6 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
       : all.extent       ? "a smooth coat mirrors the environment and the lamps"
                          : "a smooth coat mirrors the environment",
       [](Effects& e) { e.mirror = e.satin = false; });
-  list.back().is_highlight = all.extent;
   const double grazing = percent(seen, [](const VisiblePoint& p) { return cos_o(p) < kGrazingCos; });
   add("fresnel", all.fresnel,
       !all.fresnel  ? "neither gloss lobes nor mirror"
@@ -283,7 +280,6 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
         e.maps = false;
       });
   add("extent", all.extent, extent_reason(scene, all), [](Effects& e) { e.extent = false; });
-  list.back().is_highlight = true;
   return list;
 }
 

@@ -16,7 +16,6 @@ struct EffectSwitch {
   bool needed = false;
   std::string reason;
   std::function<void(Effects&)> turn_off;
-  bool is_highlight = false;   // It may be bright between the points at which a plan looks.
   int needs = -1;              // The effect of this number in the list, without which this one is off as well.
   bool refines = false;        // It only draws another effect finer, so that the reference has no part of it.
   bool beyond_maps = false;    // Engines of prefiltered maps cannot draw it.

@@ -48,10 +48,10 @@ const char* spelled(Decision decision) {
       return "forced on";
     case Decision::kForcedOff:
       return "forced off";
-    case Decision::kOverBudget:
+    case Decision::kFirstPass:
       break;
   }
-  return "over budget";
+  return "first pass alone";
 }
 
 Result<void> check_effects(const std::string& effects) {

@@ -45,11 +45,6 @@ struct FilterProbes {
 FilterProbes filter_probes(const TexturePlace& place, double scale, int width, int height, int levels);
 // The probe of this number.
 TexturePlace probe_place(const TexturePlace& place, double scale, const FilterProbes& probes, int number);
-// What the shading of footprints takes relative to that of points without footprints.
-struct FilterCost {
-  double probes = 1;  // where each probe is shaded
-  double texels = 1;  // where each texel is shaded once that any of the probes of a footprint shows
-};
 // Whether a footprint lies between the middles of texels that are neighbors, where it has no edge. Its mean is then
 // the value in its middle, but for the small part of the blend that is bilinear.
 bool is_between_texels(const TexturePlace& place, double scale, int width, int height);

@@ -273,7 +273,7 @@ TEST_F(TexturedScene, CertificateUnderAnEnvironment) {
   EXPECT_GT(picture_error(frame, scene, &source, 1, 60, 5).de00_mean, 3 * error.de00_mean) << "the control";
 }
 
-TEST_F(TexturedScene, ThePlanPricesTextureAndLobes) {
+TEST_F(TexturedScene, ThePlanTriesOutTextureAndLobes) {
   dress();
   Frame all, without;
   PlanRequest request;
@@ -281,8 +281,6 @@ TEST_F(TexturedScene, ThePlanPricesTextureAndLobes) {
   const Plan plan = planned(request, all);
   for (const char* name : {"texture", "texture-0", "texture-1", "texture-2"})
     EXPECT_TRUE(item(plan, name).needed) << name;
-  EXPECT_GT(item(plan, "texture").cost_ms, item(plan, "texture-0").cost_ms);
-  EXPECT_GT(item(plan, "texture-0").cost_ms, 0);
   for (const char* name : {"texture", "texture-0", "texture-1"}) {
     request.effects = std::string("all,-") + name;
     const Plan left = planned(request, without);
@@ -322,9 +320,9 @@ TEST_F(TexturedScene, TruthStandsBesideTheEstimate) {
   const PixelSample sample = sampled_pixels(*frame.gbuffer, scene, 60, 3);
   add_truth(plan, scene, sample.points, &source, 1);
   for (const char* name : {"texture", "texture-0", "texture-1"}) {
-    const PlanItem& priced = item(plan, name);
-    ASSERT_TRUE(priced.truth_de00_p95.has_value()) << name;
-    EXPECT_NEAR(std::log2(priced.de00_p95 / *priced.truth_de00_p95), 0, 1) << name;
+    const PlanItem& tried = item(plan, name);
+    ASSERT_TRUE(tried.truth_de00_p95.has_value()) << name;
+    EXPECT_NEAR(std::log2(tried.de00_p95 / *tried.truth_de00_p95), 0, 1) << name;
   }
 }
 
