@@ -55,6 +55,20 @@ std::string in_case(std::string_view text, char first, char last, char to) {
   return result;
 }
 
+// Characters that print as a blank or as nothing: no-break and typographic spaces, marks without width.
+struct Invisible {
+  std::string_view bytes, name;
+};
+constexpr std::array kInvisible = {Invisible{"\xc2\xa0", "<U+00A0>"},     Invisible{"\xe2\x80\x87", "<U+2007>"},
+                                   Invisible{"\xe2\x80\x89", "<U+2009>"}, Invisible{"\xe2\x80\xaf", "<U+202F>"},
+                                   Invisible{"\xe3\x80\x80", "<U+3000>"}, Invisible{"\xe2\x80\x8b", "<U+200B>"},
+                                   Invisible{"\xef\xbb\xbf", "<U+FEFF>"}};
+
+const Invisible* invisible_at_front(std::string_view text) {
+  const auto* found = std::ranges::find_if(kInvisible, [&](const Invisible& c) { return text.starts_with(c.bytes); });
+  return found == kInvisible.end() ? nullptr : found;
+}
+
 // The length of the character at the front of `text`, or 0 if XML 1.0 does not allow it.
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -93,9 +107,18 @@ std::string shortest(double value) {
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kSpace = " \t\r\n\v\f";
-  const auto first = text.find_first_not_of(kSpace);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+  for (;;) {
+    text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
+    const Invisible* invisible = invisible_at_front(text);
+    if (!invisible) break;
+    text.remove_prefix(invisible->bytes.size());
+  }
+  for (;;) {
+    text = text.substr(0, text.find_last_not_of(kSpace) + 1);
+    const auto* last = std::ranges::find_if(kInvisible, [&](const Invisible& c) { return text.ends_with(c.bytes); });
+    if (last == kInvisible.end()) return text;
+    text.remove_suffix(last->bytes.size());
+  }
 }
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -166,6 +189,8 @@ std::string shown(std::string_view text) {
     const std::size_t length = character_length(text);
     if (length == 0)
       line += '?';
+    else if (const Invisible* invisible = invisible_at_front(text))
+      line += invisible->name;
     else
       line += text[0] < ' ' && text[0] >= 0 ? " " : text.substr(0, length);
     text.remove_prefix(length == 0 ? 1 : length);

@@ -20,7 +20,7 @@ std::optional<std::int64_t> parse_integer(std::string_view text);
 // The shortest decimal text that reads back as the same double.
 std::string shortest(double value);
 
-// `text` without the white space before and after it.
+// `text` without the white space before and after it, no-break and other typographic spaces included.
 std::string_view trimmed(std::string_view text);
 
 // The pieces of `text` between the separators. Empty pieces are kept, so that an error can count them.
@@ -42,7 +42,8 @@ bool is_plain_utf8(std::string_view text);
 // `text` with a "?" in place of every byte that is_plain_utf8() objects to.
 std::string plain_utf8(std::string_view text);
 
-// `text` as a message can quote it: on one line, and cut off after 60 bytes.
+// `text` as a message can quote it: on one line, with spaces that look like a blank named (<U+00A0>), and cut off after
+// 60 bytes.
 std::string shown(std::string_view text);
 
 // `text` with &, <, > and " written as XML entities. The characters in `as_numbers` are written as their numbers

@@ -39,5 +39,12 @@ TEST(Text, SplitKeepsEmptyPieces) {
   EXPECT_EQ(lower("As-15"), "as-15");
 }
 
+TEST(Text, SpacesThatLookLikeBlanksAreTrimmedAndShown) {
+  EXPECT_EQ(trimmed("\xc2\xa0 45as15\xe2\x80\xaf \xef\xbb\xbf"), "45as15");
+  EXPECT_EQ(trimmed(" \xc2\xa0 "), "");
+  EXPECT_EQ(trimmed("a\xc2\xa0z"), "a\xc2\xa0z");
+  EXPECT_EQ(shown("a\xc2\xa0z\xe2\x80\x8b"), "a<U+00A0>z<U+200B>");
+}
+
 }  // namespace
 }  // namespace goniochrome::text_test

@@ -92,6 +92,10 @@ Bands product(const Bands& x, const Bands& y) {
 
 Result<Bands> reflectance_bands(std::span<const double> wavelengths_nm, std::span<const double> values) {
   GONIO_TRY(check(wavelengths_nm, values));
+  if (wavelengths_nm.front() > kFirstBand_nm || wavelengths_nm.back() < band_nm(kBands - 1)) {
+    const auto covered = SpectralColorimeter::make(wavelengths_nm, {"D65", 2});
+    if (!covered.ok()) return covered.error();
+  }
   Bands bands{};
   for (int b = 0; b < kBands; ++b)
     bands[static_cast<std::size_t>(b)] = std::max(0.0, interpolated(wavelengths_nm, values, band_nm(b)));

@@ -27,7 +27,8 @@ Bands scaled(double factor, const Bands& bands);
 Bands product(const Bands& x, const Bands& y);  // band by band
 
 // A reflectance in bands: the Lagrange cubic through the values at the wavelengths, not below 0 and, outside of them,
-// the outermost value (as SpectralColorimeter has it). Error: fewer than two wavelengths, or they do not ascend.
+// the outermost value (as SpectralColorimeter has it). Error: fewer than two wavelengths, they do not ascend, or they
+// leave out too much of what the observer sees.
 Result<Bands> reflectance_bands(std::span<const double> wavelengths_nm, std::span<const double> values);
 
 // Relative spectral power in bands: the power within each band, weighed as a triangle that reaches to the neighboring

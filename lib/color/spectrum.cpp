@@ -128,6 +128,10 @@ Result<SpectralColorimeter> SpectralColorimeter::make(std::span<const double> wa
     for (double& w : weight) w /= total[1];
   result.white_ = {total[0] / total[1], 1.0, total[2] / total[1]};
   for (std::size_t c = 0; c < 3; ++c) result.held_share_ = std::max(result.held_share_, held[c] / total[c]);
+  if (result.held_share_ > kMostHeldShare)
+    return input_error(
+        "the spectrum goes from {} to {} nm and leaves out {:.0f} % of what the observer sees: measure 400 to 700 nm",
+        wavelengths_nm.front(), wavelengths_nm.back(), 100 * result.held_share_);
   return result;
 }
 

@@ -23,12 +23,16 @@ Result<double> illuminant_power(double nm, const std::string& name);
 // ascend, and there are at least two.
 double interpolated(std::span<const double> wavelengths_nm, std::span<const double> values, double nm);
 
+// The largest share (0..1) of X, Y or Z that may come from wavelengths beyond the measured ones, and the share from
+// which on it is told. From 400 to 700 nm less than 0.003 lies beyond, from 430 to 700 nm about 0.15.
+constexpr double kMostHeldShare = 0.2, kToldHeldShare = 0.01;
+
 // Turns reflectance factors at fixed wavelengths into XYZ and Lab under one viewing condition. Lab is relative to the
 // white that the perfect diffuser has in the same sum, so it needs no second table.
 class SpectralColorimeter {
  public:
-  // `wavelengths_nm` ascend, and there are at least two. Error: they are not like that, or the condition is not known
-  // (the message says what is known).
+  // `wavelengths_nm` ascend, and there are at least two. Error: they are not like that, they leave out more than
+  // kMostHeldShare of what the observer sees, or the condition is not known (the message says what is known).
   static Result<SpectralColorimeter> make(std::span<const double> wavelengths_nm, const ViewingCondition& condition);
 
   // XYZ of a reflectance factor per wavelength; Y = 1 for the perfect diffuser. Values may be negative or above 1.

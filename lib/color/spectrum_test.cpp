@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/testdata_for_test.h"
 #include "base/text.h"
+#include "color/bands.h"
 #include "color/internal/cie_tables.h"
 
 namespace goniochrome::color::spectrum_test {
@@ -97,12 +98,27 @@ TEST(Spectrum, SaysHowMuchWasHeldBeyondTheEnds) {
 }
 
 TEST(Spectrum, RefusesWhatItCannotIntegrate) {
-  const std::vector<double> good = {400, 500}, twice = {400, 400, 500}, one = {400};
+  const std::vector<double> good = {400, 700}, twice = {400, 400, 700}, one = {400};
   EXPECT_NE(SpectralColorimeter::make(good, {"F4", 2}).error().message.find("D65, D50, A, C, D55, D75, F2, F7 or F11"),
             std::string::npos);
   EXPECT_FALSE(SpectralColorimeter::make(good, {"D65", 4}).ok());
   EXPECT_FALSE(SpectralColorimeter::make(twice, {"D65", 2}).ok());
   EXPECT_FALSE(SpectralColorimeter::make(one, {"D65", 2}).ok());
+}
+
+// Blue light alone was the color of a white, and heat was a gray: the outermost value stood for all the rest.
+TEST(Spectrum, RefusesWhatTheObserverDoesNotSee) {
+  for (const auto& [from, to] :
+       {std::pair{400.0, 440.0}, {360.0, 400.0}, {900.0, 980.0}, {400.0, 600.0}, {440.0, 700.0}}) {
+    const auto meter = SpectralColorimeter::make(std::vector{from, to}, {"D65", 10});
+    ASSERT_FALSE(meter.ok()) << from;
+    EXPECT_NE(meter.error().message.find("of what the observer sees: measure 400 to 700 nm"), std::string::npos);
+    EXPECT_FALSE(reflectance_bands(std::vector{from, to}, std::vector{0.1, 0.9}).ok());
+  }
+  for (const auto& [from, to] : {std::pair{400.0, 700.0}, {420.0, 680.0}, {430.0, 700.0}, {400.0, 650.0}})
+    EXPECT_TRUE(SpectralColorimeter::make(std::vector{from, to}, {"D65", 10}).ok()) << from;
+  EXPECT_LT(colorimeter(wavelengths(400, 700, 10), {"A", 2}).held_share(), kToldHeldShare);
+  EXPECT_GT(colorimeter(wavelengths(420, 680, 10), {"A", 2}).held_share(), kToldHeldShare);
 }
 
 // The polynomial through these points at x, by Newton's divided differences.
