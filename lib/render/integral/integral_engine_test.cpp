@@ -167,7 +167,7 @@ TEST(IntegralEngine, GivesTheSameBitsForAnyThreads) {
   set_threads(0);
 }
 
-TEST(IntegralEngine, ThePlanKeepsEverythingAndForetellsItsTime) {
+TEST(IntegralEngine, ThePlanKeepsEverything) {
   const World world(hall());
   auto renderer = Renderer::create();
   const View view{Camera::orbit(world.mesh, 30, 20, 1, 30, 1), 96, 96, 1, false};
@@ -179,10 +179,6 @@ TEST(IntegralEngine, ThePlanKeepsEverythingAndForetellsItsTime) {
   ASSERT_TRUE(plan.ok()) << plan.error().message;
   for (const PlanItem& item : plan->items) EXPECT_EQ(item.on, item.needed) << item.effect;
   EXPECT_EQ(plan->effects.tolerance_de00, request.tolerance_de00);
-  Frame frame;
-  ASSERT_TRUE(renderer->draw(view, frame).ok());
-  EXPECT_GT(plan->predicted_ms(), frame.frame_ms / 5);
-  EXPECT_LT(plan->predicted_ms(), frame.frame_ms * 5);
 }
 
 TEST(IntegralEngine, WantsTheImageItself) {
