@@ -350,6 +350,20 @@ TEST_F(GltfFiles, WhatMeshoptimizerPacksIsUnpacked) {
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
   EXPECT_EQ(mesh->triangles.size(), 128U);
   EXPECT_NEAR(area(*mesh), 1, 1e-12);
+  // The same as a GLB file, whose first buffer is the chunk behind the text.
+  std::string text = written(data, 81);
+  const std::string uri = R"(,"uri":"data:application/octet-stream;base64,)" + base64(data) + "\"";
+  text.erase(text.find(uri), uri.size());
+  const auto padded = [](std::string bytes, char with) { return bytes.append((4 - bytes.size() % 4) % 4, with); };
+  const auto word = [](std::size_t value) {
+    const auto number = static_cast<std::uint32_t>(value);
+    return std::string(reinterpret_cast<const char*>(&number), sizeof number);
+  };
+  const std::string head = padded(text, ' '), body = padded(data, '\0');
+  const std::string chunks = word(head.size()) + "JSON" + head + word(body.size()) + std::string("BIN\0", 4) + body;
+  const auto binary = read("glTF" + word(2) + word(12 + chunks.size()) + chunks, "t.glb");
+  ASSERT_TRUE(binary.ok()) << binary.error().message;
+  EXPECT_EQ(binary->positions, mesh->positions);
   EXPECT_THAT(error(written(data.substr(1), 81)), HasSubstr("cannot be unpacked"));
   EXPECT_THAT(error(written(data, 99999999999)), HasSubstr("bufferView 0: what it packs by EXT_meshopt_compression"));
 }
