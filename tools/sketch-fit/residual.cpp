@@ -32,7 +32,7 @@ void draw_scale(image::Image& image) {
   image::draw_label(image, x + width - image::label_width("20", scale) / 2, text_y, end, scale, kInk);
 }
 
-// As an sRGB display shows it, with the white of the light as its own.
+// The signals of an sRGB display whose white is that of the light.
 Color displayed(const color::Lab& lab) {
   const color::Rgb rgb = color::rec709_from_rec2020(color::rgb_from_lab(lab, *color::white_point({})));
   Color shown;

@@ -28,7 +28,7 @@ using OneLobeModel = std::function<color::Rgb(const OneLobe& parameters, const V
 enum class Searched { kColorsAndRoughness, kStrengthToo, kMetalnessToo };
 OneLobe nearest_one_lobe(const paint::Paint& paint, const OneLobeModel& model, Searched searched);
 
-// What a model of such parameters shows of the paint.
+// Measures how a model of such parameters shows the paint.
 Shown shown_by(const paint::Paint& paint, const OneLobeModel& model, const OneLobe& parameters);
 
 // The nearest parameters, in the numbers that files have, and what they show: of the searches `ways` the one that shows

@@ -25,7 +25,7 @@ class ZonalKernel {
   virtual ~ZonalKernel() = default;
 
   const Edge& edge() const { return edge_; }
-  // Whether it is the cosine itself up to 90 deg: the centroid of a texel then stands for all of it.
+  // True for the cosine itself up to 90 deg: the centroid of a texel then stands for all of it.
   virtual bool is_cosine() const { return false; }
 
   // K at an angle of the given cosine: 1 at the top, falling from there to 0 or more.

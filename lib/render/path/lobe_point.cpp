@@ -69,7 +69,7 @@ class LobePoint::Classes {
   void mirror(const Transport::Vertex& vertex, double scale) {
     base_ = {}, gloss_ = static_cast<float>(scale) * vertex.painted.mirror();
   }
-  // Of light that further surfaces send.
+  // Returns light of further surfaces as this one reflects it.
   color::Rgb shown(const color::Rgb& light) const { return point_.reflect(base_ + gloss_, light); }
 
  private:

@@ -33,10 +33,10 @@ struct Transport::Vertex {
   double mirror_chance = 0;  // that the path goes on along the mirror direction
   BrightPlaces::Receiver receiver;
   double lobes_chance = 1;  // that it goes on by the lobes
-  // Whether it is a floor that shows the environment. What that shows in the open is known, and paths add what the mesh
-  // changes: along rays that nothing blocks there is nothing to add.
+  // True for a floor that shows the environment. Its unoccluded light is known, and paths add the changes by the mesh:
+  // unblocked rays add nothing.
   bool is_laid = false;
-  color::Rgb open;        // what such a floor shows in the open
+  color::Rgb open;        // unoccluded light of such a floor
   bool is_white = false;  // matt white, whatever its paint is
 
   Vertex(const Transport& transport, const rays::Spot& at, const rays::Float3& to_viewer)
@@ -197,7 +197,7 @@ Transport::Next Transport::step(const Vertex& vertex, const std::array<double, 4
   return next;
 }
 
-// What the surface at `hit` sends back along the ray, its own emission apart.
+// Adds the light that the surface at `hit` sends back along the ray, its own emission apart.
 template <class Carrier>
 void Transport::follow(rays::Hit hit, rays::Float3 origin, rays::Float3 direction, int bounces,
                        const Sequence& sequence, std::uint32_t index, std::uint32_t set, Carrier& carrier) const {

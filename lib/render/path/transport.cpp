@@ -294,7 +294,7 @@ color::Rgb Transport::bounced(const Hit& hit, const Float3& origin, const Float3
   return light.sum();
 }
 
-// As follow() at a vertex on such a floor.
+// This is follow() at a vertex on such a floor, with the light of its first step apart.
 Transport::FloorLight Transport::off_floor(const Hit& hit, const Float3& origin, const Float3& direction, int bounces,
                                            const Sequence& sequence, std::uint32_t index, std::uint32_t set) const {
   if (shaded_ != nullptr) {
