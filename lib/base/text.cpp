@@ -65,8 +65,8 @@ constexpr std::array kInvisible = {Invisible{"\xc2\xa0", "<U+00A0>"},     Invisi
                                    Invisible{"\xef\xbb\xbf", "<U+FEFF>"}};
 
 const Invisible* invisible_at_front(std::string_view text) {
-  const auto* found = std::ranges::find_if(kInvisible, [&](const Invisible& c) { return text.starts_with(c.bytes); });
-  return found == kInvisible.end() ? nullptr : found;
+  const auto found = std::ranges::find_if(kInvisible, [&](const Invisible& c) { return text.starts_with(c.bytes); });
+  return found == kInvisible.end() ? nullptr : &*found;
 }
 
 // The length of the character at the front of `text`, or 0 if XML 1.0 does not allow it.
@@ -115,7 +115,7 @@ std::string_view trimmed(std::string_view text) {
   }
   for (;;) {
     text = text.substr(0, text.find_last_not_of(kSpace) + 1);
-    const auto* last = std::ranges::find_if(kInvisible, [&](const Invisible& c) { return text.ends_with(c.bytes); });
+    const auto last = std::ranges::find_if(kInvisible, [&](const Invisible& c) { return text.ends_with(c.bytes); });
     if (last == kInvisible.end()) return text;
     text.remove_suffix(last->bytes.size());
   }

@@ -108,7 +108,9 @@ class HeaderReader {
     if (const auto text = behind("PRIMARIES=")) {
       const auto number = numbers_of(*text, 8);
       if (number.empty()) return refused(line, "write x and y of red, green, blue and white");
-      if (!xyze_) header_.chromaticities.emplace(number.begin(), number.end());
+      // Some writers state eight zeros for primaries that they do not know.
+      const bool stated = std::ranges::any_of(number, [](double value) { return value != 0; });
+      if (!xyze_ && stated) header_.chromaticities.emplace(number.begin(), number.end());
     }
     if (const auto text = behind("GAMMA=")) {
       const auto number = numbers_of(*text, 1);

@@ -143,6 +143,7 @@ TEST_F(HdrHeader, PrimariesAndWhiteAreKnown) {
   };
   EXPECT_THAT(of_red(rec2020), near({1, 0, 0}));
   EXPECT_NEAR(of_red("")[0], .6274, 1e-3) << "control";
+  EXPECT_NEAR(of_red("PRIMARIES=0 0 0 0 0 0 0 0\n")[0], .6274, 1e-3) << "primaries that a writer did not know";
   // Even X, Y and Z are the white of such files; X alone lies outside of all colors.
   EXPECT_THAT(working("FORMAT=32-bit_rle_xyze\n"), near({1, 1, 1}));
 }

@@ -85,8 +85,8 @@ void take_shown(const formats::Basis& basis, const PaintWeights& weights, double
 // Whether a paint of few numbers explains the picture to rounding. It is then the paint that was drawn, and its lobes
 // are how far these can follow it.
 bool is_exact(const FoundPaint& found) {
-  constexpr double kExactCost = 1e-4;  // RMS 0.01 dE
-  return found.search.cost <= kExactCost;
+  constexpr double kRounded = 1e-4;  // RMS 0.01 dE
+  return found.search.cost <= kRounded;
 }
 
 // What the buffers and the picture have at each pixel, relative to the light.
