@@ -238,7 +238,7 @@ TEST(ColorMapFit, HeldOutErrorIsThatOfMapsWithoutTheRow) {
 // are. Rows for light at 75 deg do not exist, and a blend of the rings at 70 and 80 deg must not take their place.
 TEST(ColorMapFit, AGrazingRingHasNoPartInTheMap) {
   const ScratchFolder folder;
-  std::string text = "2\n500 600\n";
+  std::string text = "2\n400 700\n";
   for (double light = 10; light <= 80; light += 10)
     for (double view = -75; view <= 75; view += 7.5) {
       const double f = 0.1 * (light > 75 ? 20 : 1);
