@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "base/text.h"
+#include "formats/encoding.h"
 #include "formats/internal/spectral_rows.h"
 
 namespace goniochrome::formats {
@@ -49,10 +50,10 @@ std::vector<std::string> words_of(std::string_view line) {
         }
       }
       ++i;
-      words.push_back(std::move(word));
+      words.emplace_back(trimmed(word));
     } else {
       const auto end = std::min(line.find_first_of(" \t\r", i), line.size());
-      words.emplace_back(line.substr(i, end - i));
+      words.emplace_back(trimmed(line.substr(i, end - i)));
       i = end;
     }
   }
@@ -117,8 +118,12 @@ struct Columns {
 
 class CgatsParser {
  public:
-  CgatsParser(std::string name, std::string_view text, const ImportOptions& options)
-      : name_(std::move(name)), text_(text), options_(options) {}
+  // With a `judge`, it hears of the spectra, and nothing is integrated; else `unit` makes factors of those whose norm
+  // is not stated.
+  CgatsParser(std::string name, std::string_view text, const ImportOptions& options, ScaleJudge* judge, double unit)
+      : name_(std::move(name)), text_(text), options_(options), judge_(judge), unit_(unit) {}
+
+  Scale stated_scale() const { return stated_scale_; }
 
   Result<ImportedPaints> parse() {
     bool tables = false;
@@ -135,6 +140,8 @@ class CgatsParser {
     }
     if (!tables) return input_error("{}: has no BEGIN_DATA: it is no CGATS table, or it was cut off", name_);
     finish_paint();
+    if (const auto possible = normed_.unit_of_norm(); !possible.ok())
+      return input_error("{}: {}", name_, possible.error().message);
     result_.warnings = remarks_.lines();
     return std::move(result_);
   }
@@ -214,7 +221,11 @@ class CgatsParser {
       if (const auto nm = wavelength_in(columns_.fields[static_cast<std::size_t>(i)]))
         columns_.wavelengths.push_back({*nm, i});
     if (columns_.wavelengths.size() < kFewestWavelengths) columns_.wavelengths.clear();
-    if (const auto steps = check_steps(columns_.wavelengths); !steps.ok()) return error(steps.error().message);
+    if (const auto steps = sort_wavelengths(columns_.wavelengths); !steps.ok()) return error(steps.error().message);
+    for (const WavelengthColumn& column : columns_.wavelengths) {
+      const Scale scale = scale_in(columns_.fields[static_cast<std::size_t>(column.at)]);
+      if (scale != Scale::kUnstated) stated_scale_ = scale;
+    }
     if (columns_.colors.empty() && columns_.wavelengths.empty())
       return error(
           "the fields hold neither LAB_L LAB_A LAB_B nor XYZ_X XYZ_Y XYZ_Z nor spectra such as SPECTRAL_NM_400: export "
@@ -256,6 +267,7 @@ class CgatsParser {
       if (!next_line()) return input_error("{}:{}: BEGIN_DATA has no END_DATA: the file was cut off", name_, begun);
       if (words_.empty()) continue;
       if (upper(words_[0]) == "END_DATA") break;
+      if (judge_ && columns_.wavelengths.empty()) continue;
       ++rows;
       const auto read = row();
       if (read) continue;
@@ -327,7 +339,7 @@ class CgatsParser {
     }
     std::optional<paint::SpectrumReading> measured;
     if (!columns_.wavelengths.empty()) {
-      GONIO_ASSIGN(measured, spectrum(condition, readings));
+      GONIO_ASSIGN(measured, spectrum(name, condition, readings));
     }
     if (columns_.geometry == kNone || name != open_.paint.name) {
       finish_paint();
@@ -343,7 +355,8 @@ class CgatsParser {
   }
 
   // The spectrum of the row, if it has one, as factors. It becomes a reading where no color stands beside it.
-  Result<std::optional<paint::SpectrumReading>> spectrum(const color::ViewingCondition& condition,
+  Result<std::optional<paint::SpectrumReading>> spectrum(const std::string& name,
+                                                         const color::ViewingCondition& condition,
                                                          std::vector<SeenReading>& readings) {
     const std::vector<WavelengthColumn>& columns = columns_.wavelengths;
     if (cell(columns[0].at).empty()) return std::optional<paint::SpectrumReading>();
@@ -354,15 +367,21 @@ class CgatsParser {
       GONIO_ASSIGN(const double value, number(column.at));
       if (!(std::abs(value) <= kMostLab))
         return error(fmt::format("the reflectance at {} nm is {}: write a factor", column.nm, value));
-      spectrum.factors.push_back(value / spectral_norm_.value_or(1));
+      spectrum.factors.push_back(value);
     }
     const auto seen = std::ranges::find(readings, *geometry, [](const SeenReading& r) { return r.reading.geometry; });
     const auto L = seen == readings.end() ? std::nullopt : std::optional(seen->reading.lab.L);
-    if (!spectral_norm_)
-      if (const auto made = meter_.make_factors(spectrum, condition, L); !made.ok()) return error(made.error().message);
+    if (judge_) {
+      if (!spectral_norm_) judge_->add(name, *geometry, spectrum.factors, L);
+      return std::optional<paint::SpectrumReading>();
+    }
+    for (double& factor : spectrum.factors) factor *= spectral_norm_ ? 1 / *spectral_norm_ : unit_;
+    if (spectral_norm_) normed_.add(name, *geometry, spectrum.factors, L);
+    if (const auto checked = check_not_negative(spectrum.factors); !checked.ok()) return error(checked.error().message);
     if (seen == readings.end()) {
       const auto lab = meter_.lab(spectrum, condition);
       if (!lab.ok()) return error(lab.error().message);
+      note_uncovered(meter_.held_share(), name, remarks_);
       if (const auto checked = check_lab(*lab); !checked.ok()) return error(checked.error().message);
       readings.push_back({condition, {*geometry, *lab}});
     }
@@ -423,6 +442,10 @@ class CgatsParser {
   std::string name_;
   std::string_view text_, current_;
   const ImportOptions& options_;
+  ScaleJudge* judge_;
+  double unit_;
+  Scale stated_scale_ = Scale::kUnstated;  // by the fields of spectra
+  ScaleJudge normed_;                      // hears of those whose norm is stated
   int line_ = 0;
   std::vector<std::string> words_;
 
@@ -464,14 +487,24 @@ bool looks_cgats(std::string_view head) {
 
 Result<ImportedPaints> read_cgats(InputFile input, const ImportOptions& options) {
   GONIO_ASSIGN(std::string text, input.rest(kLargestFile));
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
-    return input_error("{}: is UTF-16: save it as UTF-8", input.name());
+  text = as_utf8(text);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   std::erase_if(text,
                 [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r'; });
   const bool latin1 = !is_plain_utf8(text);
   if (latin1) text = utf8_from_latin1(text);
-  GONIO_ASSIGN(ImportedPaints paints, CgatsParser(input.name(), text, options).parse());
+  // Spectra are judged together before they are read. What is wrong with a row is told when it is read.
+  ScaleJudge judge;
+  ImportOptions all = options;
+  all.keep_going = true;
+  CgatsParser survey(input.name(), text, all, &judge, 1);
+  const auto surveyed = survey.parse();
+  Remarks remarks;
+  const auto unit = judge.unit(survey.stated_scale(), options.scale, remarks);
+  if (surveyed.ok() && !unit.ok()) return input_error("{}: {}", input.name(), unit.error().message);
+  CgatsParser parser(input.name(), text, options, nullptr, unit.ok() ? *unit : 1);
+  GONIO_ASSIGN(ImportedPaints paints, parser.parse());
+  for (const std::string& remark : remarks.lines()) paints.warnings.push_back(remark);
   if (latin1) paints.warnings.push_back("is not UTF-8: read as Latin-1");
   return paints;
 }

@@ -117,7 +117,6 @@ TEST_F(Cgats, RefusalsNameLineAndCell) {
               HasSubstr(":4: BEGIN_DATA has no END_DATA"));
   EXPECT_THAT(refusal("BEGIN_DATA\n1 2 3\nEND_DATA\n"), HasSubstr("columns have no names"));
   EXPECT_THAT(refusal("hello"), HasSubstr("has no BEGIN_DATA"));
-  EXPECT_THAT(refusal("\xFF\xFEx"), HasSubstr("UTF-16"));
 }
 
 TEST_F(Cgats, BadRowsArePassedOverWhenAsked) {
@@ -139,6 +138,32 @@ TEST_F(Cgats, ReadsSpectra) {
   EXPECT_EQ(measurement.rows.at(0).geometry, geometry("45as45"));
   EXPECT_NEAR(measurement.spectra.at(0).factors.at(0), 0.02, 1e-15);
   EXPECT_THAT(refusal(std::string(kHead) + table(fields, cells + " 3")), HasSubstr("33 cells"));
+}
+
+// 4 and 2 % without a norm were L* 168 and 130, and percent with a norm of 1 was kept.
+TEST_F(Cgats, FindsTheScaleOfSpectra) {
+  std::string fields = "SAMPLE_ID SAMPLE_NAME GEOMETRY", one = "1 S 45as15", two = "2 S 45as45";
+  for (int nm = 400; nm <= 700; nm += 10) fields += fmt::format(" SPECTRAL_NM_{}", nm), one += " 4.0", two += " 2.0";
+  const std::string text = table(fields, one + "\n" + two);
+  const auto read = good(std::string(kHead) + text);
+  EXPECT_NEAR(read.paints.at(0).measurement->rows.at(1).lab.L, 116 * std::cbrt(0.02) - 16, 1e-9);
+  EXPECT_THAT(read.warnings, Contains(HasSubstr("reflectances were read as percent")));
+  EXPECT_THAT(good(std::string(kHead) + text, {"", 0, false, Scale::kPercent}).warnings,
+              testing::Not(Contains(HasSubstr("percent"))));
+  EXPECT_THAT(refusal(std::string(kHead) + "SPECTRAL_NORM 1\n" + text),
+              HasSubstr("SPECTRAL_NORM says that reflectances are factors"));
+  EXPECT_NEAR(good(std::string(kHead) + "SPECTRAL_NORM 100\n" + text, {"", 0, false, Scale::kFactor})
+                  .paints.at(0)
+                  .measurement->rows.at(0)
+                  .lab.L,
+              116 * std::cbrt(0.04) - 16, 1e-9);
+}
+
+TEST_F(Cgats, ReadsUtf16) {
+  const std::string text = std::string(kHead) + table("SAMPLE_ID GEOMETRY LAB_L LAB_A LAB_B", "p 45as15 1 2 3");
+  std::string wide = "\xfe\xff";
+  for (const char c : text) wide += std::string{'\0', c};
+  EXPECT_EQ(good(wide).paints.at(0).measurement->rows.at(0).lab, (color::Lab{1, 2, 3}));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "formats/imported.h"
+#include "formats/internal/csv_header.h"
 #include "formats/internal/csv_records.h"
 #include "formats/internal/spectral_rows.h"
 #include "formats/xml.h"
@@ -13,155 +14,6 @@
 namespace goniochrome::formats {
 
 namespace {
-
-// The columns that have names of their own.
-enum Column {
-  kSample,
-  kGeometry,
-  kIlluminant,
-  kObserver,
-  kL,
-  kA,
-  kB,
-  kClass,
-  kCode,
-  kInstrument,
-  kGloss20,
-  kGloss60,
-  kGloss85,
-  kOrigin,
-  kColumns
-};
-constexpr std::array<std::string_view, kColumns> kNames = {
-    "sample", "geometry", "illuminant", "observer", "l",       "a",       "b",
-    "class",  "code",     "instrument", "gloss20",  "gloss60", "gloss85", "origin"};
-
-// The words of other programs for these columns.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kOtherNames = {{
-    {"name", "sample"},
-    {"paint", "sample"},
-    {"samplename", "sample"},
-    {"probe", "sample"},
-    {"muster", "sample"},
-    {"bezeichnung", "sample"},
-    {"farbe", "sample"},
-    {"farbton", "sample"},
-    {"geometrie", "geometry"},
-    {"winkel", "geometry"},
-    {"messwinkel", "geometry"},
-    {"lichtart", "illuminant"},
-    {"normlichtart", "illuminant"},
-    {"beobachter", "observer"},
-    {"normalbeobachter", "observer"},
-    {"gloss", "gloss60"},
-}};
-
-// An angle without the degree sign that instruments add: `-15°`.
-std::string without_degree_sign(std::string_view angle) {
-  std::string text(angle);
-  for (auto at = text.find("\xc2\xb0"); at != std::string::npos; at = text.find("\xc2\xb0")) text.erase(at, 2);
-  return std::string(trimmed(text));
-}
-
-// A heading in lower case and without what spreadsheets and instruments add: `L*`, `L_15`, `L (15)`, `15° L*`,
-// `15°:L*`.
-std::string plain_heading(std::string_view heading) {
-  std::string text = without_degree_sign(lower(heading));
-  std::erase_if(text, [](char c) { return c == '*' || c == '_' || c == ' ' || c == '(' || c == ')' || c == ':'; });
-  const bool angle_first = text.size() > 1 && (text[0] == '-' || (text[0] >= '0' && text[0] <= '9'));
-  if (angle_first && std::string_view("lab").find(text.back()) != std::string_view::npos)
-    std::rotate(text.begin(), text.end() - 1, text.end());
-  const auto* other = std::ranges::find(kOtherNames, text, &std::pair<std::string_view, std::string_view>::first);
-  return other != kOtherNames.end() ? std::string(other->second) : text;
-}
-
-// Lab of one geometry in a wide table: where its three columns are.
-struct Triple {
-  paint::Geometry geometry;
-  std::array<int, 3> column = {-1, -1, -1};
-};
-
-// What the columns of a table mean.
-struct Header {
-  std::vector<std::string> headings;  // as written
-  std::array<int, kColumns> column;
-  std::vector<Triple> triples;
-  std::vector<WavelengthColumn> wavelengths;  // five or more, or none
-  std::vector<std::string> unknown;
-  std::string taken_for_sample;  // the heading of the first column, where no heading says where the names are
-  bool is_wide() const { return column[kGeometry] < 0; }
-};
-
-// Notes the column of a heading like `L45as15`. Error: the same column is there twice.
-Result<bool> take_triple(Header& header, const std::string& heading, int index) {
-  const auto channel = std::string_view("lab").find(heading.front());
-  if (channel == std::string_view::npos || heading.size() < 2) return false;
-  const auto geometry = paint::parse_geometry(std::string_view(heading).substr(1));
-  if (!geometry.ok()) return false;
-  auto triple = std::ranges::find(header.triples, *geometry, &Triple::geometry);
-  if (triple == header.triples.end()) triple = header.triples.insert(triple, {*geometry});
-  if (triple->column[channel] >= 0)
-    return input_error("two columns are named {}: keep one", shown(header.headings[index]));
-  triple->column[channel] = index;
-  return true;
-}
-
-Result<Header> header_of(const std::vector<std::string>& cells) {
-  Header header;
-  header.headings = cells;
-  header.column.fill(-1);
-  for (int i = 0; i < static_cast<int>(cells.size()); ++i) {
-    const std::string heading = plain_heading(cells[i]);
-    const auto known = std::ranges::find(kNames, heading);
-    if (known != kNames.end()) {
-      int& column = header.column[known - kNames.begin()];
-      if (column >= 0) return input_error("two columns are named {}: keep one", shown(cells[i]));
-      column = i;
-      continue;
-    }
-    if (heading.empty()) continue;
-    GONIO_ASSIGN(const bool taken, take_triple(header, heading, i));
-    if (taken) continue;
-    if (const auto nm = wavelength_in(cells[i]))
-      header.wavelengths.push_back({*nm, i});
-    else
-      header.unknown.push_back(cells[i]);
-  }
-  if (header.wavelengths.size() < kFewestWavelengths) {
-    for (const WavelengthColumn& column : header.wavelengths)
-      header.unknown.push_back(cells[static_cast<std::size_t>(column.at)]);
-    header.wavelengths.clear();
-  }
-  GONIO_TRY(check_steps(header.wavelengths));
-  const bool has_colors = header.column[kGeometry] >= 0 || !header.triples.empty();
-  const bool first_is_free = cells[0].empty() || (!header.unknown.empty() && header.unknown[0] == cells[0]);
-  if (header.column[kSample] < 0 && has_colors && first_is_free) {
-    header.taken_for_sample = cells[0].empty() ? "first" : cells[0];
-    std::erase(header.unknown, cells[0]);
-    header.column[kSample] = 0;
-  }
-  if (header.column[kSample] < 0) return input_error("the header has no column \"sample\": begin with {}", kLongHeader);
-  if (header.is_wide() && !header.wavelengths.empty())
-    return input_error(
-        "the header has wavelengths and no column \"geometry\": say at which geometry each spectrum was measured");
-  if (!header.is_wide()) {
-    const bool has_no_lab = header.column[kL] < 0 && header.column[kA] < 0 && header.column[kB] < 0;
-    if (has_no_lab && !header.wavelengths.empty()) return header;
-    for (const Column channel : {kL, kA, kB})
-      if (header.column[channel] < 0)
-        return input_error("the header has no column \"{}\": begin with {}", "Lab"[channel - kL], kLongHeader);
-    return header;
-  }
-  if (header.triples.empty())
-    return input_error("the header has neither a column \"geometry\" nor columns like L15, a15, b15: begin with {}",
-                       kLongHeader);
-  for (const Triple& triple : header.triples)
-    for (int c = 0; c < 3; ++c)
-      if (triple.column[c] < 0)
-        return input_error("the header has no column {}{}: give L, a and b of every geometry", "Lab"[c],
-                           paint::geometry_name(triple.geometry));
-  return header;
-}
 
 // Leaves the rows that are not from the curve, if there are any.
 void drop_curve(paint::Measurement& measurement, const std::vector<paint::Geometry>& from_curve) {
@@ -180,10 +32,18 @@ std::string listed(const std::vector<std::string>& words) {
 }  // namespace
 
 struct CsvPaintReader::State {
-  explicit State(InputFile input) : records(std::move(input)) {}
+  State(InputFile input, Scale scale) : records(std::move(input)), asked_scale(scale) {}
 
   Result<void> read_header();
+  Result<void> begin_rows();
+  bool is_row_of_units() const;
+  Result<void> find_scale();
+  void judge_row(ScaleJudge& judge, std::string& name) const;
+  bool continues_sample() const { return text(header.column[kSample]).empty() && open && open_name == name_above; }
+  bool is_measured_again() const;
+  Result<void> take_name(paint::Paint& paint);
   Result<std::optional<paint::Paint>> next_wide();
+  Result<std::optional<paint::Paint>> wide_paint();
   Result<std::optional<paint::Paint>> next_long();
 
   Result<void> check_width() const;
@@ -200,14 +60,20 @@ struct CsvPaintReader::State {
   Error error(std::string_view what) const { return records.error(what); }
 
   CsvRecords records;
-  Header header;
+  CsvHeader header;
   std::vector<std::string> cells, warnings;
+  Remarks remarks;
   NameLedger names;
   SpectralMeter meter;
+  Scale asked_scale;
+  double unit = 1;  // of the reflectances: 1, or .01 for percent
+  bool begun = false, scale_unknown = false;
+  std::string name_above;  // of the last row, for rows that leave it out
   int line = 0;
 
   // Long tables: the sample whose rows are being collected.
   std::optional<paint::Paint> open;
+  std::string open_name, open_date;  // as its first row states them
   int open_line = 0;
   std::vector<int> row_lines;
   std::vector<paint::Geometry> from_curve;
@@ -238,12 +104,78 @@ Result<void> CsvPaintReader::State::check_width() const {
                            comma ? "write decimal points, or separate the cells by ;" : "fill or remove cells"));
 }
 
-// A comma is read as a decimal point where it cannot be a separator.
+// Whether the row in `cells` says in which units the columns are: of its values none is a number.
+bool CsvPaintReader::State::is_row_of_units() const {
+  if (cells.size() != header.headings.size()) return false;
+  std::vector<int> columns(header.column.begin() + kL, header.column.begin() + kB + 1);
+  for (const WavelengthColumn& wavelength : header.wavelengths) columns.push_back(wavelength.at);
+  for (const CsvTriple& triple : header.triples)
+    columns.insert(columns.end(), triple.column.begin(), triple.column.end());
+  constexpr std::array<std::string_view, 14> kUnits = {"%",     "percent", "prozent", "factor",     "faktor",
+                                                       "-",     "nm",      "deg",     "\xc2\xb0",   "unit",
+                                                       "units", "cielab",  "lab",     "reflectance"};
+  bool any = false;
+  for (const int column : columns) {
+    if (column < 0 || cells[static_cast<std::size_t>(column)].empty()) continue;
+    std::string word = lower(cells[static_cast<std::size_t>(column)]);
+    std::erase_if(word, [](char c) { return std::string_view("[]()").find(c) != std::string_view::npos; });
+    if (!word.empty() && std::ranges::find(kUnits, trimmed(word)) == kUnits.end()) return false;
+    any = any || word != "-";
+  }
+  return any;
+}
+
+// Reads on to the first row of values, and finds the scale of the spectra.
+Result<void> CsvPaintReader::State::begin_rows() {
+  GONIO_ASSIGN(const bool found, records.next(cells));
+  if (!found) {
+    cells.clear();
+  } else if (is_row_of_units()) {
+    for (const WavelengthColumn& column : header.wavelengths)
+      if (const Scale stated = scale_in(cells[static_cast<std::size_t>(column.at)]); stated != Scale::kUnstated)
+        header.scale = stated;
+    cells.clear();
+  }
+  return header.wavelengths.empty() ? Result<void>() : find_scale();
+}
+
+// Judges the spectra of all rows at once, which a second reading gives.
+Result<void> CsvPaintReader::State::find_scale() {
+  GONIO_ASSIGN(CsvRecords ahead, records.second_reading());
+  const std::vector<std::string> first = cells;
+  ScaleJudge judge;
+  std::string name;
+  for (bool found = !cells.empty(); found;) {
+    if (check_width().ok()) judge_row(judge, name);
+    auto next = ahead.next(cells);
+    while (!next.ok()) next = ahead.next(cells);
+    found = *next;
+  }
+  cells = first;
+  const auto scale = judge.unit(header.scale, asked_scale, remarks);
+  scale_unknown = !scale.ok();
+  if (scale_unknown) return input_error("{}: {}", records.name(), scale.error().message);
+  unit = *scale;
+  return {};
+}
+
+// Rows that cannot be read say nothing here, and are named when they are read.
+void CsvPaintReader::State::judge_row(ScaleJudge& judge, std::string& name) const {
+  if (!text(header.column[kSample]).empty()) name = text(header.column[kSample]);
+  const auto geometry = paint::parse_geometry(without_degree_sign(text(header.column[kGeometry])));
+  if (!geometry.ok()) return;
+  const auto measured = spectrum(*geometry);
+  if (!measured.ok() || !*measured) return;
+  const auto L = text(header.column[kL]).empty() ? Result<double>(input_error("")) : number(header.column[kL]);
+  judge.add(name, *geometry, (*measured)->factors, L.ok() ? std::optional(*L) : std::nullopt);
+}
+
+// A comma is a decimal point: the separator does not stand in a cell, unless that is quoted.
 Result<double> CsvPaintReader::State::number(int column, Domain domain) const {
-  std::string cell = cells[column];
-  if (records.separator() != ',') cell = with_decimal_point(cell).value_or(cell);
-  const auto value = number_in(cell, domain);
-  if (!value.ok()) return error(fmt::format("{} {}", shown(header.headings[column]), value.error().message));
+  const std::string& text = cells[static_cast<std::size_t>(column)];
+  const auto value = number_in(with_decimal_point(text).value_or(text), domain);
+  if (!value.ok())
+    return error(fmt::format("{} {}", shown(header.headings[static_cast<std::size_t>(column)]), value.error().message));
   return *value;
 }
 
@@ -263,7 +195,7 @@ Result<std::optional<paint::SpectrumReading>> CsvPaintReader::State::spectrum(co
   paint::SpectrumReading spectrum{geometry, columns[0].nm, columns[1].nm - columns[0].nm, {}};
   for (const WavelengthColumn& column : columns) {
     GONIO_ASSIGN(const double factor, number(column.at, Domain::kAny));
-    if (std::abs(factor) > 100 * kLargestFactor)
+    if (std::abs(factor) > kLargestReflectance)
       return error(fmt::format("{} is {}: write a reflectance, where 1, or 100 percent, is the perfect diffuser",
                                shown(header.headings[column.at]), shown(cells[column.at])));
     spectrum.factors.push_back(factor);
@@ -283,12 +215,12 @@ Result<paint::LabReading> CsvPaintReader::State::reading(const paint::Geometry& 
   }
   if (!measured) return row;
   const color::ViewingCondition& condition = open->measurement->condition;
-  if (const auto made = meter.make_factors(*measured, condition, stated ? std::optional(row.lab.L) : std::nullopt);
-      !made.ok())
-    return error(made.error().message);
+  for (double& factor : measured->factors) factor *= unit;
+  if (const auto checked = check_not_negative(measured->factors); !checked.ok()) return error(checked.error().message);
   if (!stated) {
     const auto integrated = meter.lab(*measured, condition);
     if (!integrated.ok()) return error(integrated.error().message);
+    note_uncovered(meter.held_share(), open->name, remarks);
     row.lab = *integrated;
     if (const auto checked = check_lab(row.lab); !checked.ok()) return error(checked.error().message);
   }
@@ -298,9 +230,12 @@ Result<paint::LabReading> CsvPaintReader::State::reading(const paint::Geometry& 
 
 Result<color::ViewingCondition> CsvPaintReader::State::condition() const {
   color::ViewingCondition condition;
-  if (header.column[kIlluminant] >= 0) condition.illuminant = text(header.column[kIlluminant]);
+  if (continues_sample()) condition = open->measurement->condition;
+  if (header.column[kIlluminant] >= 0 && !(continues_sample() && text(header.column[kIlluminant]).empty()))
+    condition.illuminant = text(header.column[kIlluminant]);
   if (condition.illuminant.empty()) return error("illuminant is empty: write D65, A or another one");
-  if (header.column[kObserver] < 0) return condition;
+  const bool same = continues_sample() && text(header.column[kObserver]).empty();
+  if (header.column[kObserver] < 0 || same) return condition;
   const auto observer = observer_in(without_degree_sign(text(header.column[kObserver])));
   if (!observer.ok()) return error("observer " + observer.error().message);
   condition.observer_deg = *observer;
@@ -311,6 +246,7 @@ Result<color::ViewingCondition> CsvPaintReader::State::condition() const {
 Result<paint::Paint> CsvPaintReader::State::described() const {
   paint::Paint paint;
   paint.name = text(header.column[kSample]);
+  if (paint.name.empty() && !header.is_wide()) paint.name = name_above;
   if (paint.name.empty()) return error("sample is empty: name every row");
   GONIO_ASSIGN(color::ViewingCondition viewing, condition());
   paint.measurement = paint::Measurement{std::move(viewing), std::string(text(header.column[kInstrument])), {}};
@@ -329,14 +265,36 @@ Result<paint::Paint> CsvPaintReader::State::described() const {
   return paint;
 }
 
+// Gives the paint of the first of its rows a name of its own. Where the table has dates, a paint that was measured on
+// several has a number behind its name.
+Result<void> CsvPaintReader::State::take_name(paint::Paint& paint) {
+  const std::string stated = paint.name, date(text(header.column[kDate]));
+  const auto before = names.note(date.empty() ? stated : stated + '\n' + date, records.line());
+  if (before)
+    return error(fmt::format("sample \"{}\" is already at line {}: {}", shown(stated), *before,
+                             header.is_wide() ? "rename one of them" : "put its rows together, or rename it"));
+  if (date.empty()) return {};
+  for (int k = 2; names.note(paint.name, records.line()); ++k) paint.name = fmt::format("{} ({})", stated, k);
+  if (paint.name != stated) remarks.note("samples with another date than before got a number", paint.name);
+  return {};
+}
+
 Result<std::optional<paint::Paint>> CsvPaintReader::State::next_wide() {
-  GONIO_ASSIGN(const bool found, records.next(cells));
-  if (!found) return std::optional<paint::Paint>();
+  if (cells.empty()) {
+    GONIO_ASSIGN(const bool found, records.next(cells));
+    if (!found) return std::optional<paint::Paint>();
+  }
+  auto paint = wide_paint();
+  cells.clear();
+  return paint;
+}
+
+// The paint of the row in `cells`.
+Result<std::optional<paint::Paint>> CsvPaintReader::State::wide_paint() {
   GONIO_TRY(check_width());
   GONIO_ASSIGN(paint::Paint paint, described());
-  if (const auto before = names.note(paint.name, records.line()))
-    return error(fmt::format("sample \"{}\" is already at line {}: rename one of them", shown(paint.name), *before));
-  for (const Triple& triple : header.triples) {
+  GONIO_TRY(take_name(paint));
+  for (const CsvTriple& triple : header.triples) {
     if (std::ranges::all_of(triple.column, [&](int column) { return cells[column].empty(); })) continue;
     GONIO_ASSIGN(const color::Lab value, lab(triple.column));
     paint.measurement->rows.push_back({triple.geometry, value});
@@ -385,14 +343,18 @@ Result<void> CsvPaintReader::State::agree(const paint::Paint& row) const {
 // Takes the row in `cells` into the open sample, or opens one with it.
 Result<void> CsvPaintReader::State::add_row() {
   GONIO_ASSIGN(paint::Paint row, described());
+  if (text(header.column[kSample]).empty())
+    remarks.note("rows without a name were taken for rows of the sample above", fmt::format("line {}", records.line()));
   if (open) {
     GONIO_TRY(agree(row));
-  } else if (const auto before = names.note(row.name, records.line())) {
-    skipped = row.name;
-    return error(fmt::format("sample \"{}\" is already at line {}: put its rows together, or rename it",
-                             shown(row.name), *before));
   } else {
+    const std::string stated = row.name;
+    if (const auto taken = take_name(row); !taken.ok()) {
+      skipped = stated;
+      return taken;
+    }
     open = std::move(row);
+    open_name = stated, open_date = text(header.column[kDate]);
     open_line = records.line();
     row_lines.clear();
     from_curve.clear();
@@ -415,6 +377,14 @@ Result<void> CsvPaintReader::State::add_row() {
   return {};
 }
 
+// Whether the row has a geometry that the open sample has, on another date.
+bool CsvPaintReader::State::is_measured_again() const {
+  if (header.column[kDate] < 0 || text(header.column[kDate]) == open_date) return false;
+  const auto geometry = paint::parse_geometry(without_degree_sign(text(header.column[kGeometry])));
+  return geometry.ok() && std::ranges::find(open->measurement->rows, *geometry, &paint::LabReading::geometry) !=
+                              open->measurement->rows.end();
+}
+
 // Collects rows until one of another sample comes. That row stays in `cells` for the next call.
 Result<std::optional<paint::Paint>> CsvPaintReader::State::next_long() {
   for (;;) {
@@ -424,8 +394,9 @@ Result<std::optional<paint::Paint>> CsvPaintReader::State::next_long() {
     }
     const bool at_end = cells.empty();
     const Result<void> width = at_end ? Result<void>() : check_width();
-    const std::string name = at_end || !width.ok() ? "" : std::string(text(header.column[kSample]));
-    if (open && width.ok() && name != open->name) {
+    if (!at_end && width.ok() && !text(header.column[kSample]).empty()) name_above = text(header.column[kSample]);
+    const std::string name = at_end || !width.ok() ? "" : name_above;
+    if (open && width.ok() && (name != open_name || at_end || is_measured_again())) {
       paint::Paint paint = *std::exchange(open, std::nullopt);
       line = open_line;
       drop_curve(*paint.measurement, from_curve);
@@ -447,8 +418,8 @@ Result<CsvPaintReader> CsvPaintReader::open(const std::string& path) {
   return open(std::move(input));
 }
 
-Result<CsvPaintReader> CsvPaintReader::open(InputFile input) {
-  auto state = std::make_unique<State>(std::move(input));
+Result<CsvPaintReader> CsvPaintReader::open(InputFile input, Scale scale) {
+  auto state = std::make_unique<State>(std::move(input), scale);
   GONIO_TRY(state->read_header());
   state->cells.clear();
   return CsvPaintReader(std::move(state));
@@ -459,6 +430,8 @@ CsvPaintReader::CsvPaintReader(CsvPaintReader&&) noexcept = default;
 CsvPaintReader::~CsvPaintReader() = default;
 
 Result<std::optional<paint::Paint>> CsvPaintReader::next() {
+  if (state_->scale_unknown) return std::optional<paint::Paint>();
+  if (!std::exchange(state_->begun, true)) GONIO_TRY(state_->begin_rows());
   return is_wide() ? state_->next_wide() : state_->next_long();
 }
 
@@ -472,6 +445,13 @@ bool CsvPaintReader::is_wide() const {
 
 const std::vector<std::string>& CsvPaintReader::warnings() const {
   return state_->warnings;
+}
+
+std::vector<std::string> CsvPaintReader::closing_warnings() const {
+  std::vector<std::string> lines;
+  for (const std::string& remark : state_->remarks.lines())
+    lines.push_back(fmt::format("{}: {}", state_->records.name(), remark));
+  return lines;
 }
 
 }  // namespace goniochrome::formats

@@ -19,15 +19,16 @@ namespace goniochrome::formats {
 class CsvPaintReader {
  public:
   // Opens `path` ("-" is standard input), or goes on with an open file, and reads the header. Error: file, line, and
-  // what a header is.
+  // what a header is. `scale` is that of spectra where the table does not state it; see ImportOptions.
   static Result<CsvPaintReader> open(const std::string& path);
-  static Result<CsvPaintReader> open(InputFile input);
+  static Result<CsvPaintReader> open(InputFile input, Scale scale = Scale::kUnstated);
   CsvPaintReader(CsvPaintReader&&) noexcept;
   ~CsvPaintReader();
 
   // The next paint, or nothing at the end. Where a column origin marks some rows of a paint as from its curve, and
   // others not, only the latter are read: the curve is not a second measurement. An error loses one row: next() goes on
-  // behind it with the other rows of the same sample. In a long table the rows of one sample must stand together.
+  // behind it with the other rows of the same sample. In a long table the rows of one sample must stand together, and
+  // all but the first may leave its name out. A table of spectra that does not state their scale is read twice.
   Result<std::optional<paint::Paint>> next();
 
   // The line (from 1) of the first row of the paint last returned.
@@ -36,6 +37,8 @@ class CsvPaintReader {
   bool is_wide() const;
   // What the header leaves open: columns that are not read, and a viewing condition that is assumed.
   const std::vector<std::string>& warnings() const;
+  // What was assumed of the rows so far.
+  std::vector<std::string> closing_warnings() const;
 
  private:
   struct State;

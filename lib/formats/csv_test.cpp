@@ -20,16 +20,16 @@ const std::string kHeader = "sample,geometry,illuminant,observer,L,a,b\n";
 struct Reading {
   std::vector<paint::Paint> paints;
   std::vector<int> lines;
-  std::vector<std::string> errors, warnings;
+  std::vector<std::string> errors, warnings, closing;
 };
 
-Reading reading_of(const std::string& path) {
+Reading reading_of(const std::string& path, Scale scale = Scale::kUnstated) {
   Reading reading;
   const auto named = [](const std::string& message) {
     const auto at = message.find("/p.csv");
     return at == std::string::npos ? message : message.substr(at + 1);
   };
-  auto reader = CsvPaintReader::open(path);
+  auto reader = CsvPaintReader::open(std::move(*InputFile::open(path)), scale);
   if (!reader.ok()) {
     reading.errors.push_back(named(reader.error().message));
     return reading;
@@ -41,15 +41,17 @@ Reading reading_of(const std::string& path) {
       reading.errors.push_back(named(paint.error().message));
       continue;
     }
-    if (!*paint) return reading;
+    if (!*paint) break;
     reading.paints.push_back(std::move(**paint));
     reading.lines.push_back(reader->line());
   }
+  for (const std::string& warning : reader->closing_warnings()) reading.closing.push_back(named(warning));
+  return reading;
 }
 
-Reading reading_of_text(const std::string& text) {
+Reading reading_of_text(const std::string& text, Scale scale = Scale::kUnstated) {
   const ScratchFolder folder;
-  return reading_of(folder.file("p.csv", text));
+  return reading_of(folder.file("p.csv", text), scale);
 }
 
 std::string written(const std::vector<paint::Paint>& paints, const CsvLayout& layout) {
@@ -177,7 +179,6 @@ TEST(PaintCsv, RefusesWhatIsNoHeader) {
   EXPECT_THAT(error("sample,L15,a15\n"), HasSubstr("the header has no column b45as15"));
   EXPECT_THAT(error("sample,L15,a15,b15,L45as15\n"), HasSubstr("two columns are named L45as15: keep one"));
   EXPECT_THAT(error("sample,sample,L15,a15,b15\n"), HasSubstr("two columns are named sample: keep one"));
-  EXPECT_THAT(error("\xff\xfes\0a\0"), HasSubstr("the table is UTF-16: save it as CSV UTF-8"));
   EXPECT_THAT(error(kHeader + "\"open\n"), HasSubstr("p.csv:2: a quotation mark is left open"));
 }
 
@@ -193,15 +194,14 @@ TEST(PaintCsv, WrongCellsLoseARowAndNameLineColumnValueAndRemedy) {
                                           "a,110,D65,4,1,2,3\n"
                                           "a,110,D65,10,1,5,2,3\n"
                                           "a,110,D65,10,1,2\n"
-                                          ",110,D65,10,1,2,3\n"
+                                          "\n"
                                           "b,15,D65,10,nan,2,3\n"
                                           "b,25,,10,1,2,3\n"
                                           "c\xe9,15,D65,10,1,2,3\n"
                                           "d,15,D65,10,1,2,3\n");
   EXPECT_THAT(
       reading.errors,
-      ElementsAre("p.csv:3: a is \"12,5\": write a decimal point", "p.csv:4: a is \"two\": write a number such as 12.5",
-                  "p.csv:5: L is empty: write a number",
+      ElementsAre("p.csv:4: a is \"two\": write a number such as 12.5", "p.csv:5: L is empty: write a number",
                   "p.csv:6: geometry \"45xx\" is not understood: write it like 45as15, 45as-15, r45as15, "
                   "45as25az90 or 15",
                   "p.csv:7: geometry 45as15 of sample \"a\" is already at line 2: keep one, or give the mean",
@@ -210,14 +210,16 @@ TEST(PaintCsv, WrongCellsLoseARowAndNameLineColumnValueAndRemedy) {
                   "p.csv:9: observer is \"4\": write 2 or 10 (degrees)",
                   "p.csv:10: the row has 8 cells and the header 7: write decimal points, or separate the cells by ;",
                   "p.csv:11: the row has 6 cells and the header 7: fill or remove cells",
-                  "p.csv:12: sample is empty: name every row", "p.csv:13: L is \"nan\": write a finite number",
+                  "p.csv:13: L is \"nan\": write a finite number",
                   "p.csv:14: illuminant is empty: write D65, A or another one",
                   "p.csv:15: a character is not valid UTF-8: save the table as CSV UTF-8"));
   // The good rows are there; a sample without any is not.
   ASSERT_EQ(reading.paints.size(), 2u);
   EXPECT_EQ(reading.paints[0].name, "a");
-  EXPECT_EQ(reading.paints[0].measurement->rows.size(), 1u);
+  EXPECT_EQ(reading.paints[0].measurement->rows.size(), 2u);
   EXPECT_EQ(reading.paints[1].name, "d");
+  EXPECT_THAT(reading_of_text(kHeader + ",15,D65,10,1,2,3\n").errors,
+              ElementsAre("p.csv:2: sample is empty: name every row"));
 }
 
 TEST(PaintCsv, DuplicateNamesAreToldWithBothLines) {
@@ -379,20 +381,179 @@ TEST(PaintCsv, ReadsSpectraAndTheirColors) {
   const Reading percent = reading_of_text(spectral_table("sample,geometry,L,a,b", "gray,45as25,15.487,0,0", 2));
   EXPECT_EQ(percent.paints.at(0).measurement->rows.at(0).lab.L, 15.487);
   EXPECT_NEAR(percent.paints.at(0).measurement->spectra.at(0).factors.at(3), 0.02, 1e-12);
-  EXPECT_THAT(reading_of_text(spectral_table("sample,geometry", "gray,45as25", 21)).errors,
-              ElementsAre(HasSubstr("write factors, where 1 is the perfect diffuser")));
-  const char* too_low = "a reflectance factor is -0.2: 0 is black, and noise goes no lower than -0.1";
+  const auto too_low = [](const char* value) {
+    return HasSubstr(fmt::format("a reflectance factor is {}: 0 is black, and noise goes no lower than -0.1", value));
+  };
   EXPECT_THAT(reading_of_text(spectral_table("sample,geometry", "gray,45as25", -0.2)).errors,
-              ElementsAre(HasSubstr(too_low)));
-  EXPECT_THAT(reading_of_text(spectral_table("sample,geometry,L,a,b", "gray,45as25,15.487,0,0", -20)).errors,
-              ElementsAre(HasSubstr(too_low)));
+              ElementsAre(too_low("-0.2")));
+  EXPECT_THAT(reading_of_text(spectral_table("sample,geometry", "gray,45as25", -20), Scale::kPercent).errors,
+              ElementsAre(too_low("-0.2")));
   EXPECT_THAT(reading_of_text(spectral_table("sample,geometry", "gray,45as25", -0.09)).errors, ElementsAre());
   EXPECT_THAT(reading_of_text("sample,geometry,400,410,420,430,450\nx,45as15,1,1,1,1,1\n").errors,
-              ElementsAre(HasSubstr("the column of 450 nm stands where that of 440 nm would")));
+              ElementsAre(HasSubstr("the wavelengths go from 400 to 430 nm by 10 nm, and then to 450 nm")));
+  EXPECT_THAT(reading_of_text("sample,geometry,400,410,410 nm,420,430\nx,45as15,1,1,1,1,1\n").errors,
+              ElementsAre(HasSubstr("two columns are of the wavelength 410 nm")));
   EXPECT_THAT(reading_of_text("sample,geometry,400,410,420,430,440\nx,45as15,,,,,\n").errors,
               ElementsAre(HasSubstr("the row has no spectrum, and the table no L, a and b")));
   EXPECT_THAT(reading_of_text(spectral_table("sample,geometry,L,a,b", "gray,45as25,50,0,0", 1e5)).errors,
               ElementsAre(HasSubstr("write a reflectance, where 1, or 100 percent, is the perfect diffuser")));
+}
+
+// A table of spectra, 400 to 700 nm, that are the same at all wavelengths.
+std::string flat_table(const std::vector<std::pair<std::string, double>>& rows, const std::string& unit = "") {
+  std::string text = "sample,geometry,illuminant,observer";
+  for (int nm = 400; nm <= 700; nm += 20) text += fmt::format(",{} nm{}", nm, unit);
+  for (const auto& [row, value] : rows) {
+    text += "\n" + row + ",D65,10";
+    for (int nm = 400; nm <= 700; nm += 20) text += fmt::format(",{}", value);
+  }
+  return text + "\n";
+}
+
+double lightness(double factor) {
+  return 116 * std::cbrt(factor) - 16;
+}
+
+// 6, 2 and 1.5 % were read as factors, L* 195, 130 and 117, because none of them is above 20.
+TEST(PaintCsv, TheScaleOfAFileIsFoundFromAllOfIt) {
+  const std::string dark = flat_table({{"dark,45as15", 6}, {"dark,45as45", 2}, {"dark,45as110", 1.5}});
+  for (const Scale scale : {Scale::kUnstated, Scale::kPercent}) {
+    const Reading read = reading_of_text(dark, scale);
+    ASSERT_THAT(read.errors, ElementsAre());
+    const auto& rows = read.paints.at(0).measurement->rows;
+    EXPECT_NEAR(rows.at(0).lab.L, lightness(0.06), 1e-9);
+    EXPECT_NEAR(rows.at(1).lab.L, lightness(0.02), 1e-9);
+    EXPECT_NEAR(rows.at(2).lab.L, lightness(0.015), 1e-9);
+    if (scale == Scale::kUnstated) {
+      EXPECT_THAT(read.closing, ElementsAre("p.csv: reflectances were read as percent: as factors, 1 of 1 paints would "
+                                            "reflect more than paint can; give --scale factor if not"));
+    }
+  }
+  EXPECT_THAT(reading_of_text(dark, Scale::kFactor).errors,
+              ElementsAre(HasSubstr("\"dark\" has 2 at 45as45, which is more than a paint reflects")));
+  const Reading factors = reading_of_text(flat_table({{"gray,45as15", 0.6}, {"gray,45as45", 0.2}}));
+  EXPECT_NEAR(factors.paints.at(0).measurement->rows.at(1).lab.L, lightness(0.2), 1e-9);
+  EXPECT_THAT(factors.closing, ElementsAre(HasSubstr("read as factors, where 1 is the perfect diffuser")));
+}
+
+// One value says nothing of the others, and a paint that is bright near to specular may be metal, or dark in percent.
+TEST(PaintCsv, RefusesAScaleThatMayBeEither) {
+  const std::string silver = flat_table({{"silver,45as15", 2.2}, {"silver,45as45", 0.45}, {"silver,45as110", 0.1}});
+  EXPECT_THAT(reading_of_text(silver).errors,
+              ElementsAre("p.csv: nothing says whether reflectances are percent or factors, and \"silver\" has 2.2 at "
+                          "45as15, which may be either: give --scale percent, or --scale factor where 1 is the perfect "
+                          "diffuser"));
+  EXPECT_THAT(reading_of_text(silver).paints, testing::IsEmpty());
+  const auto L = [&](Scale scale) {
+    const Reading read = reading_of_text(silver, scale);
+    return read.paints.empty() ? 0 : read.paints[0].measurement->rows.at(0).lab.L;
+  };
+  EXPECT_NEAR(L(Scale::kFactor), lightness(2.2), 1e-9);
+  EXPECT_NEAR(L(Scale::kPercent), lightness(0.022), 1e-9);
+  const std::string one_of_four =
+      flat_table({{"a,45as45", 0.3}, {"b,45as45", 0.5}, {"c,45as45", 25}, {"d,45as45", 0.4}});
+  EXPECT_THAT(reading_of_text(one_of_four).errors,
+              ElementsAre(HasSubstr("\"c\" has 25 at 45as45, which as a factor is more than paint reflects, unlike 3 "
+                                    "other paints")));
+  EXPECT_EQ(reading_of_text(one_of_four, Scale::kFactor).paints.size(), 4u);
+}
+
+TEST(PaintCsv, HearsTheScaleThatATableStates) {
+  const double wanted = lightness(0.009);
+  const std::string heading = flat_table({{"jet,45as15", 0.9}}, " [%]");
+  std::string row = flat_table({{"jet,45as15", 0.9}}), units = ",deg,,";
+  for (int nm = 400; nm <= 700; nm += 20) units += ",%";
+  row.insert(row.find('\n'), "\n" + units);
+  for (const std::string& text : {heading, row}) {
+    const Reading read = reading_of_text(text);
+    EXPECT_THAT(read.errors, ElementsAre());
+    EXPECT_THAT(read.closing, ElementsAre());
+    EXPECT_NEAR(read.paints.at(0).measurement->rows.at(0).lab.L, wanted, 1e-9);
+    EXPECT_THAT(reading_of_text(text, Scale::kFactor).closing, ElementsAre(HasSubstr("--scale has no effect")));
+  }
+  EXPECT_NEAR(reading_of_text(flat_table({{"white,45as45", 0.9}})).paints.at(0).measurement->rows.at(0).lab.L,
+              lightness(0.9), 1e-9);
+}
+
+// A heading of the L* column is no matter of the unit row: a first row that cannot be read is still told.
+TEST(PaintCsv, ARowOfUnitsHasNoNumbers) {
+  EXPECT_EQ(reading_of_text(kHeader + ",deg,,deg,-,CIELAB,-\nx,15,D65,10,1,2,3\n").paints.size(), 1u);
+  EXPECT_THAT(reading_of_text(kHeader + "x,15,D65,10,-,-,-\n").errors, ElementsAre(HasSubstr("p.csv:2: L is \"-\"")));
+  EXPECT_THAT(reading_of_text(kHeader + "x,15,D65,10,one,-,-\n").errors, ElementsAre(HasSubstr("L is \"one\"")));
+}
+
+TEST(PaintCsv, WavelengthsMayStandInAnyOrder) {
+  std::string head = "sample,geometry,illuminant,observer", cells = "A,45as15,D65,10", turned = head,
+              turned_cells = cells;
+  for (int k = 0; k <= 15; ++k) {
+    head += fmt::format(",{}nm", 400 + 20 * k), cells += fmt::format(",{}", 0.70 - 0.04 * k);
+    turned += fmt::format(",{}nm", 700 - 20 * k), turned_cells += fmt::format(",{}", 0.10 + 0.04 * k);
+  }
+  const Reading up = reading_of_text(head + "\n" + cells + "\n"),
+                down = reading_of_text(turned + "\n" + turned_cells + "\n");
+  EXPECT_THAT(down.errors, ElementsAre());
+  const paint::SpectrumReading &was = up.paints.at(0).measurement->spectra.at(0),
+                               &is = down.paints.at(0).measurement->spectra.at(0);
+  EXPECT_EQ(is.from_nm, 400);
+  ASSERT_EQ(is.factors.size(), was.factors.size());
+  for (std::size_t i = 0; i < was.factors.size(); ++i) EXPECT_NEAR(is.factors[i], was.factors[i], 1e-12);
+}
+
+TEST(PaintCsv, RefusesSpectraThatTheObserverDoesNotSee) {
+  EXPECT_THAT(reading_of_text("sample,geometry,400,410,420,430,440\nx,45as45,.1,.1,.1,.1,.9\n").errors,
+              ElementsAre(HasSubstr("p.csv:2: the spectrum goes from 400 to 440 nm and leaves out")));
+  EXPECT_THAT(reading_of_text("sample,geometry,900,920,940,960,980\nx,45as45,.5,.5,.5,.5,.5\n").errors,
+              ElementsAre(HasSubstr("from 900 to 980 nm and leaves out 100 % of what the observer sees")));
+  const Reading narrow = reading_of_text("sample,geometry,420,485,550,615,680\nx,45as45,.5,.5,.5,.5,.5\n");
+  EXPECT_THAT(narrow.closing, testing::Contains(HasSubstr("spectra leave out 6 % of what the observer sees")));
+}
+
+TEST(PaintCsv, ReadsTheTextsOfSpreadsheets) {
+  const std::string body = "RM331,45as-15,A,2,41.87,-45.99,-21.5\nRM331,45,A,2,1,2,3\nb,45as15,A,2,4,5,6\n";
+  for (const bool little : {true, false}) {
+    std::string wide = little ? "\xff\xfe" : "\xfe\xff";
+    for (const char c : kHeader + body) wide += little ? std::string{c, '\0'} : std::string{'\0', c};
+    expect_two_paints(reading_of_text(wide));
+  }
+  std::string semicolons = kHeader + body;
+  for (char& c : semicolons) c = c == ',' ? ';' : c == '.' ? ',' : c;
+  expect_two_paints(reading_of_text("sep=;\r\n" + semicolons));
+  expect_two_paints(reading_of_text("\xef\xbb\xbfsep=,\n" + kHeader + body));
+  expect_two_paints(reading_of_text(
+      kHeader + "RM331,45as-15,A,2,\"41,87\",\"-45,99\",\"-21,5\"\nRM331,45,A,2,1,2,3\nb,45as15,A,2,4,5,6\n"));
+  expect_two_paints(reading_of_text(kHeader + "\n,,,,,,\n" + body + "\n,,,,,,\n , ,,,,,\n"));
+  expect_two_paints(reading_of_text(kHeader + "RM331,45as-15\xc2\xa0 ,A,2,\xc2\xa0 41.87,\xe2\x88\x92" +
+                                    "45.99,-21.5\nRM331\xc2\xa0,45 ,A,2,1,2,3\n"
+                                    "b,45as15,A,2,4,5,6\n"));
+  EXPECT_THAT(reading_of_text(kHeader + "x,45as\xc2\xa0"
+                                        "15x,A,2,1,2,3\n")
+                  .errors,
+              ElementsAre(HasSubstr("geometry \"45as<U+00A0>15x\"")));
+}
+
+TEST(PaintCsv, ANameStandsForTheRowsBelowIt) {
+  const Reading read =
+      reading_of_text(kHeader + "RM331,45as-15,A,2,41.87,-45.99,-21.5\n,45,,,1,2,3\nb,45as15,A,2,4,5,6\n");
+  expect_two_paints(read);
+  EXPECT_THAT(read.closing,
+              ElementsAre(HasSubstr("rows without a name were taken for rows of the sample above (line 3)")));
+}
+
+TEST(PaintCsv, DatesTellMeasurementsOfOneNameApart) {
+  const std::string head = "sample,DateTime,geometry,illuminant,observer,L,a,b\n";
+  const Reading read = reading_of_text(head +
+                                       "x,2024-01-01T10:00,15,D65,10,1,2,3\nx,2024-01-01T10:01,45,D65,10,1,2,3\n"
+                                       "y,2024-01-01,15,D65,10,1,2,3\nx,2024-01-02,15,D65,10,4,5,6\n"
+                                       "x,2024-01-03,15,D65,10,7,8,9\n");
+  EXPECT_THAT(read.errors, ElementsAre());
+  std::vector<std::string> names;
+  for (const paint::Paint& paint : read.paints) names.push_back(paint.name);
+  EXPECT_THAT(names, ElementsAre("x", "y", "x (2)", "x (3)"));
+  EXPECT_EQ(read.paints[0].measurement->rows.size(), 2u);
+  EXPECT_THAT(read.closing,
+              ElementsAre(HasSubstr("samples with another date than before got a number (x (2) and 1 more)")));
+  EXPECT_THAT(reading_of_text(head + "x,1,15,D65,10,1,2,3\ny,1,15,D65,10,1,2,3\nx,1,45,D65,10,1,2,3\n").errors,
+              ElementsAre(HasSubstr("sample \"x\" is already at line 2")));
 }
 
 TEST(PaintCsv, ReadsTheHeadingsOfInstruments) {
@@ -427,6 +588,24 @@ TEST(PaintCsv, ReadsDegreeSignsInCellsAndHeadings) {
   }
   EXPECT_THAT(reading_of_text("sample,geometry,illuminant,observer,L,a,b\nrot,45as15,D65,12\xc2\xb0,1,2,3\n").errors,
               ElementsAre(HasSubstr("write 2 or 10 (degrees)")));
+}
+
+// An export of an instrument's program: percent, blanks behind geometries, dates. One of 240 panels was measured again.
+TEST(PaintCsv, ReadsTheExportOfAnInstrumentRealData) {
+  const char* data = std::getenv("GONIOCHROME_DATA");
+  if (!data) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
+  const Reading read = reading_of(std::string(data) + "/instrument/refinish-panels.csv");
+  EXPECT_THAT(read.errors, ElementsAre());
+  EXPECT_EQ(read.paints.size(), 241u);
+  EXPECT_THAT(read.closing, testing::Contains(HasSubstr("read as percent")));
+  double highest = 0, lowest = 100;
+  for (const paint::Paint& paint : read.paints)
+    for (const paint::LabReading& row : paint.measurement->rows)
+      highest = std::max(highest, row.lab.L), lowest = std::min(lowest, row.lab.L);
+  EXPECT_LT(highest, 100);
+  EXPECT_GT(highest, 90);
+  EXPECT_GT(lowest, 0);
+  EXPECT_LT(lowest, 5);
 }
 
 TEST(PaintCsv, ReadsMeasuredPaintsRealData) {

@@ -5,11 +5,12 @@
 #include <deque>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "base/angles.h"
 #include "base/text.h"
-#include "color/spectrum.h"
+#include "formats/internal/cxf_paints.h"
 #include "formats/internal/spectral_rows.h"
 #include "formats/internal/xml_stream.h"
 
@@ -18,31 +19,6 @@ namespace goniochrome::formats {
 namespace {
 
 constexpr std::string_view kNamespace = "http://colorexchangeformat.com/CxF3-core";
-constexpr double kSmallestStep_nm = 1, kLargestStep_nm = 20;  // of the schema
-
-// One value of an object, as it stands: Lab, or a spectrum to become one.
-struct RawColor {
-  std::string specification;
-  int line = 0;
-  color::Lab lab;
-  std::vector<double> spectrum;
-  double first_nm = 0;  // of the spectrum, where it says so itself
-};
-
-struct RawObject {
-  paint::Paint paint;
-  std::string joined;  // the paint whose angle this object is: our tag
-  std::vector<RawColor> colors;
-  bool bad = false;  // it had an error that is passed over
-};
-
-struct Specification {
-  color::ViewingCondition condition{"", 0};
-  std::vector<paint::Geometry> angles;
-  std::string other;  // a geometry without aspecular angles
-  std::string instrument;
-  double first_nm = 0, step_nm = 0;
-};
 
 // The observer (deg) that a word of CxF3 means; 0 for none.
 int observer_of(std::string_view word) {
@@ -76,7 +52,6 @@ class CxfHandler final : public XmlHandler {
     if (path_.empty()) GONIO_TRY(check_root(tag));
     path_.emplace_back(tag.space == kNamespace ? tag.name : "");
     text_.clear();
-    if (pass_ == Pass::kSpecifications && inside("ObjectCollection")) return {};
     const auto attribute = [&](std::string_view name) -> std::string {
       for (const XmlAttribute& a : tag.attributes)
         if (a.name == name && a.space.empty()) return std::string(a.value);
@@ -91,12 +66,20 @@ class CxfHandler final : public XmlHandler {
         own_name = fmt::format("line {}", tag.line);
         remarks_.note("objects with neither Name nor Id are called by their line", own_name);
       }
-    } else if (in("ColorValues", "ColorCIELab") || in("ColorValues", "ColorCIELCh") ||
-               in("ColorValues", "ReflectanceSpectrum")) {
-      color_ = {attribute("ColorSpecification"), tag.line, {}, {}, 0};
+    } else if (path_.size() >= 2 && path_[path_.size() - 2] == "ColorValues" && object_) {
+      const auto kind = kind_of(path_.back());
+      if (!kind) {
+        if (std::ranges::find(object_->unread, path_.back()) == object_->unread.end())
+          object_->unread.push_back(path_.back());
+        return {};
+      }
+      color_ = {.kind = *kind, .specification = attribute("ColorSpecification")};
       if (const std::string first = attribute("StartWL"); !first.empty()) {
         GONIO_ASSIGN(color_.first_nm, number("StartWL", first));
       }
+    } else if (in("CustomSpectrum", "SpectralPoint")) {
+      GONIO_ASSIGN(const double nm, number("WL", attribute("WL")));
+      color_.nm.push_back(nm);
     } else if (in("PhysicalAttributes", "Gloss")) {
       gloss_method_ = attribute("Method");
     } else if (path_.back() == "TagCollection") {
@@ -128,15 +111,19 @@ class CxfHandler final : public XmlHandler {
     const std::string content(trimmed(text_));
     text_.clear();
     const bool of_object = inside("Object") && object_;
-    const auto result = of_object        ? end_in_object(content)
-                        : specification_ ? end_in_specification(content)
-                                         : Result<void>();
+    const auto result = of_object && pass_ == Pass::kSpecifications ? survey(content)
+                        : of_object                                 ? end_in_object(content)
+                        : specification_                            ? end_in_specification(content)
+                                                                    : Result<void>();
     if (!result.ok() && keep_going_ && of_object) {
       skipped_.push_back(result.error().message);
       object_->bad = true;
     }
     if (object_ && in("ObjectCollection", "Object")) {
-      if (!object_->bad) objects_.push_back(std::move(*object_));
+      if (pass_ == Pass::kSpecifications)
+        note_spectra();
+      else if (!object_->bad)
+        objects_.push_back(std::move(*object_));
       object_.reset();
     }
     path_.pop_back();
@@ -145,11 +132,21 @@ class CxfHandler final : public XmlHandler {
 
   Result<void> invalid(int, const std::string&) override { return {}; }
 
+  // Tells `judge` of all spectra, once every specification is known.
+  void judge_spectra(ScaleJudge& judge) const {
+    for (const SeenSpectrum& seen : spectra_) {
+      const auto found = specifications_.find(*seen.specification);
+      if (found == specifications_.end() || found->second.angles.empty()) continue;
+      const std::vector<paint::Geometry>& angles = found->second.angles;
+      judge.add(names_[seen.object], angles[std::min(seen.number, angles.size() - 1)], {seen.mean}, seen.L);
+    }
+  }
+
   // What was read since this was last called.
-  std::vector<RawObject> take_objects() { return std::exchange(objects_, {}); }
+  std::vector<CxfObject> take_objects() { return std::exchange(objects_, {}); }
   std::vector<std::string> take_skipped() { return std::exchange(skipped_, {}); }
   std::size_t objects_seen() const { return objects_seen_; }
-  const std::map<std::string, Specification>& specifications() const { return specifications_; }
+  const std::map<std::string, CxfSpecification>& specifications() const { return specifications_; }
   Remarks& remarks() { return remarks_; }
 
  private:
@@ -173,19 +170,54 @@ class CxfHandler final : public XmlHandler {
 
   Result<void> check_root(const XmlTag& tag) const {
     if (tag.name == "CxF" && tag.space == kNamespace) return {};
-    if (tag.name == "CxF") return error(fmt::format("is CxF of another version (\"{}\"): export CxF3", tag.space));
+    if (lower(tag.name) == "cxf")
+      return error(tag.space.empty()
+                       ? fmt::format("is CxF without a namespace, as versions before CxF3 are: export CxF3, "
+                                     "whose namespace is {}",
+                                     kNamespace)
+                       : fmt::format("is CxF of another version (\"{}\"): export CxF3", tag.space));
     return error(fmt::format("begins with <{}>, not with <CxF>: this is no CxF file", tag.name));
   }
 
   void own_tag(const std::string& name, const std::string& value) {
-    RawObject& object = *object_;
+    CxfObject& object = *object_;
     if (name == "paint") object.joined = value;
     if (name == "code") object.paint.code = value;
     if (name == "class") object.paint.paint_class = paint::paint_class_of(value).value_or(paint::PaintClass::kUnknown);
   }
 
+  static std::optional<CxfColor::Kind> kind_of(std::string_view element) {
+    if (element == "ColorCIELab" || element == "ColorCIELCh") return CxfColor::Kind::kLab;
+    if (element == "ColorCIEXYZ") return CxfColor::Kind::kXyz;
+    if (element == "ReflectanceSpectrum" || element == "CustomSpectrum") return CxfColor::Kind::kSpectrum;
+    return std::nullopt;
+  }
+
+  // The first pass reads values to judge their scale. What is wrong with an object is told by the second.
+  Result<void> survey(const std::string& content) {
+    if (!object_->bad && !end_in_object(content).ok()) object_->bad = true;
+    return {};
+  }
+
+  // Keeps the means of the object's spectra, with the L* beside them.
+  void note_spectra() {
+    if (object_->bad) return;
+    std::map<std::string, std::size_t> numbers;  // per specification
+    for (const CxfColor& color : object_->colors) {
+      if (color.kind != CxfColor::Kind::kSpectrum) continue;
+      double sum = 0;
+      for (const double value : color.spectrum) sum += value;
+      std::optional<double> L;
+      for (const CxfColor& other : object_->colors)
+        if (other.kind == CxfColor::Kind::kLab && other.specification == color.specification) L = other.lab.L;
+      spectra_.push_back({names_.size(), &*names_of_specifications_.insert(color.specification).first,
+                          numbers[color.specification]++, sum / static_cast<double>(color.spectrum.size()), L});
+    }
+    if (!numbers.empty()) names_.push_back(object_->joined.empty() ? object_->paint.name : object_->joined);
+  }
+
   Result<void> end_in_object(const std::string& content) {
-    RawObject& object = *object_;
+    CxfObject& object = *object_;
     if (in("ColorCIELab", "L")) return take(color_.lab.L, "L", content);
     if (in("ColorCIELab", "A")) return take(color_.lab.a, "A", content);
     if (in("ColorCIELab", "B")) return take(color_.lab.b, "B", content);
@@ -200,6 +232,19 @@ class CxfHandler final : public XmlHandler {
     if (in("ColorValues", "ColorCIELab") || in("ColorValues", "ColorCIELCh"))
       if (const auto checked = check_lab(color_.lab); !checked.ok()) return error(checked.error().message);
     if (in("ColorValues", "ColorCIELab")) object.colors.push_back(color_);
+    if (in("ColorCIEXYZ", "X")) return take(color_.xyz.X, "X", content);
+    if (in("ColorCIEXYZ", "Y")) return take(color_.xyz.Y, "Y", content);
+    if (in("ColorCIEXYZ", "Z")) return take(color_.xyz.Z, "Z", content);
+    if (in("ColorValues", "ColorCIEXYZ")) object.colors.push_back(color_);
+    if (in("CustomSpectrum", "SpectralPoint")) {
+      GONIO_ASSIGN(const double value, number("SpectralPoint", content));
+      color_.spectrum.push_back(value);
+    }
+    if (in("ColorValues", "CustomSpectrum")) {
+      if (color_.spectrum.size() < 2) return error("CustomSpectrum has fewer than two points: leave it out");
+      if (color_.nm.front() > color_.nm.back()) std::ranges::reverse(color_.nm), std::ranges::reverse(color_.spectrum);
+      object.colors.push_back(color_);
+    }
     if (in("ColorValues", "ReflectanceSpectrum")) {
       for (std::size_t i = 0; i < content.size();) {
         const auto end = std::min(content.find_first_of(" \t\r\n", i), content.size());
@@ -227,7 +272,7 @@ class CxfHandler final : public XmlHandler {
   }
 
   Result<void> end_in_specification(const std::string& content) {
-    Specification& specification = *specification_;
+    CxfSpecification& specification = *specification_;
     if (in("TristimulusSpec", "Illuminant"))
       specification.condition.illuminant =
           content == "Custom" && !custom_illuminant_.empty() ? custom_illuminant_ : content;
@@ -256,6 +301,8 @@ class CxfHandler final : public XmlHandler {
     if (in("GeometryChoice", "UnknownGeometry")) specification.other = "unknown";
     if (in("GeometryChoice", "EmissiveMode")) specification.other = "emissive";
     if (in("Device", "Model")) specification.instrument = content;
+    if (in("MeasurementSpec", "MeasurementType") && (content.ends_with("ransmittance") || content.ends_with("missive")))
+      specification.unlike_reflectance = content;
     if (in("ColorSpecificationCollection", "ColorSpecification")) specification_ = nullptr;
     return {};
   }
@@ -288,178 +335,41 @@ class CxfHandler final : public XmlHandler {
   std::string text_;
   bool own_tags_ = false;
 
-  RawColor color_;
+  CxfColor color_;
   double chroma_ = 0, hue_deg_ = 0, measurement_deg_ = 0;
   std::string gloss_method_, custom_illuminant_, notation_;
   paint::Geometry angle_;
-  Specification* specification_ = nullptr;  // the one that is open
+  CxfSpecification* specification_ = nullptr;  // the one that is open
 
-  std::optional<RawObject> object_;  // the one that is open
-  std::vector<RawObject> objects_;
+  std::optional<CxfObject> object_;  // the one that is open
+  std::vector<CxfObject> objects_;
   std::size_t objects_seen_ = 0;
-  std::map<std::string, Specification> specifications_;
+  std::map<std::string, CxfSpecification> specifications_;
+  // Of the first pass: what a spectrum is judged by. A few bytes of each spectrum suffice.
+  struct SeenSpectrum {
+    std::size_t object;
+    const std::string* specification;
+    std::size_t number;  // of the object's spectra under this specification
+    double mean;
+    std::optional<double> L;
+  };
+  std::vector<SeenSpectrum> spectra_;
+  std::vector<std::string> names_;  // of objects with spectra
+  std::set<std::string> names_of_specifications_;
   Remarks remarks_;
   std::vector<std::string> skipped_;
 };
 
-// Turns raw objects into paints.
-class CxfResolver {
- public:
-  CxfResolver(const std::map<std::string, Specification>& specifications, Remarks& remarks,
-              const ImportOptions& options)
-      : specifications_(specifications), options_(options), remarks_(remarks) {}
-
-  Result<void> add(RawObject object) {
-    if (object.joined.empty() || object.joined != joined_) {
-      finish();
-      open_.emplace().paint = std::move(object.paint);
-      if (!object.joined.empty()) open_->paint.name = object.joined;
-    }
-    joined_ = object.joined;
-    std::map<std::string, std::size_t> lab_values, spectra, used, kept;  // per specification
-    for (const RawColor& color : object.colors) ++(color.spectrum.empty() ? lab_values : spectra)[color.specification];
-    for (const RawColor& color : object.colors) {
-      const bool spectral = !color.spectrum.empty();
-      if (spectral && !is_sound(color)) continue;
-      if (spectral) keep_spectrum(color, spectra[color.specification], kept[color.specification]++);
-      if (spectral && lab_values.contains(color.specification)) continue;  // the file's own Lab is what it says
-      const std::size_t values = (spectral ? spectra : lab_values)[color.specification];
-      GONIO_TRY(place(color, values, used[color.specification]++));
-    }
-    return {};
-  }
-
-  void finish() {
-    if (!open_) return;
-    paint::Paint& paint = open_->paint;
-    if (open_->complete(options_, remarks_)) {
-      paint.name = names_.own(paint.name, remarks_);
-      paints_.push_back(std::move(paint));
-    } else if (open_->readings.empty()) {
-      remarks_.note("objects without a color at an angle were left out", paint.name);
-    }
-    open_.reset();
-  }
-
-  // The paints that are complete, in order.
-  std::deque<paint::Paint>& paints() { return paints_; }
-
- private:
-  static double first_nm_of(const RawColor& color, const Specification& specification) {
-    return color.first_nm > 0 ? color.first_nm : specification.first_nm;
-  }
-
-  // Whether a spectrum is one; else it is named. Where its specification is missing or has no angles, place() tells it.
-  bool is_sound(const RawColor& color) {
-    const auto found = specifications_.find(color.specification);
-    if (found == specifications_.end() || found->second.angles.empty()) return true;
-    std::string fault;
-    if (first_nm_of(color, found->second) <= 0 || found->second.step_nm <= 0)
-      fault = "spectra without a WavelengthRange were left out";
-    else if (color.spectrum.size() < 2)
-      fault = "spectra of a single wavelength were left out";
-    else if (found->second.step_nm < kSmallestStep_nm || found->second.step_nm > kLargestStep_nm)
-      fault = fmt::format("spectra in steps of {} nm were left out: CxF3 has steps of 1, 2, 5, 10 or 20 nm",
-                          shortest(found->second.step_nm));
-    else if (std::ranges::any_of(color.spectrum, [](double factor) { return factor > kLargestFactor; }))
-      fault = fmt::format("spectra with factors beyond {} were left out: 1 is the perfect diffuser", kLargestFactor);
-    else if (std::ranges::any_of(color.spectrum, [](double factor) { return factor <= kSmallestFactor; }))
-      fault = fmt::format("spectra with factors of {} or less were left out: 0 is black", kSmallestFactor);
-    if (!fault.empty()) remarks_.note(fault, open_->paint.name);
-    return fault.empty();
-  }
-
-  // The k-th of n spectra under one specification, at the angles that place() gives it.
-  void keep_spectrum(const RawColor& color, std::size_t n, std::size_t k) {
-    const auto found = specifications_.find(color.specification);
-    if (found == specifications_.end()) return;
-    const Specification& specification = found->second;
-    if (n != 1 && n != specification.angles.size()) return;
-    const double first_nm = first_nm_of(color, specification);
-    for (std::size_t i = 0; i < specification.angles.size(); ++i)
-      if (n == 1 || i == k)
-        open_->spectra.push_back({specification.angles[i], first_nm, specification.step_nm, color.spectrum});
-  }
-
-  // The k-th of n values under one specification: n angles take one each, a single value stands for all.
-  Result<void> place(const RawColor& color, std::size_t n, std::size_t k) {
-    const auto found = specifications_.find(color.specification);
-    if (found == specifications_.end()) {
-      remarks_.note(
-          fmt::format("color specification \"{}\" is not in the file: its values were left out", color.specification),
-          open_->paint.name);
-      return {};
-    }
-    const Specification& specification = found->second;
-    const std::vector<paint::Geometry>& angles = specification.angles;
-    if (angles.empty()) {
-      remarks_.note(fmt::format("values of {} geometry have no aspecular angle and were left out",
-                                specification.other.empty() ? "unstated" : specification.other),
-                    open_->paint.name);
-      return {};
-    }
-    if (n != 1 && n != angles.size()) {
-      remarks_.note(fmt::format("{} values under a specification of {} angles were left out", n, angles.size()),
-                    open_->paint.name);
-      return {};
-    }
-    if (n == 1 && angles.size() > 1) remarks_.note("one value stands for several angles", open_->paint.name);
-    const color::ViewingCondition condition = stated(specification);
-    color::Lab lab = color.lab;
-    if (!color.spectrum.empty()) {
-      GONIO_ASSIGN(const auto integrated, integrate(color, specification, condition));
-      if (!integrated) return {};
-      lab = *integrated;
-    }
-    for (std::size_t i = 0; i < angles.size(); ++i)
-      if (n == 1 || i == k) open_->readings.push_back({condition, {angles[i], lab}});
-    if (open_->instrument.empty()) open_->instrument = specification.instrument;
-    return {};
-  }
-
-  color::ViewingCondition stated(const Specification& specification) {
-    const bool silent = specification.condition.illuminant.empty() || specification.condition.observer_deg == 0;
-    const color::ViewingCondition condition = completed(specification.condition, options_, {"D65", 10});
-    if (silent && (options_.illuminant.empty() || options_.observer_deg == 0))
-      remarks_.note(
-          fmt::format("illuminant or observer is not stated: taken as {}/{}; give --illuminant and --observer if not",
-                      condition.illuminant, condition.observer_deg),
-          open_->paint.name);
-    return condition;
-  }
-
-  Result<std::optional<color::Lab>> integrate(const RawColor& color, const Specification& specification,
-                                              const color::ViewingCondition& condition) {
-    const double first_nm = first_nm_of(color, specification);
-    std::vector<double> nm;
-    for (std::size_t i = 0; i < color.spectrum.size(); ++i)
-      nm.push_back(first_nm + specification.step_nm * static_cast<double>(i));
-    const auto meter = color::SpectralColorimeter::make(nm, condition);
-    if (!meter) {
-      remarks_.note("spectra were left out: " + meter.error().message, open_->paint.name);
-      return std::optional<color::Lab>();
-    }
-    return std::optional(meter->lab(color.spectrum));
-  }
-
-  const std::map<std::string, Specification>& specifications_;
-  const ImportOptions& options_;
-  Remarks& remarks_;
-  UniqueNames names_;
-  std::optional<OpenPaint> open_;
-  std::string joined_;
-  std::deque<paint::Paint> paints_;
-};
-
 }  // namespace
 
-// The name of the root element decides. Comments and the declaration may stand before it, and it may have a prefix.
+// The name of the root element decides. Comments and the declaration may stand before it, and it may have a prefix;
+// versions before CxF3 write it in capitals too.
 bool looks_cxf(std::string_view head) {
   for (std::size_t at = 0; (at = head.find('<', at)) != std::string_view::npos; ++at) {
     std::string_view name = head.substr(at + 1);
     if (name.starts_with('?') || name.starts_with('!')) continue;
     name = name.substr(0, name.find_first_of(" \t\r\n/>"));
-    return name.substr(name.find(':') + 1) == "CxF";
+    return lower(name.substr(name.find(':') + 1)) == "cxf";
   }
   return false;
 }
@@ -476,7 +386,7 @@ struct CxfReader::State {
     const auto more = stream.advance();
     ended = !more.ok() || !*more;
     if (!more.ok()) return more.error();
-    for (RawObject& object : objects.take_objects()) GONIO_TRY(resolver.add(std::move(object)));
+    for (CxfObject& object : objects.take_objects()) resolver.add(std::move(object));
     for (std::string& message : objects.take_skipped()) skipped.push_back(std::move(message));
     if (!ended) return {};
     resolver.finish();
@@ -499,8 +409,14 @@ CxfReader::~CxfReader() = default;
 Result<CxfReader> CxfReader::open(InputFile input, const ImportOptions& options) {
   GONIO_ASSIGN(InputFile first, input.second_reading());
   auto state = std::make_unique<State>(std::move(input), options);
+  const std::string name = first.name();
   XmlStream stream(std::move(first), nullptr, state->specifications);
   GONIO_TRY(stream.finish());
+  ScaleJudge judge;
+  state->specifications.judge_spectra(judge);
+  const auto unit = judge.unit_of_factors("CxF3", options.scale, state->objects.remarks());
+  if (!unit.ok()) return input_error("{}: {}", name, unit.error().message);
+  state->resolver.set_unit(*unit);
   return CxfReader(std::move(state));
 }
 

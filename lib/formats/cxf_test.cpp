@@ -212,9 +212,9 @@ TEST_F(Cxf, SpectraThatAreNoneAreNamedAndTheirLabIsKept) {
   for (const Case& wrong :
        {Case{"0.1 0.2", "", "without a WavelengthRange"},
         {"0.1 0.2", "<WavelengthRange StartWL=\"400\" Increment=\"0\"/>", "without a WavelengthRange"},
-        {"0.1 0.2", "<WavelengthRange StartWL=\"400\" Increment=\"-10\"/>", "without a WavelengthRange"},
+        {"0.1 0.2", "<WavelengthRange StartWL=\"400\" Increment=\"-10\"/>", "of a negative Increment"},
         {"0.1", range.c_str(), "of a single wavelength"},
-        {"0.1 1e308", range.c_str(), "with factors beyond 20 were left out"},
+        {"0.1 1e308", range.c_str(), "with factors beyond 2000 were left out"},
         {"0.1 -21", range.c_str(), "with factors of -0.1 or less were left out"},
         {"0.1 -0.1", range.c_str(), "with factors of -0.1 or less were left out"},
         {"0.1 0.2", "<WavelengthRange StartWL=\"400\" Increment=\"1000\"/>", "in steps of 1000 nm were left out"},
@@ -238,6 +238,83 @@ TEST_F(Cxf, SpectraThatAreNoneAreNamedAndTheirLabIsKept) {
         << step;
   for (const bool with_lab : {false, true})
     EXPECT_THAT(refusal(text(" ", range, with_lab)), HasSubstr("ReflectanceSpectrum is empty: write its factors"));
+}
+
+std::string flat(const std::string& specification, const std::string& value) {
+  std::string text = "<ReflectanceSpectrum ColorSpecification=\"" + specification + "\">";
+  for (int nm = 400; nm <= 700; nm += 10) text += " " + value;
+  return text + "</ReflectanceSpectrum>";
+}
+std::string measured_at(const std::string& id, int aspecular) {
+  return specification(id, angles({{aspecular, ""}}), "<WavelengthRange StartWL=\"400\" Increment=\"10\"/>");
+}
+
+// CxF3 defines factors: 2 at 15 deg and 1 at 45 deg was L* 130 and 100, and no paint is that bright at both.
+TEST_F(Cxf, RefusesFactorsThatNoPaintHas) {
+  const auto text = [](const char* near, const char* far) {
+    return cxf(object("dark", flat("a", near) + flat("b", far)), measured_at("a", 15) + measured_at("b", 45));
+  };
+  EXPECT_THAT(
+      refusal(text("2.0", "1.0")),
+      HasSubstr("CxF3 says that reflectances are factors, where 1 is the perfect diffuser, and \"dark\" has 1 at "
+                "45as45, which is more than a paint reflects: give --scale percent"));
+  const auto percent = good(text("2.0", "1.0"), {"", 0, false, Scale::kPercent});
+  EXPECT_NEAR(percent.paints.at(0).measurement->rows.at(0).lab.L, 116 * std::cbrt(0.02) - 16, 1e-9);
+  const auto silver = good(text("2.2", "0.45"));
+  EXPECT_NEAR(silver.paints.at(0).measurement->rows.at(0).lab.L, 116 * std::cbrt(2.2) - 16, 1e-9);
+  EXPECT_THAT(silver.warnings, IsEmpty());
+  // The L* beside it says more than the schema.
+  const auto beside =
+      good(cxf(object("dark", flat("a", "2.0") + lab("a", "<L>15.487</L><A>0</A><B>0</B>")), measured_at("a", 15)));
+  EXPECT_NEAR(beside.paints.at(0).measurement->spectra.at(0).factors.at(0), 0.02, 1e-12);
+  EXPECT_THAT(beside.warnings, Contains(HasSubstr("read as percent, as the L* beside them says")));
+}
+
+TEST_F(Cxf, ReadsXyzAndSpectraOfPoints) {
+  const std::string xyz = "<ColorCIEXYZ ColorSpecification=\"a\"><X>20</X><Y>21</Y><Z>22</Z></ColorCIEXYZ>";
+  const auto condition = "<Illuminant>D65</Illuminant><Observer>10_Degree</Observer>";
+  const std::string d65 = specification("a", angles({{15, ""}}), "", condition);
+  const auto gray = good(cxf(object("gray", xyz), d65));
+  const color::Lab wanted = color::lab_from_xyz({.20, .21, .22}, *color::white_point({"D65", 10}));
+  EXPECT_EQ(gray.paints.at(0).measurement->rows.at(0).lab, wanted);
+  EXPECT_THAT(gray.warnings, IsEmpty());
+  const auto both = good(cxf(object("gray", xyz + lab("a")), d65));
+  EXPECT_EQ(both.paints.at(0).measurement->rows.at(0).lab.L, 50);
+  const auto points = [](std::initializer_list<int> nm) {
+    std::string text = "<CustomSpectrum ColorSpecification=\"a\">";
+    for (const int at : nm) text += fmt::format("<SpectralPoint WL=\"{}\">0.3</SpectralPoint>", at);
+    return text + "</CustomSpectrum>";
+  };
+  const auto even = good(cxf(object("e", points({700, 600, 500, 400})), d65));
+  EXPECT_NEAR(even.paints.at(0).measurement->rows.at(0).lab.L, 116 * std::cbrt(0.3) - 16, 1e-9);
+  EXPECT_EQ(even.paints.at(0).measurement->spectra.at(0).from_nm, 400);
+  const auto uneven = good(cxf(object("u", points({400, 450, 600, 700})), d65));
+  EXPECT_NEAR(uneven.paints.at(0).measurement->rows.at(0).lab.L, 116 * std::cbrt(0.3) - 16, 1e-9);
+  EXPECT_THAT(uneven.paints.at(0).measurement->spectra, IsEmpty());
+  EXPECT_THAT(uneven.warnings, ElementsAre(HasSubstr("the points of spectra in unequal steps are not kept")));
+}
+
+// What is not read is named by what it is.
+TEST_F(Cxf, NamesWhatItDoesNotRead) {
+  const auto rgb =
+      good(cxf(object("x", "<ColorSRGB ColorSpecification=\"a\"><R>1</R></ColorSRGB>"), measured_at("a", 15)));
+  EXPECT_THAT(rgb.warnings, Contains(HasSubstr("values in ColorSRGB are not read (x)")));
+  std::string film = measured_at("a", 15);
+  film.replace(film.find("Spectrum_Reflectance"), 20, "Spectrum_Transmittance");
+  const auto through = good(cxf(object("film", flat("a", "0.5") + lab("a")), film));
+  EXPECT_THAT(through.paints, IsEmpty());
+  EXPECT_THAT(through.warnings, Contains(HasSubstr("values of Spectrum_Transmittance are of no reflected light")));
+  EXPECT_THAT(refusal("<CXF xmlns=\"urn:old\"/>"), HasSubstr("is CxF of another version (\"urn:old\"): export CxF3"));
+  EXPECT_THAT(refusal("<CxF/>"), HasSubstr("is CxF without a namespace"));
+  EXPECT_TRUE(looks_cxf("<?xml version=\"1.0\"?><a:CXF xmlns:a=\"urn:old\">"));
+}
+
+TEST_F(Cxf, ReadsUtf16) {
+  const std::string text =
+      "<?xml version=\"1.0\" encoding=\"UTF-16\"?>" + cxf(object("p", lab("a")), measured_at("a", 15));
+  std::string wide = "\xff\xfe";
+  for (const char c : text) wide += std::string{c, '\0'};
+  EXPECT_EQ(good(wide).paints.at(0).measurement->rows.at(0).lab.L, 50);
 }
 
 TEST_F(Cxf, ConditionsAreChosenOrAssumed) {

@@ -13,7 +13,9 @@ constexpr double kMostNumber = 1e12;
 }
 
 Result<double> number_in(std::string_view text, Domain domain) {
-  const std::string_view value = trimmed(text);
+  constexpr std::string_view kMinus = "\xe2\x88\x92";  // U+2212, as typesetters write it
+  const std::string with_hyphen = trimmed(text).starts_with(kMinus) ? '-' + std::string(trimmed(text).substr(3)) : "";
+  const std::string_view value = with_hyphen.empty() ? trimmed(text) : with_hyphen;
   if (value.empty()) return input_error("is empty: write a number");
   const auto number = parse_number(value);
   if (!number && value.find(',') != std::string_view::npos)

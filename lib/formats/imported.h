@@ -38,10 +38,14 @@ Result<void> check_writable(const paint::Paint& paint);
 // `text` with a point in place of its comma, if it has one comma and no point; nothing otherwise.
 std::optional<std::string> with_decimal_point(std::string_view text);
 
+// What reflectances are written in: factors, where 1 is the perfect diffuser, or percent.
+enum class Scale { kUnstated, kFactor, kPercent };
+
 struct ImportOptions {
-  std::string illuminant;   // of the readings to take, and of files that do not state it; empty: the file's own
-  int observer_deg = 0;     // likewise; 0: the file's own
-  bool keep_going = false;  // leave out samples that cannot be read and say so, instead of stopping at the first
+  std::string illuminant;          // of the readings to take, and of files that do not state it; empty: the file's own
+  int observer_deg = 0;            // likewise; 0: the file's own
+  bool keep_going = false;         // leave out samples that cannot be read and say so, instead of stopping at the first
+  Scale scale = Scale::kUnstated;  // of the reflectances of files that do not state it
 };
 
 // `stated` completed by the options where it is silent, and by `assumed` where they are silent too.

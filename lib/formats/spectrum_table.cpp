@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "formats/encoding.h"
 
 namespace goniochrome::formats {
 
@@ -27,7 +28,8 @@ Result<std::vector<double>> SpectrumTable::column(const std::string& name) const
 }
 
 Result<SpectrumTable> read_spectrum_table(const std::string& path) {
-  GONIO_ASSIGN(const std::string text, file_content(path));
+  GONIO_ASSIGN(const std::string bytes, file_content(path));
+  const std::string text = as_utf8(bytes);
   std::string_view rest = text;
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
   SpectrumTable table;

@@ -35,6 +35,8 @@ struct Table {
   int name = kNoColumn, date = kNoColumn, geometry = kNoColumn;
   std::vector<LabColumns> colors;
   std::vector<WavelengthColumn> wavelengths;
+  std::string wavelength_fault;  // why they make no spectrum
+  Scale scale = Scale::kUnstated;
   std::vector<TextureColumn> textures;
 
   bool has_values() const {
@@ -113,6 +115,13 @@ std::optional<TextureColumn> texture_heading(std::string_view heading, int colum
   return texture.quantity.empty() ? std::nullopt : std::optional(texture);
 }
 
+// Whether the row is a title such as `Reflectance [%]`.
+bool states_reflectance(const SheetRow& row) {
+  const std::string text = row.cells.empty() ? "" : lower(row.cells[0].text);
+  return (text.find("reflect") != std::string::npos || text.find("remission") != std::string::npos) &&
+         scale_in(text) != Scale::kUnstated;
+}
+
 // The number that a cell holds, also with a decimal comma.
 std::optional<double> number_of_cell(std::string_view text) {
   if (const auto value = parse_number(text)) return value;
@@ -137,6 +146,7 @@ class WorkbookReader {
     return input_error("{}: sheet \"{}\", row {}: {}", file_, shown(sheet.name), row.number, what);
   }
   Table table_below(const Sheet& sheet, std::size_t heading) const;
+  bool is_row_of_units(const SheetRow& row, const Table& table);
   Result<void> read_row(const Sheet& sheet, const SheetRow& row, const Table& table);
   Result<void> read_lab(const Sheet& sheet, const SheetRow& row, const Table& table, const paint::Geometry& geometry,
                         OpenPaint& open);
@@ -145,7 +155,7 @@ class WorkbookReader {
   Result<void> read_textures(const Sheet& sheet, const SheetRow& row, const Table& table, std::string_view geometry,
                              OpenPaint& open);
   Gathered& gathered(const std::string& name, const std::string& date);
-  double percent_or_factor();
+  Result<double> unit_of_all();
   Result<void> integrate(Gathered& paint);
 
   std::string file_;
@@ -155,6 +165,7 @@ class WorkbookReader {
   std::vector<Gathered> paints_;
   std::map<std::pair<std::string, std::string>, std::size_t> number_of_;
   SpectralMeter meter_;
+  Scale stated_scale_ = Scale::kUnstated;
   double unit_ = 1;  // of the reflectances: 1, or .01 for percent
   double disagreement_de00_ = 0;
   std::size_t disagreements_ = 0;
@@ -174,7 +185,10 @@ Table WorkbookReader::table_below(const Sheet& sheet, std::size_t heading) const
     if (table.name == kNoColumn && is_one_of(word, kNameHeadings)) table.name = cell.column;
     if (table.date == kNoColumn && is_one_of(word, kDateHeadings)) table.date = cell.column;
     if (table.geometry == kNoColumn && is_one_of(word, kGeometryHeadings)) table.geometry = cell.column;
-    if (const auto nm = wavelength_in(cell.text)) table.wavelengths.push_back({*nm, cell.column});
+    if (const auto nm = wavelength_in(cell.text)) {
+      table.wavelengths.push_back({*nm, cell.column});
+      if (const Scale scale = scale_in(cell.text); scale != Scale::kUnstated) table.scale = scale;
+    }
     if (auto texture = texture_heading(cell.text, cell.column)) table.textures.push_back(std::move(*texture));
     if (const auto lab = lab_heading(cell.text)) {
       const auto open = std::ranges::find_if(table.colors, [&](const LabColumns& columns) {
@@ -184,6 +198,8 @@ Table WorkbookReader::table_below(const Sheet& sheet, std::size_t heading) const
       columns.at[lab->channel] = cell.column;
     }
   }
+  if (const auto sorted = sort_wavelengths(table.wavelengths); !sorted.ok())
+    table.wavelength_fault = sorted.error().message;
   std::erase_if(table.colors, [](const LabColumns& columns) { return std::ranges::count(columns.at, kNoColumn) > 0; });
   if (table.geometry == kNoColumn && table.has_values() && heading + 1 < sheet.rows.size())
     for (const SheetCell& cell : sheet.rows[heading + 1].cells)
@@ -228,7 +244,7 @@ Result<void> WorkbookReader::read_lab(const Sheet& sheet, const SheetRow& row, c
 Result<void> WorkbookReader::read_spectrum(const Sheet& sheet, const SheetRow& row, const Table& table,
                                            const paint::Geometry& geometry, Gathered& gathered) {
   if (table.wavelengths.size() < kFewestWavelengths) return {};
-  if (const auto steps = check_steps(table.wavelengths); !steps.ok()) return error(sheet, row, steps.error().message);
+  if (!table.wavelength_fault.empty()) return error(sheet, row, table.wavelength_fault);
   const double from_nm = table.wavelengths[0].nm, step_nm = table.wavelengths[1].nm - from_nm;
   std::vector<double> factors;
   for (const auto& [nm, column] : table.wavelengths) {
@@ -264,7 +280,17 @@ Result<void> WorkbookReader::read_textures(const Sheet& sheet, const SheetRow& r
   return {};
 }
 
+// Whether the row says in which unit the spectra below are.
+bool WorkbookReader::is_row_of_units(const SheetRow& row, const Table& table) {
+  if (table.wavelengths.size() < kFewestWavelengths) return false;
+  const std::string_view cell = row.at(table.wavelengths.front().at);
+  const Scale scale = number_of_cell(cell) ? Scale::kUnstated : scale_in(cell);
+  if (scale != Scale::kUnstated) stated_scale_ = scale;
+  return scale != Scale::kUnstated;
+}
+
 Result<void> WorkbookReader::read_row(const Sheet& sheet, const SheetRow& row, const Table& table) {
+  if (is_row_of_units(row, table)) return {};
   const std::string name(table.name == kNoColumn ? stated_name_ : row.at(table.name));
   const std::string_view geometry_text = table.geometry == kNoColumn ? std::string_view() : row.at(table.geometry);
   if (name.empty() && geometry_text.empty()) return {};  // a remark, a sum
@@ -289,6 +315,8 @@ Result<void> WorkbookReader::read(const Sheet& sheet) {
     const SheetRow& row = sheet.rows[i];
     if (Table below = table_below(sheet, i); below.has_values()) {
       table = std::move(below);
+      if (table.scale != Scale::kUnstated && table.wavelengths.size() >= kFewestWavelengths)
+        stated_scale_ = table.scale;
       if (table.geometry != kNoColumn) continue;
       remarks_.note("a table without a column of geometries was left out", sheet.name);
       table = {};
@@ -296,6 +324,8 @@ Result<void> WorkbookReader::read(const Sheet& sheet) {
       const auto read = read_row(sheet, row, table);
       if (!read.ok() && !options_.keep_going) return read;
       if (!read.ok()) result_.skipped.push_back(read.error().message);
+    } else if (states_reflectance(row)) {
+      stated_scale_ = scale_in(row.cells[0].text);
     } else if (row.cells.size() >= 2) {  // `STANDARD: | name` and the like
       const std::string word = plain_column(row.cells[0].text);
       if (is_one_of(word, kNameHeadings)) stated_name_ = row.cells[1].text;
@@ -306,23 +336,19 @@ Result<void> WorkbookReader::read(const Sheet& sheet) {
   return {};
 }
 
-// Whether reflectances are in percent: told by the colors that stand beside them, else by their size.
-double WorkbookReader::percent_or_factor() {
-  double largest = 0, as_factor = 0, as_percent = 0;
+// What makes factors of the reflectances of all sheets. Error: their scale cannot be known.
+Result<double> WorkbookReader::unit_of_all() {
+  ScaleJudge judge;
   for (const Gathered& paint : paints_)
     for (const paint::SpectrumReading& spectrum : paint.open.spectra) {
-      largest = std::max(largest, *std::ranges::max_element(spectrum.factors));
       const auto seen = std::ranges::find(paint.open.readings, spectrum.geometry,
                                           [](const SeenReading& reading) { return reading.reading.geometry; });
-      if (seen == paint.open.readings.end()) continue;
-      const auto factor = meter_.lab(spectrum, seen->condition);
-      const auto percent = meter_.lab(spectrum, seen->condition, 0.01);
-      if (!factor.ok() || !percent.ok()) continue;
-      as_factor += std::abs(factor->L - seen->reading.lab.L);
-      as_percent += std::abs(percent->L - seen->reading.lab.L);
+      judge.add(paint.open.paint.name, spectrum.geometry, spectrum.factors,
+                seen == paint.open.readings.end() ? std::nullopt : std::optional(seen->reading.lab.L));
     }
-  const bool told = as_factor != as_percent;
-  return (told ? as_percent < as_factor : largest > kLargestFactor) ? 0.01 : 1.0;
+  const auto unit = judge.unit(stated_scale_, options_.scale, remarks_);
+  if (!unit.ok()) return input_error("{}: {}", file_, unit.error().message);
+  return *unit;
 }
 
 // Lab from the spectra of geometries that have none, and how far it lies from the Lab of those that have one.
@@ -343,6 +369,7 @@ Result<void> WorkbookReader::integrate(Gathered& paint) {
         remarks_.note("spectra are not integrated: " + lab.error().message, paint.places[i]);
         continue;
       }
+      note_uncovered(meter_.held_share(), paint.places[i], remarks_);
       const auto seen = std::ranges::find_if(open.readings, [&](const SeenReading& reading) {
         return reading.condition == condition && reading.reading.geometry == spectrum.geometry;
       });
@@ -361,7 +388,7 @@ Result<void> WorkbookReader::integrate(Gathered& paint) {
 }
 
 Result<ImportedPaints> WorkbookReader::finish() {
-  unit_ = percent_or_factor();
+  GONIO_ASSIGN(unit_, unit_of_all());
   UniqueNames names;
   for (Gathered& paint : paints_) {
     GONIO_TRY(integrate(paint));
@@ -369,7 +396,6 @@ Result<ImportedPaints> WorkbookReader::finish() {
     paint.open.paint.name = names.own(paint.open.paint.name, remarks_);
     result_.paints.push_back(std::move(paint.open.paint));
   }
-  if (unit_ != 1) remarks_.note("reflectances were read as percent", "");
   if (disagreements_ > 0)
     remarks_.note(
         fmt::format("the Lab was taken where it is not the color of the spectrum beside it: at {} of the readings, by "

@@ -208,10 +208,33 @@ TEST_F(Workbook, TellsPercentAndDisagreement) {
   EXPECT_THAT(other.warnings, Contains(testing::AllOf(HasSubstr("at 1 of the readings"), HasSubstr("gray at 45as45"))));
 }
 
+// One factor above 20 made a whole workbook percent, and percent below 20 were factors.
+TEST_F(Workbook, FindsTheScaleFromAllSpectra) {
+  const auto sheet = [](const std::vector<std::string>& values, const std::string& unit = "") {
+    std::vector<std::vector<std::string>> rows = {{"Name", "Geometry"}};
+    for (std::size_t i = 0; i < values.size(); ++i)
+      rows.push_back({"p" + std::to_string(i), i + 1 == values.size() ? "45as-15" : "45as45"});
+    for (int nm = 400; nm <= 700; nm += 10) {
+      rows[0].push_back(std::to_string(nm) + " nm" + unit);
+      for (std::size_t i = 0; i < values.size(); ++i) rows[i + 1].push_back(values[i]);
+    }
+    return parts_of({{"s", data(rows)}});
+  };
+  EXPECT_THAT(refused(sheet({"0.3", "0.5", "0.4", "25"})), HasSubstr("nothing says whether reflectances are percent"));
+  const auto factors = good_workbook(sheet({"0.3", "0.5", "0.4", "25"}), {"", 0, false, Scale::kFactor});
+  EXPECT_NEAR(factors.paints.at(0).measurement->rows.at(0).lab.L, 116 * std::cbrt(0.3) - 16, 1e-9);
+  EXPECT_NEAR(factors.paints.at(3).measurement->rows.at(0).lab.L, 116 * std::cbrt(25) - 16, 1e-9);
+  const auto dark = good_workbook(sheet({"2", "3", "1.5", "6"}));
+  EXPECT_NEAR(dark.paints.at(0).measurement->rows.at(0).lab.L, 116 * std::cbrt(0.02) - 16, 1e-9);
+  EXPECT_THAT(dark.warnings, Contains(HasSubstr("read as percent: as factors, 3 of 4 paints")));
+  const auto stated = good_workbook(sheet({"0.9", "0.8", "0.7"}, " [%]"));
+  EXPECT_NEAR(stated.paints.at(0).measurement->rows.at(0).lab.L, 903.3 * 0.009, 0.1);
+}
+
 TEST_F(Workbook, RefusesReflectancesBelowBlack) {
   const std::string too_low = "gray at 45as45: a reflectance factor is -0.2: 0 is black";
   EXPECT_THAT(refused(parts_of({{"s", data(spectra("-0.2", ""))}})), HasSubstr(too_low));
-  EXPECT_THAT(refused(parts_of({{"s", data(spectra("-20", "15.4872"))}})), HasSubstr(too_low));
+  EXPECT_THAT(refused(parts_of({{"s", data(spectra("-20", "15.4872"))}})), HasSubstr("a reflectance factor is -20"));
   EXPECT_EQ(good_workbook(parts_of({{"s", data(spectra("-0.09", ""))}})).paints.size(), 1u);
 }
 

@@ -127,7 +127,7 @@ std::vector<std::string> cautions(const brdf::MeasuredColor& color) {
   std::vector<std::string> lines;
   if (!gaps.empty()) lines.push_back("interpolated between samples far apart: " + gaps);
   if (!outside.empty()) lines.push_back("beyond the measured directions, the nearest sample was taken: " + outside);
-  if (!negative.empty()) lines.push_back("a channel is negative and was taken as 0: " + negative);
+  if (!negative.empty()) lines.push_back("a channel is negative, which no color is, and was taken as 0: " + negative);
   if (!noise.empty()) lines.push_back("darker than the noise of the data: " + noise);
   if (!unmeasured.empty()) lines.push_back("the file has no value, the row is left out: " + unmeasured);
   return lines;

@@ -9,6 +9,7 @@
 #include "foreign_formats.h"
 #include "formats/cgats.h"
 #include "formats/cxf.h"
+#include "formats/encoding.h"
 #include "formats/reference.h"
 #include "formats/workbook.h"
 
@@ -40,6 +41,7 @@ class CsvSource : public PaintSource {
   std::string place() const override { return fmt::format("{}:{}", name_, reader_.line()); }
   std::string format() const override { return reader_.is_wide() ? "wide table" : "long table"; }
   std::vector<std::string> warnings() const override { return reader_.warnings(); }
+  std::vector<std::string> closing_warnings() const override { return reader_.closing_warnings(); }
 
  private:
   std::string name_;
@@ -78,15 +80,11 @@ class NamedSource : public PaintSource {
 };
 using SinkPointer = std::unique_ptr<PaintSink>;
 
-// The first character that is no white space, behind a byte order mark; 0 where there is none.
-char first_character(std::string_view head) {
-  if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
-  head = trimmed(head);
-  return head.empty() ? '\0' : head.front();
-}
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
+// The formats look at the first bytes without a byte order mark, and at those of UTF-16 as UTF-8.
 bool looks_xml(std::string_view, std::string_view head) {
-  return first_character(head) == '<' || head.starts_with("\xff\xfe<") || head.starts_with("\xfe\xff");
+  return trimmed(head).starts_with('<');
 }
 
 bool looks_cxf_document(std::string_view, std::string_view head) {
@@ -110,9 +108,9 @@ Result<SourcePointer> open_xml(InputFile input, const SourceSetup&) {
   return SourcePointer(std::make_unique<XmlSource>(std::move(input)));
 }
 
-Result<SourcePointer> open_csv(InputFile input, const SourceSetup&) {
+Result<SourcePointer> open_csv(InputFile input, const SourceSetup& setup) {
   std::string name = input.name();
-  GONIO_ASSIGN(formats::CsvPaintReader reader, formats::CsvPaintReader::open(std::move(input)));
+  GONIO_ASSIGN(formats::CsvPaintReader reader, formats::CsvPaintReader::open(std::move(input), setup.import.scale));
   return SourcePointer(std::make_unique<CsvSource>(std::move(name), std::move(reader)));
 }
 
@@ -167,7 +165,9 @@ std::vector<std::string> output_format_names() {
 Result<SourcePointer> open_source(const std::string& reference, const std::string& format, const SourceSetup& setup) {
   auto [path, names] = formats::paint_reference(reference);
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
-  GONIO_ASSIGN(const std::string_view head, input.peek());
+  GONIO_ASSIGN(const std::string_view bytes, input.peek());
+  std::string head = formats::as_utf8(bytes);
+  if (head.starts_with(kByteOrderMark)) head.erase(0, kByteOrderMark.size());
   if (head.empty()) return input_error("{}: is empty: give it paints", input.name());
   const auto* known = std::ranges::find_if(kInputs, [&](const InputFormat& candidate) {
     return format == "auto" ? candidate.looks(input.name(), head) : candidate.name == format;

@@ -20,6 +20,13 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("observer", "DEG", "2", &o.observer, "observer of the readings")
       .one_of({"auto", "2", "10"})
       .more("It does the same as --illuminant. auto takes the first readings, and 10 degrees for spectra.");
+  spec.option("scale", "SCALE", "percent", &o.scale, "what reflectances are written in")
+      .one_of({"auto", "percent", "factor"})
+      .more(
+          "It holds for the spectra of tables, CGATS, workbooks and CxF that do not state it themselves. auto judges "
+          "all "
+          "spectra of a file together, tells what it took them for, and refuses what may be either; see REFLECTANCES "
+          "in goniochrome-paint(5).");
   spec.option("aperture", "DEG", "2", &o.aperture_deg, "angle over which a measured BRDF is averaged")
       .from(0, 20)
       .more("It is the full angle of a detector; 0 is a single direction.");
@@ -93,7 +100,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "says otherwise.",
       "Tables are read as spreadsheets write them. They may be long (one row for each sample and geometry) or wide "
       "(columns L15, a15, b15 and so on). They may be separated by commas, semicolons or tabs, have decimal commas "
-      "where a comma cannot be the separator, have headings like L*, and begin with a byte order mark. The rows of one "
+      "where a comma is not the separator or the cell is quoted, have headings like L*, and begin with a byte order "
+      "mark. The rows of one "
       "sample have to stand together. The columns class, code, instrument, gloss20, gloss60 and gloss85 are read where "
       "they are there.",
       "CxF3 and CGATS.17 files of other programs are read as far as their colors stand at an angle; a warning names "
@@ -108,9 +116,7 @@ cli::ToolSpec tool_spec(Options& o) {
       "in "
       "L* (D65/10), or above the table. Spectra are kept. Where a geometry has a spectrum alone, Lab is integrated "
       "from "
-      "it; where both stand there and disagree, the Lab is taken and a warning tells the color difference. "
-      "Reflectances "
-      "in percent are told from factors by the Lab beside them.",
+      "it; where both stand there and disagree, the Lab is taken and a warning tells the color difference.",
       "A measured BRDF (" + brdf::measured_formats() +
           ") becomes one paint, which holds what a multi-angle instrument would have read at the geometries of "
           "--geometry, by default at 15, 25, 45, 75 and 110 degrees. Spectra are integrated under --illuminant and "

@@ -335,3 +335,64 @@ END
   run --separate-stderr env LC_ALL=de_DE.UTF-8 paint-convert -q ab.csv --to csv
   [ "$output" = "$(cat ab.csv)" ]
 }
+
+@test "an input without a paint is told, and the exit status is 1" {
+  echo "$header" >none.csv
+  run --separate-stderr paint-convert none.csv --to csv
+  [ "$status" -eq 1 ]
+  [ "$output" = "$header" ]
+  [[ "$stderr" == *"no paint was read: nothing was converted"* ]]
+}
+
+# flat VALUE GEOMETRY [UNIT]: a table of a spectrum with one value at all wavelengths.
+flat() {
+  awk -v value="$1" -v geometry="$2" -v unit="${3:-}" 'BEGIN {
+    head = "sample,geometry,illuminant,observer"; row = "x," geometry ",D65,10"
+    for (nm = 400; nm <= 700; nm += 10) { head = head "," nm "nm" unit; row = row "," value }
+    print head; print row
+  }'
+}
+lightness() { sed -n 2p | cut -d, -f5 | xargs printf '%.3f'; }
+
+@test "--scale says what reflectances are, the table goes before it, and without both what may be either is refused" {
+  flat 2 45as45 >dark.csv
+  run --separate-stderr paint-convert dark.csv --to csv
+  [ "$(lightness <<<"$output")" = 15.487 ]
+  [[ "$stderr" == *"reflectances were read as percent"* ]]
+  [ "$(paint-convert -q --scale percent dark.csv --to csv | lightness)" = 15.487 ]
+  run --separate-stderr paint-convert --scale factor dark.csv --to csv
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"dark.csv: --scale says that reflectances are factors"*'"x" has 2 at 45as45'* ]]
+  flat 2.2 45as15 >bright.csv
+  run --separate-stderr paint-convert bright.csv --to csv
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'"x" has 2.2 at 45as15, which may be either: give --scale percent'* ]]
+  run --separate-stderr paint-convert -k bright.csv --to csv
+  [ "$status" -eq 1 ]
+  [ "${#lines[@]}" -eq 1 ]
+  [ "$(paint-convert -q --scale factor bright.csv --to csv | lightness)" = 134.869 ]
+  [ "$(cat bright.csv | paint-convert -q --scale percent --to csv | lightness)" = 16.504 ]
+  flat 2.2 45as15 ' [%]' >stated.csv
+  run --separate-stderr paint-convert --scale factor stated.csv --to csv
+  [ "$(lightness <<<"$output")" = 16.504 ]
+  [[ "$stderr" == *"--scale has no effect on reflectances whose scale the file states"* ]]
+  run --separate-stderr paint-convert --scale half dark.csv
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *'--scale is "half": give auto, percent, factor'* ]]
+  run --separate-stderr paint-convert dark.csv --scale
+  [ "$status" -eq 2 ]
+}
+
+@test "tables and CxF in UTF-16 are read, and what is no CxF3 is named" {
+  iconv -f utf-8 -t utf-16le ab.csv >body
+  { printf '\xff\xfe' && cat body; } >wide.csv
+  run --separate-stderr paint-convert -q wide.csv --to csv
+  [ "$output" = "$(cat ab.csv)" ]
+  paint-convert -q ab.csv -o ab.cxf
+  sed 's/encoding="UTF-8"/encoding="UTF-16"/' ab.cxf | iconv -f utf-8 -t utf-16 >wide.cxf
+  [ "$(paint-convert -q wide.cxf --to csv)" = "$(cat ab.csv)" ]
+  echo '<CXF xmlns="http://old.example/cxf2"/>' >old.cxf
+  run --separate-stderr paint-convert old.cxf
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'old.cxf:1: is CxF of another version ("http://old.example/cxf2"): export CxF3'* ]]
+}

@@ -46,6 +46,8 @@ SourceSetup source_setup_of(const Options& options, const Selection& selection) 
   if (options.illuminant != "auto") setup.import.illuminant = options.illuminant;
   if (options.observer != "auto") setup.import.observer_deg = options.observer == "2" ? 2 : 10;
   setup.import.keep_going = options.keep_going;
+  if (options.scale != "auto")
+    setup.import.scale = options.scale == "percent" ? formats::Scale::kPercent : formats::Scale::kFactor;
   setup.geometries = selection.requested();
   setup.aperture_deg = options.aperture_deg;
   return setup;
@@ -201,7 +203,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_TRY(conversion.finish());
   session.say(fmt::format("paint-convert: {} paints read, {} written as {}{}", conversion.read, conversion.written,
                           format->title, conversion.skipped ? fmt::format(", {} left out", conversion.skipped) : ""));
-  return conversion.skipped ? cli::Verdict::kNegative : cli::Verdict::kDone;
+  if (conversion.read == 0 && conversion.skipped == 0) session.warn("no paint was read: nothing was converted");
+  return conversion.skipped > 0 || conversion.read == 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }
 
 }  // namespace goniochrome::tool

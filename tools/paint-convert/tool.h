@@ -15,6 +15,7 @@ struct Options {
   std::string from = "auto", to = "auto";
   std::vector<std::string> geometry;
   std::string illuminant = "auto", observer = "auto";
+  std::string scale = "auto";
   double aperture_deg = 0;
   bool cxf_compat = false;
   std::string columns = "core";

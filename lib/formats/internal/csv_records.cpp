@@ -16,6 +16,13 @@ bool quotes_closed(std::string_view text) {
   return std::ranges::count(text, '"') % 2 == 0;
 }
 
+// The separator that a line such as `sep=;` names, as spreadsheets write it before a table; 0 for any other line.
+char named_separator(std::string_view line) {
+  line = line.substr(0, line.find_last_not_of("\r\n \"") + 1);
+  if (line.starts_with('"')) line.remove_prefix(1);
+  return line.size() == 5 && lower(line.substr(0, 4)) == "sep=" ? line[4] : '\0';
+}
+
 char separator_of(std::string_view header) {
   bool quoted = false;
   bool semicolon = false, tab = false;
@@ -63,7 +70,9 @@ bool looks_like_formula(std::string_view text) {
 Result<bool> CsvRecords::fill() {
   buffer_.erase(0, at_);
   at_ = 0;
-  GONIO_ASSIGN(const std::size_t count, input_.read(buffer_, kReadAtOnce));
+  std::string bytes;
+  GONIO_ASSIGN(const std::size_t count, input_.read(bytes, kReadAtOnce));
+  decoder_.append(bytes, buffer_);
   return count > 0;
 }
 
@@ -88,7 +97,8 @@ Result<bool> CsvRecords::next_line() {
   return error(fmt::format("a line is longer than {} bytes: give a table in text", kLongestRecord));
 }
 
-Result<bool> CsvRecords::next(std::vector<std::string>& cells) {
+// Reads one record that is not blank.
+Result<bool> CsvRecords::next_record() {
   if (failed_) return false;
   failed_ = true;  // until the record is complete
   do {
@@ -102,18 +112,38 @@ Result<bool> CsvRecords::next(std::vector<std::string>& cells) {
       if (!more || record_.size() > kLongestRecord)
         return error("a quotation mark is left open: close it, or double it inside a quoted cell");
     }
+    if (line_ == 1 && record_.starts_with(kByteOrderMark)) record_.erase(0, kByteOrderMark.size());
   } while (trimmed(record_).empty());
   failed_ = false;
-  if (separator_ == 0) {
-    if (record_.starts_with(kByteOrderMark)) record_.erase(0, kByteOrderMark.size());
-    if (record_.starts_with("\xff\xfe") || record_.starts_with("\xfe\xff"))
-      return failed_ = true, error("the table is UTF-16: save it as CSV UTF-8");
-    separator_ = separator_of(record_);
-  }
-  if (!is_plain_utf8(record_)) return error("a character is not valid UTF-8: save the table as CSV UTF-8");
-  cells.clear();
-  for (std::size_t at = 0; at <= record_.size();) cells.push_back(cell_at(record_, at, separator_));
   return true;
+}
+
+Result<bool> CsvRecords::next(std::vector<std::string>& cells) {
+  for (;;) {
+    GONIO_ASSIGN(const bool found, next_record());
+    if (!found) return false;
+    if (separator_ == 0) {
+      separator_ = named_separator(record_);
+      if (separator_ != 0) continue;
+      separator_ = separator_of(record_);
+    }
+    if (!is_plain_utf8(record_)) return error("a character is not valid UTF-8: save the table as CSV UTF-8");
+    cells.clear();
+    for (std::size_t at = 0; at <= record_.size();) cells.push_back(cell_at(record_, at, separator_));
+    if (std::ranges::any_of(cells, [](const std::string& cell) { return !cell.empty(); })) return true;
+  }
+}
+
+Result<CsvRecords> CsvRecords::second_reading() {
+  GONIO_ASSIGN(InputFile input, input_.second_reading());
+  CsvRecords second(std::move(input));
+  second.decoder_ = decoder_;
+  second.buffer_ = buffer_;
+  second.at_ = at_;
+  second.line_ = line_, second.lines_read_ = lines_read_;
+  second.separator_ = separator_;
+  second.failed_ = failed_;
+  return Result(std::move(second));
 }
 
 std::string_view cell_text(std::string_view cell) {

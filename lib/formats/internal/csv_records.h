@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/result.h"
+#include "formats/encoding.h"
 
 namespace goniochrome::formats {
 
@@ -19,10 +20,14 @@ class CsvRecords {
  public:
   explicit CsvRecords(InputFile input) : input_(std::move(input)) {}
 
-  // Reads the next record that is not blank into `cells`. White space around cells and the quotes of quoted cells are
-  // taken off. Returns false at the end. The first record fixes the separator: `;` if it holds one, or else a tab, or
-  // else `,`. Error: file and line; it is final where the record does not end.
+  // Reads the next record with a cell that is not empty into `cells`. White space around cells and the quotes of quoted
+  // cells are taken off. Returns false at the end. A first record `sep=;` names the separator. Otherwise the first
+  // record fixes it: `;` if it holds one, or else a tab, or else `,`. Error: file and line; it is final where the
+  // record does not end.
   Result<bool> next(std::vector<std::string>& cells);
+
+  // A second reader of the records that this one has still to read.
+  Result<CsvRecords> second_reading();
 
   // The line (from 1) on which the last record began.
   int line() const { return line_; }
@@ -33,8 +38,10 @@ class CsvRecords {
  private:
   Result<bool> next_line();
   Result<bool> fill();
+  Result<bool> next_record();
 
   InputFile input_;
+  Utf8Decoder decoder_;
   std::string buffer_;
   std::size_t at_ = 0;
   std::string record_;

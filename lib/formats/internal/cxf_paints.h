@@ -1,0 +1,78 @@
+// The objects of a CxF3 file as they stand, and the paints that become of them.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/imported.h"
+#include "paint/paint.h"
+
+namespace goniochrome::formats {
+
+// One value of an object, as it stands: Lab, or what is to become it.
+struct CxfColor {
+  enum class Kind { kLab, kXyz, kSpectrum };
+  Kind kind = Kind::kLab;
+  std::string specification = {};
+  color::Lab lab = {};
+  color::Xyz xyz = {};  // Y = 100 of the perfect diffuser
+  std::vector<double> spectrum = {};
+  double first_nm = 0;          // of the spectrum, where it says so itself
+  std::vector<double> nm = {};  // of a spectrum with points of its own
+};
+
+struct CxfObject {
+  paint::Paint paint;
+  std::string joined;  // the paint whose angle this object is: our tag
+  std::vector<CxfColor> colors;
+  std::vector<std::string> unread;  // kinds of color values that are not read
+  bool bad = false;                 // it had an error that is passed over
+};
+
+struct CxfSpecification {
+  color::ViewingCondition condition{"", 0};
+  std::vector<paint::Geometry> angles;
+  std::string other;               // a geometry without aspecular angles
+  std::string unlike_reflectance;  // the measurement type, where it is another
+  std::string instrument;
+  double first_nm = 0, step_nm = 0;
+};
+
+// Turns objects into paints.
+class CxfResolver {
+ public:
+  CxfResolver(const std::map<std::string, CxfSpecification>& specifications, Remarks& remarks,
+              const ImportOptions& options)
+      : specifications_(specifications), options_(options), remarks_(remarks) {}
+
+  // What makes factors of the values of spectra.
+  void set_unit(double unit) { unit_ = unit; }
+  void add(CxfObject object);
+  void finish();
+
+  // The paints that are complete, in order.
+  std::deque<paint::Paint>& paints() { return paints_; }
+
+ private:
+  bool is_sound(CxfColor& color);
+  void keep_spectrum(const CxfColor& color, std::size_t n, std::size_t k);
+  void place(const CxfColor& color, std::size_t n, std::size_t k);
+  color::ViewingCondition stated(const CxfSpecification& specification);
+  std::optional<color::Lab> lab_of(const CxfColor& color, const CxfSpecification& specification,
+                                   const color::ViewingCondition& condition);
+
+  const std::map<std::string, CxfSpecification>& specifications_;
+  const ImportOptions& options_;
+  Remarks& remarks_;
+  UniqueNames names_;
+  double unit_ = 1;
+  std::optional<OpenPaint> open_;
+  std::string joined_;
+  std::vector<std::string> unread_;  // of the open paint
+  std::deque<paint::Paint> paints_;
+};
+
+}  // namespace goniochrome::formats
