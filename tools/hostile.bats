@@ -430,7 +430,7 @@ LIST
   if sanitized; then skip "built with a sanitizer"; fi
   local tried=0 short=0
   while read -r ending line; do
-    for kilobytes in 20000 50000 75000 110000 180000 260000 400000 410000 500000 1000000; do
+    for kilobytes in 20000 50000 60000 75000 90000 110000 140000 180000 260000 400000 410000 500000 1000000; do
       status=0 tried=$((tried + 1))
       # shellcheck disable=SC2086
       /usr/bin/time -q -o used -f '%U %S' timeout -s KILL 60 bash -c 'ulimit -v "$1"; shift; exec "$@"' limited "$kilobytes" $line -o o.$ending \
@@ -447,7 +447,7 @@ LIST
       awk '{ exit !($1 + $2 <= 1) }' used
     done
   done < <(every_tool)
-  [ "$tried" -eq 180 ]
+  [ "$tried" -eq 234 ]
   [ "$short" -ge 20 ]
 }
 
