@@ -2,9 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
+#include "base/text.h"
 #include "cli/options.h"
+#include "color/color.h"
 
 namespace goniochrome::tool {
 
@@ -40,6 +44,31 @@ inline std::string table_field(std::string text) {
   std::ranges::replace_if(
       text, [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
   return text;
+}
+
+// The decimals of numbers that come from these colors: the most that one of them has, from 2 to 4. Colors from spectra
+// or a curve, whose decimals do not end, have the 2 of an instrument.
+inline int decimals_of(const std::vector<color::Lab>& colors) {
+  constexpr int kFewest = 2, kMost = 4;
+  int decimals = kFewest;
+  for (const color::Lab& lab : colors)
+    for (const double value : {lab.L, lab.a, lab.b}) {
+      const std::string digits = shortest(value);
+      const auto point = digits.find('.');
+      const int own = point == std::string::npos ? 0 : static_cast<int>(digits.size() - point) - 1;
+      if (own <= kMost && digits.find('e') == std::string::npos) decimals = std::max(decimals, own);
+    }
+  return decimals;
+}
+
+// The number with at most so many decimals.
+inline std::string table_number(double value, int decimals) {
+  if (std::isnan(value)) return "n/a";
+  if (std::isinf(value)) return value < 0 ? "-inf" : "inf";
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text == "-0" ? "0" : text;
 }
 
 }  // namespace goniochrome::tool

@@ -28,7 +28,7 @@ struct MeasuredTraits {
   std::size_t negative = 0, zero = 0;      // of these
   double negative_rms = 0;                 // 1/sr, of the negative ones, where they are noise and not a mark
   bool symmetric = false;                  // the format stores f(a,b) and f(b,a) in one place
-  bool beyond_rec709 = false;              // below 0 in Rec.709 are colors outside of it, and no noise
+  bool noisy = false;                      // of RGB: values below 0 are noise, and no colors outside of Rec.709
   bool scattered = false;                  // the file lists directions, which samples() returns; else it is a grid
   std::vector<std::string> findings = {};  // oddities worth a warning
 };
@@ -91,6 +91,10 @@ struct MeasuredChecks {
 };
 MeasuredChecks checks(const MeasuredBrdf& brdf);
 
+// Takes noise off reflectance factors in the channels of a file, and returns whether there was any: values below 0 of a
+// spectrum, or of a noisy file. In other files RGB below 0 is a color outside of Rec.709, such as a deep yellow.
+bool take_off_noise(const MeasuredTraits& traits, std::vector<double>& factors);
+
 // XYZ (Y = 1: perfect diffuser) of reflectance factors in the channels of a file, and the white it is relative to.
 class ChannelColorimeter {
  public:
@@ -108,9 +112,9 @@ class ChannelColorimeter {
 struct MeasuredReading {
   paint::Geometry geometry;
   color::Lab lab;
-  std::vector<double> factors = {};     // reflectance factors per channel of the file, 0 where a channel was negative
+  std::vector<double> factors = {};     // reflectance factors per channel of the file, without noise
   double gap_deg = 0, outside_deg = 0;  // of the value it came from
-  bool negative = false;                // a channel was below 0 and was taken as 0
+  bool negative = false;                // take_off_noise() found some
   bool noise = false;                   // Y is below the noise floor
 };
 

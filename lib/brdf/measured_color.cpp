@@ -67,6 +67,13 @@ color::Xyz ChannelColorimeter::xyz(const std::vector<double>& reflectance) const
   return color::xyz_d65_from_rgb(color::rec2020_from_rec709({reflectance[0], reflectance[1], reflectance[2]}));
 }
 
+bool take_off_noise(const MeasuredTraits& traits, std::vector<double>& factors) {
+  if (traits.wavelengths_nm.empty() && !traits.noisy) return false;
+  bool noise = false;
+  for (double& factor : factors) noise = noise || factor < 0, factor = std::max(factor, 0.0);
+  return noise;
+}
+
 Result<MeasuredColor> measured_color(const MeasuredBrdf& brdf, const MeasuredColorOptions& options) {
   GONIO_ASSIGN(const ChannelColorimeter color, ChannelColorimeter::make(brdf.traits(), options.condition));
   MeasuredColor result{options.condition, color.held_share(), {}, {}};
@@ -77,11 +84,8 @@ Result<MeasuredColor> measured_color(const MeasuredBrdf& brdf, const MeasuredCol
       continue;
     }
     MeasuredReading reading{geometry, {}, {}, value.gap_deg, value.outside_deg};
-    for (double& f : value.f) {
-      const bool noise = f < 0 && !brdf.traits().beyond_rec709;
-      reading.negative = reading.negative || noise;
-      f = noise ? 0 : kPi * f;
-    }
+    for (double& f : value.f) f *= kPi;
+    reading.negative = take_off_noise(brdf.traits(), value.f);
     reading.factors = value.f;
     const color::Xyz xyz = color.xyz(value.f);
     reading.noise = xyz.Y < options.noise_floor;

@@ -121,8 +121,11 @@ Result<MeasuredPointer> read_mbsdf(const std::string& path, std::string_view byt
     if (!std::isfinite(grid.values[i])) return input_error("{}: value {} is not finite", path, i);
     count_sample(grid.values[i], traits, negative_square);
   }
+  traits.noisy = grid.channels == 1;
+  for (std::size_t i = 0; grid.channels == 3 && !acescg && i < count && !traits.noisy; i += 3)
+    traits.noisy = is_noise({grid.values[i], grid.values[i + 1], grid.values[i + 2]});
+  if (!traits.noisy) traits.negative = 0;
   if (traits.negative) traits.negative_rms = std::sqrt(negative_square / static_cast<double>(traits.negative));
-  traits.beyond_rec709 = acescg;
   if (acescg) turn_into_rec709(grid);
   find_copied_rows(grid, traits);
   return MeasuredPointer(std::make_unique<MbsdfBrdf>(std::move(traits), std::move(grid)));

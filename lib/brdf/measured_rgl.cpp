@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/angles.h"
 #include "brdf/internal/measured_formats.h"
@@ -24,17 +25,20 @@ class TensorFile {
   static Result<TensorFile> parse(const std::string& path, std::string_view bytes);
   Result<const Tensor*> field(const std::string& name, std::size_t rank) const {
     const auto found = fields_.find(name);
+    if (found == fields_.end() && unread_.contains(name))
+      return input_error("{}: field \"{}\" does not hold floats of 32 bits, as the format has them", path_, name);
     if (found == fields_.end()) return input_error("{}: has no field \"{}\"", path_, name);
     if (found->second.shape.size() != rank)
       return input_error("{}: field \"{}\" has {} dimensions, not {}", path_, name, found->second.shape.size(), rank);
     return &found->second;
   }
-  bool has(const std::string& name) const { return fields_.contains(name); }
+  bool has(const std::string& name) const { return fields_.contains(name) || unread_.contains(name); }
   const std::string& description() const { return description_; }
 
  private:
   std::string path_, description_;
   std::map<std::string, Tensor> fields_;
+  std::set<std::string> unread_;  // fields of other types
 };
 
 Result<TensorFile> TensorFile::parse(const std::string& path, std::string_view bytes) {
@@ -65,6 +69,7 @@ Result<TensorFile> TensorFile::parse(const std::string& path, std::string_view b
       size *= *extent;
       tensor.shape.push_back(*extent);
     }
+    if (*type != kFloat32) file.unread_.insert(std::string(*name));
     if (*type != kFloat32 && *type != kUint8) continue;
     const std::size_t length = size * (*type == kFloat32 ? sizeof(float) : 1);
     if (*offset > bytes.size() || length > bytes.size() - *offset)
@@ -245,6 +250,14 @@ Result<MeasuredPointer> read_rgl(const std::string& path, std::string_view bytes
   MeasuredTraits traits{.format = "rgl", .description = file.description(), .wavelengths_nm = wavelengths};
   double negative_square = 0;
   for (const double value : colors->values) count_sample(value, traits, negative_square);
+  if (!is_spectral) {
+    const std::vector<double>& values = colors->values;
+    const std::size_t plane = colors->shape[3] * colors->shape[4];
+    for (std::size_t slice = 0; slice + 2 * plane < values.size(); slice += 3 * plane)
+      for (std::size_t i = slice; i < slice + plane && !traits.noisy; ++i)
+        traits.noisy = is_noise({values[i], values[i + plane], values[i + 2 * plane]});
+    if (!traits.noisy) traits.negative = 0;
+  }
   return MeasuredPointer(std::make_unique<RglBrdf>(std::move(traits), std::move(tables)));
 }
 

@@ -204,6 +204,24 @@ TEST_F(Measured, MerlTableIsTheFunctionItWasMadeFrom) {
   EXPECT_GT(told.negative_share, 0);
 }
 
+// A deep yellow is below 0 in the blue of Rec.709, and b* 90 came back as 77.
+TEST(MeasuredColor, ColorsOutsideOfRec709AreNoNoise) {
+  MeasuredTraits rgb{.format = "rgl"};
+  const color::Xyz white = *color::white_point({"D65", 2});
+  const color::Rgb yellow = color::rec709_from_rec2020(color::rgb_from_lab({74, 13.6, 90}, white));
+  const std::vector<double> deep = {yellow.x, yellow.y, yellow.z};
+  std::vector<double> factors = deep;
+  ASSERT_LT(yellow.z, 0);
+  EXPECT_FALSE(take_off_noise(rgb, factors));
+  EXPECT_EQ(factors, deep);
+  rgb.noisy = true;
+  EXPECT_TRUE(take_off_noise(rgb, factors));
+  EXPECT_EQ(factors, (std::vector<double>{yellow.x, yellow.y, 0}));
+  std::vector<double> spectrum = {-0.01, 0.02, 0.03};
+  EXPECT_TRUE(take_off_noise({.format = "cornell", .wavelengths_nm = {400, 550, 700}}, spectrum));
+  EXPECT_EQ(spectrum, (std::vector<double>{0, 0.02, 0.03}));
+}
+
 TEST_F(Measured, MerlRefusals) {
   std::string bytes = merl_bytes([](const Vec3&, const Vec3&) { return 0.1; });
   EXPECT_THAT(refusal("a.binary", std::string_view(bytes).substr(0, 1000)), HasSubstr("is cut or not MERL"));

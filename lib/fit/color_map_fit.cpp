@@ -308,7 +308,8 @@ Result<std::vector<ColorMapRow>> measured_rows(const brdf::MeasuredBrdf& brdf, c
   for (const paint::DirectionPair& pair : pairs) {
     brdf::MeasuredValue value = brdf.value(pair.light, pair.view);
     if (!value.measured || value.outside_deg > kSurelyMeasured_deg) continue;
-    for (double& f : value.f) f = kPi * std::max(f, 0.0);
+    for (double& f : value.f) f *= kPi;
+    brdf::take_off_noise(brdf.traits(), value.f);
     const color::Lab lab = color::lab_from_xyz(meter.xyz(value.f), meter.white());
     if (!std::isfinite(lab.L + lab.a + lab.b)) return input_error("its data give no finite value: the file is damaged");
     rows.push_back({pair.light, pair.view, lab});

@@ -32,6 +32,19 @@ TEST(Rgl, ReadsBackAsThePaint) {
   }
 }
 
+// Its blue is below 0 in Rec.709, which the file holds and which readers took for noise.
+TEST(Rgl, AColorOutsideOfRec709ComesBack) {
+  const color::Lab yellow = {74, 13.6, 90};
+  const color::Xyz white = *color::white_point({"D65", 2});
+  const paint::Paint paint = paint_for_test("yellow", (1 / kPi) * color::rgb_from_lab(yellow, white), {}, 1);
+  brdf::MeasuredColorOptions options{.geometries = {{.aspecular_deg = 45}}, .condition = {"D65", 2}};
+  const auto back = brdf::measured_color(*table_of(paint), options);
+  ASSERT_TRUE(back.ok());
+  EXPECT_FALSE(back->readings.at(0).negative);
+  EXPECT_EQ(table_of(paint)->traits().negative, 0u);
+  EXPECT_LT(color::delta_e_2000(back->readings.at(0).lab, yellow), 0.3);
+}
+
 // Gray needs no spectrum: it is even over all bands.
 TEST(Rgl, GrayReadsBackInBandsToo) {
   const paint::Paint paint = paint_for_test(

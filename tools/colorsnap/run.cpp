@@ -225,13 +225,14 @@ class Run {
             fmt::format("the weight of {} has no effect: nothing was compared there", paint::geometry_name(geometry)));
     if (problems_ > kWarningsShown)
       session_.warn(fmt::format("{} more designs with problems", problems_ - kWarningsShown));
+    if (searched_ + left_out_ == 0) session_.warn("the input holds no paints: nothing was searched");
     std::string line = fmt::format("{}: {} paints against {}", session_.tool(), searched_, index_.size());
     if (outside_ > 0) line += fmt::format(", {} outside", outside_);
     if (off_radial_ > 0) line += fmt::format(", {} off-radial", off_radial_);
     if (no_match_ > 0) line += fmt::format(", {} without a match", no_match_);
     if (left_out_ > 0) line += fmt::format(", {} left out", left_out_);
     session_.say(line);
-    return outside_ + no_match_ + left_out_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
+    return searched_ == 0 || outside_ + no_match_ + left_out_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
 
   const Options& options_;

@@ -15,6 +15,9 @@ std::string table_lines(const Finding& finding, bool lights, const library::Libr
   const std::string query = table_field(finding.query), status = finding.status();
   if (finding.no_match())
     return query + "\t0\t\t\t\tn/a\tn/a\tn/a\tn/a\tn/a\t" + status + (lights ? "\t-\t-\n" : "\t-\n");
+  std::vector<color::Lab> colors;
+  for (const library::SearchTerm& term : finding.plan.terms) colors.push_back(term.lab);
+  const int decimals = decimals_of(colors);
   std::string text;
   int rank = 0;
   for (const Neighbor& neighbor : finding.neighbors) {
@@ -22,10 +25,11 @@ std::string table_lines(const Finding& finding, bool lights, const library::Libr
     text += fmt::format("{}\t{}\t{}\t{}\t{}", query, ++rank, table_field(std::string(index.name(paint))),
                         table_field(std::string(index.code(paint))), paint::paint_class_name(index.paint_class(paint)));
     for (const double value : {neighbor.match.distance, neighbor.mean_de, neighbor.dL, neighbor.dC, neighbor.dH})
-      text += "\t" + shortest(value);
+      text += "\t" + table_number(value, decimals);
     text += "\t" + status + "\t";
     for (std::size_t i = 0; i < neighbor.de.size(); ++i)
-      text += (i ? "," : "") + paint::geometry_name(finding.plan.geometries[i]) + "=" + shortest(neighbor.de[i]);
+      text += (i ? "," : "") + paint::geometry_name(finding.plan.geometries[i]) + "=" +
+              table_number(neighbor.de[i], decimals);
     if (!neighbor.illuminant.empty()) text += "\t" + neighbor.illuminant;
     text += "\n";
   }

@@ -1,8 +1,8 @@
 #include "other_light.h"
 
-#include "base/text.h"
 #include "formats/xml.h"
 #include "illuminants.h"
+#include "table_output.h"
 
 namespace goniochrome::tool {
 
@@ -13,7 +13,8 @@ std::string field_of(const std::vector<paint::DifferenceAt>& differences) {
   double largest = -1;
   for (const paint::DifferenceAt& difference : differences)
     if (!(difference.de00 <= largest)) largest = difference.de00;  // also one that is not a number
-  return "\t" + (largest >= 0 ? shortest(largest) : std::string("n/a"));
+  constexpr int kDecimals = 2;                                     // these come from spectra
+  return "\t" + (largest >= 0 ? table_number(largest, kDecimals) : std::string("n/a"));
 }
 
 Json json_of(const std::vector<paint::DifferenceAt>& differences) {

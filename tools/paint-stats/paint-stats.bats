@@ -140,7 +140,8 @@ column() {
   paint-stats -q "$paints" --report r.json >t.tsv
   jq -e ".results.read == $count and .results.matched == $count and .results.left_out == 0" r.json
   jq -e '.results.paints_per_s > 0 and .tool == "paint-stats"' r.json
-  diff <(jq -r '.results.paints[].flop_index' r.json) <(column flop_index <t.tsv)
+  paste <(jq -r '.results.paints[].flop_index // "n/a"' r.json) <(column flop_index <t.tsv) |
+    awk '$1 != $2 && ($1 - $2 > .00501 || $2 - $1 > .00501) { exit 1 }' # the table has fewer digits
   run paint-stats "$paints" --report
   [ "$status" -eq 2 ]
 }
@@ -306,4 +307,17 @@ spectral() {
   run paint-stats --illuminant A --standard lib.xml lib.xml
   [ "$status" -eq 3 ]
   [[ "$output" == *"holds 5 paints: name one of them by FILE#NAME"* ]]
+}
+
+@test "a table has the decimals of the readings, and JSON every digit" {
+  echo "$head$(paint x 41.87,1,2 20.5,1,2 6.51,1,2)</paints>" >x.xml
+  [ "$(paint-stats -q x.xml | tail -1 | tr '\t' '\n' | grep -cE '\.[0-9]{3,}')" -eq 0 ]
+  paint-stats -q -f json x.xml | grep -qE '"flop_index":[0-9]+\.[0-9]{6,}'
+  echo "$head$(paint x 41.8712,1,2 20.5,1,2 6.51,1,2)</paints>" | paint-stats -q | column flop_index | grep -qE '\.[0-9]{4}$'
+}
+
+@test "an input without a paint is told, and the exit status is 1" {
+  run --separate-stderr bash -c "echo '$head</paints>' | paint-stats"
+  [ "$status" -eq 1 ]
+  [[ "$stderr" == *"the input holds no paints"* ]]
 }

@@ -18,9 +18,14 @@ namespace goniochrome::tool {
 
 namespace {
 
-std::string number_field(double value) {
-  if (std::isnan(value)) return "n/a";
-  return std::isinf(value) ? (value < 0 ? "-inf" : "inf") : shortest(value);
+// Of the readings of a paint, or of its design.
+int decimals_for(const paint::Paint& paint) {
+  std::vector<color::Lab> colors;
+  if (paint.measurement)
+    for (const paint::LabReading& row : paint.measurement->rows) colors.push_back(row.lab);
+  else if (paint.appearance)
+    colors = {paint.appearance->face, paint.appearance->flop};
+  return decimals_of(colors);
 }
 
 // What is told of one paint.
@@ -57,7 +62,9 @@ std::string table_line(const paint::Paint& paint, const Figures& figures) {
   const paint::PaintMetrics& numbers = figures.numbers;
   std::string text =
       table_field(paint.name) + "\t" + table_field(paint.code) + "\t" + paint::paint_class_name(paint.paint_class);
-  for (const paint::MetricColumn& column : paint::metric_columns()) text += "\t" + number_field(numbers.*column.value);
+  const int decimals = decimals_for(paint);
+  for (const paint::MetricColumn& column : paint::metric_columns())
+    text += "\t" + table_number(numbers.*column.value, decimals);
   std::string flags;
   for (const char* flag : numbers.flags) flags += (flags.empty() ? "" : ",") + std::string(flag);
   return text + "\t" + paint::source_name(numbers.source) + "\t" + (flags.empty() ? "-" : flags) +
@@ -173,8 +180,9 @@ class Run {
     std::string line = fmt::format("{}: {} paints", session_.tool(), read_);
     if (filter_) line += fmt::format(", {} match", matched_);
     if (left_out_ > 0) line += fmt::format(", {} left out", left_out_);
+    if (read_ + left_out_ == 0) session_.warn("the input holds no paints");
     session_.say(line);
-    return left_out_ > 0 || (filter_ && matched_ == 0) ? cli::Verdict::kNegative : cli::Verdict::kDone;
+    return left_out_ > 0 || read_ == 0 || (filter_ && matched_ == 0) ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
 
   const Options& options_;

@@ -12,6 +12,7 @@
 #include "brdf/lobe_model.h"
 #include "brdf/measured.h"
 #include "formats/csv.h"
+#include "formats/encoding.h"
 #include "formats/xml.h"
 #include "image/surface_file.h"
 #include "math/statistics.h"
@@ -55,7 +56,7 @@ class Table {
     GONIO_ASSIGN(const std::string_view head, file.peek());
     if (brdf::looks_measured(path, head)) {
       GONIO_ASSIGN(table.brdf_, brdf::read_measured(path));
-    } else if (trimmed(head).starts_with('<')) {
+    } else if (trimmed(formats::as_utf8(head)).starts_with('<')) {
       GONIO_ASSIGN(const std::vector<paint::Paint> paints, formats::read_paints(path));
       for (const paint::Paint& paint : paints) table.note(paint);
     } else {
@@ -80,7 +81,8 @@ class Table {
       rows.white = meter->white();
       for (const paint::DirectionPair& pair : brdf_->samples()) {
         brdf::MeasuredValue value = brdf_->value(pair.light, pair.view);
-        for (double& f : value.f) f = kPi * std::max(f, 0.0);
+        for (double& f : value.f) f *= kPi;
+        brdf::take_off_noise(brdf_->traits(), value.f);
         rows.add({pair.light, pair.view, color::lab_from_xyz(meter->xyz(value.f), rows.white)});
       }
       return std::optional(std::move(rows));

@@ -2,6 +2,7 @@
 // its entry of the table below.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -77,6 +78,14 @@ inline void count_sample(double value, MeasuredTraits& traits, double& negative_
     ++traits.negative;
     negative_square += value * value;
   }
+}
+
+// Whether RGB below 0 is noise: it is no color of the working space either, by more than a table's own rounding.
+inline bool is_noise(const color::Rgb& rec709) {
+  constexpr double kRounding = 0.005;  // of the largest channel
+  const color::Rgb working = color::rec2020_from_rec709(rec709);
+  const double largest = std::max({std::abs(rec709.x), std::abs(rec709.y), std::abs(rec709.z)});
+  return std::min({working.x, working.y, working.z}) < -kRounding * largest;
 }
 
 }  // namespace goniochrome::brdf
