@@ -7,6 +7,7 @@
 #include "base/angles.h"
 #include "base/text.h"
 #include "color/spectrum.h"
+#include "math/elementary.h"
 #include "paint/geometry.h"
 
 namespace goniochrome::formats {
@@ -24,7 +25,7 @@ constexpr double kBrightNear = 1.5, kFarOfBright = 0.95;
 // within the cone of that angle. Nearer than 10 deg, gloss has no bound of use.
 double brightest_at(double aspecular_deg) {
   if (aspecular_deg >= kFar_deg) return kBrightestFar;
-  const double sine = std::sin(std::max(aspecular_deg, 10.0) * kDegree);
+  const double sine = math::sin(std::max(aspecular_deg, 10.0) * kDegree);
   return aspecular_deg < 10 ? kLargestReflectance : 1 / (sine * sine);
 }
 
@@ -98,10 +99,10 @@ void ScaleJudge::add(std::string_view paint, const paint::Geometry& geometry, co
   double& brightest = angle >= kFar_deg ? open_.far : open_.near;
   if (mean > brightest) brightest = mean, (angle >= kFar_deg ? open_.far_at : open_.near_at) = at;
   constexpr double kTells = 1e-4;  // of Y: darker readings are noise
-  const double Y = !L ? 0 : *L > 8 ? std::pow((*L + 16) / 116, 3) : *L / 903.3;
+  const double Y = !L ? 0 : *L > 8 ? math::pow((*L + 16) / 116, 3) : *L / 903.3;
   if (Y > kTells && mean > 0) {
-    as_factor_ += std::abs(std::log(mean / Y));
-    as_percent_ += std::abs(std::log(mean / 100 / Y));
+    as_factor_ += std::abs(math::log(mean / Y));
+    as_percent_ += std::abs(math::log(mean / 100 / Y));
   }
 }
 
