@@ -51,11 +51,11 @@ gltf() {
   [ "$(jq .results.mesh.unit_m meters.json)" = 1 ]
 }
 
-@test "compressed glTF, USD and STEP are refused, with what to do" {
-  gltf '"extensionsRequired":["KHR_draco_mesh_compression"],' >draco.gltf
-  run render-osmesa --mesh draco.gltf $view -o x.exr
+@test "glTF that requires what is not known here, USD and STEP are refused, with what to do" {
+  gltf '"extensionsRequired":["EXT_of_another_shape"],' >unknown.gltf
+  run render-osmesa --mesh unknown.gltf $view -o x.exr
   [ "$status" -eq 3 ]
-  [[ "$output" =~ "the mesh is compressed by Draco: export it without compression" ]]
+  [[ "$output" =~ "\"EXT_of_another_shape\" is not known here: export without it" ]]
   printf '#usda 1.0\n' >car.usda
   printf 'ISO-10303-21;\nHEADER;\n' >car.step
   run render-osmesa --mesh car.usda $view -o x.exr
