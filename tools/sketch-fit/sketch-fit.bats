@@ -183,6 +183,7 @@ planted() {
 }
 
 @test "the residual tells by angle what no paint explains: shadows, or an edit" {
+  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 128x64 -o small.exr
   prefilter-envmap -q small.exr --basis "$TESTDATA/b7.basis.xml" -o small.env.exr
   scene="--mesh $TESTDATA/box.obj --env small.env.exr --paint fitted.xml#satin --size 160x100 --samples 1"
   render-osmesa -q $scene --effects auto,-rays --aov normal,aspecular,lambert,mask,part -o open.exr
