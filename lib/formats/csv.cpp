@@ -104,7 +104,7 @@ Result<void> CsvPaintReader::State::check_width() const {
                            comma ? "write decimal points, or separate the cells by ;" : "fill or remove cells"));
 }
 
-// Whether the row in `cells` says in which units the columns are: of its values none is a number.
+// True for a row that states the units of the columns: none of its values is a number.
 bool CsvPaintReader::State::is_row_of_units() const {
   if (cells.size() != header.headings.size()) return false;
   std::vector<int> columns(header.column.begin() + kL, header.column.begin() + kB + 1);
@@ -377,7 +377,7 @@ Result<void> CsvPaintReader::State::add_row() {
   return {};
 }
 
-// Whether the row has a geometry that the open sample has, on another date.
+// True for a row of another date whose geometry the open sample already has.
 bool CsvPaintReader::State::is_measured_again() const {
   if (header.column[kDate] < 0 || text(header.column[kDate]) == open_date) return false;
   const auto geometry = paint::parse_geometry(without_degree_sign(text(header.column[kGeometry])));

@@ -37,7 +37,7 @@ class CsvPaintReader {
   bool is_wide() const;
   // What the header leaves open: columns that are not read, and a viewing condition that is assumed.
   const std::vector<std::string>& warnings() const;
-  // What was assumed of the rows so far.
+  // Assumptions about the rows so far.
   std::vector<std::string> closing_warnings() const;
 
  private:

@@ -345,7 +345,7 @@ class CxfHandler final : public XmlHandler {
   std::vector<CxfObject> objects_;
   std::size_t objects_seen_ = 0;
   std::map<std::string, CxfSpecification> specifications_;
-  // Of the first pass: what a spectrum is judged by. A few bytes of each spectrum suffice.
+  // The first pass keeps a few bytes of each spectrum, which suffice to judge its scale.
   struct SeenSpectrum {
     std::size_t object;
     const std::string* specification;

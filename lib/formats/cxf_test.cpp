@@ -294,7 +294,7 @@ TEST_F(Cxf, ReadsXyzAndSpectraOfPoints) {
   EXPECT_THAT(uneven.warnings, ElementsAre(HasSubstr("the points of spectra in unequal steps are not kept")));
 }
 
-// What is not read is named by what it is.
+// Messages name the kind of a value that is not read.
 TEST_F(Cxf, NamesWhatItDoesNotRead) {
   const auto rgb =
       good(cxf(object("x", "<ColorSRGB ColorSpecification=\"a\"><R>1</R></ColorSRGB>"), measured_at("a", 15)));

@@ -38,7 +38,7 @@ Result<void> check_writable(const paint::Paint& paint);
 // `text` with a point in place of its comma, if it has one comma and no point; nothing otherwise.
 std::optional<std::string> with_decimal_point(std::string_view text);
 
-// What reflectances are written in: factors, where 1 is the perfect diffuser, or percent.
+// The unit of reflectances in a file: factors, where 1 is the perfect diffuser, or percent.
 enum class Scale { kUnstated, kFactor, kPercent };
 
 struct ImportOptions {

@@ -80,7 +80,7 @@ inline void count_sample(double value, MeasuredTraits& traits, double& negative_
   }
 }
 
-// Whether RGB below 0 is noise: it is no color of the working space either, by more than a table's own rounding.
+// True where RGB below 0 is noise: it lies outside the working space too, by more than a table's own rounding.
 inline bool is_noise(const color::Rgb& rec709) {
   constexpr double kRounding = 0.005;  // of the largest channel
   const color::Rgb working = color::rec2020_from_rec709(rec709);

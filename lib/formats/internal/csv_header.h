@@ -38,7 +38,7 @@ struct CsvTriple {
   std::array<int, 3> column = {-1, -1, -1};
 };
 
-// What the columns of a table mean.
+// The meaning of each column of a table.
 struct CsvHeader {
   std::vector<std::string> headings;  // as written
   std::array<int, kColumns> column;
