@@ -234,8 +234,6 @@ void PaintFitter::finish(const std::vector<paint::LabReading>& readings, const c
   report.de00_max = max_de00(report.de00_by_geometry);
   report.de00_mean = mean_de00(report.de00_by_geometry);
   fit.max_de00 = report.de00_max, fit.mean_de00 = report.de00_mean;
-  if (report.de00_max > kVisible_de00)
-    report.limit = fit_limit(readings, report.de00_by_geometry, white, fit.coat_index, !fit.views.empty());
   if (fit.views.empty()) return;
   paint::LobeFit together = fit;
   together.views.clear();
@@ -275,6 +273,30 @@ Result<PaintFit> PaintFitter::fit(const paint::Paint& paint) const {
   GONIO_ASSIGN(PaintFit all, fit_all(paint, deadline));
   if (options_.by_incidence) all.report.incidences = incidences(paint, all.lobes, deadline);
   return all;
+}
+
+// Why the worst reading is not met any better. Where readings, coat and options do not explain it, the paint is fitted
+// by color difference too, which gives the largest difference `by_color` that the same lobes can have: the basis is the
+// limit only where that comes no closer.
+std::string PaintFitter::limit(const std::vector<paint::LabReading>& readings, const color::Xyz& white,
+                               const PaintFit& fit, const std::function<double()>& by_color) const {
+  const PaintFitReport& report = fit.report;
+  const std::string told =
+      fit_limit(readings, report.de00_by_geometry, white, fit.lobes.coat_index, !fit.lobes.views.empty());
+  if (!told.empty()) return told;
+  const auto worst = std::ranges::max_element(report.de00_by_geometry, {}, &GeometryError::de00);
+  if (std::ranges::find(report.lost_to_coat, worst->geometry, &GeometryError::geometry) != report.lost_to_coat.end())
+    return "its curve under the coat is not one of the basis's lobes, which meet it without the coat";
+  if (report.status == FitStatus::kTimeLimit || report.status == FitStatus::kNotConverged)
+    return "its fit was not brought to an end";
+  if (!report.dropped.empty()) return "lobes of the basis were left out, as the options ask";
+  constexpr double kClearlyCloser = 0.9;
+  if (options_.method != FitMethod::kDeltaE && fit.lobes.views.empty())
+    if (const double closer = by_color(); closer < kClearlyCloser * report.de00_max)
+      return fmt::format(
+          "{} spreads the error by reflectance: --method deltae comes to dE00 {:.2f} with the same basis",
+          fit.lobes.method, closer);
+  return "its curve is not one of the basis's lobes";
 }
 
 Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint, const Deadline& deadline) const {
@@ -330,6 +352,14 @@ Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint, const Deadline&
   }
   finish(target.readings, white, out);
   out.report.lost_to_coat = errors_lost(target.readings, out.report.de00_by_geometry, lost, !out.lobes.views.empty());
+  if (out.report.de00_max > kVisible_de00)
+    out.report.limit = limit(target.readings, white, out, [&]() -> double {
+      FitOptions by_color = options_;
+      by_color.method = FitMethod::kDeltaE;
+      PaintFit other = started(coat);
+      fit_flake(by_color, together, basis_.exponents, target.first_deg * kDegree, deadline, other);
+      return max_de00(errors_at(target.readings, white, other.lobes));
+    });
   out.report.time_us = clock.elapsed_s() * 1e6;
   return out;
 }
@@ -356,7 +386,14 @@ Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
     const double read = brdf::gloss_units(gloss_, *meter, out.lobes, brdf::kGlossIncidence_deg);
     out.report.gloss.push_back({angle, read, {}});
   }
-  finish(brdf.paint.measurement ? brdf.paint.measurement->rows : std::vector<paint::LabReading>(), white, out);
+  const std::vector<paint::LabReading> readings =
+      brdf.paint.measurement ? brdf.paint.measurement->rows : std::vector<paint::LabReading>();
+  finish(readings, white, out);
+  if (out.report.de00_max > kVisible_de00)
+    out.report.limit =
+        fit_limit(readings, out.report.de00_by_geometry, white, out.lobes.coat_index, !out.lobes.views.empty());
+  if (out.report.de00_max > kVisible_de00 && out.report.limit.empty())
+    out.report.limit = "the fit weighs all measured directions, not these readings alone";
   compare(rows, white, out);
   if (brdf.paint.measurement) {
     GONIO_ASSIGN(out.report.brdf->from_five_angles, from_five_angles(brdf, deadline));

@@ -2,6 +2,7 @@
 // the proof that no other weights do better. [ShimizuMeyer] 4, [Shimizu2009] 2.4, goniochrome-theory(7), FITTING.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -182,6 +183,8 @@ class PaintFitter {
   PaintFit started(double coat_index) const;
   Result<FiveAngleFigures> from_five_angles(const BrdfTarget& brdf, const Deadline& deadline) const;
   void finish(const std::vector<paint::LabReading>& readings, const color::Xyz& white, PaintFit& fit) const;
+  std::string limit(const std::vector<paint::LabReading>& readings, const color::Xyz& white, const PaintFit& fit,
+                    const std::function<double()>& by_color) const;
   Result<PaintFit> fit_all(const paint::Paint& paint, const Deadline& deadline) const;
   std::vector<IncidenceFigures> incidences(const paint::Paint& paint, const paint::LobeFit& together,
                                            const Deadline& deadline) const;

@@ -289,6 +289,23 @@ TEST(PaintFit, TellsWhatLimitsIt) {
       std::string::npos);
 }
 
+// A white that l1 leaves visible differences of, and that fits by color difference meet closer with the same lobes: the
+// basis was told to be the limit.
+TEST(PaintFit, NamesTheMethodWhereAnotherComesCloser) {
+  const paint::Paint white = paint_with({{-15, {88.3, -0.6, 5.5}},
+                                         {15, {88.3, -0.6, 5.5}},
+                                         {25, {88.0, -0.6, 5.5}},
+                                         {45, {87.9, -0.6, 5.4}},
+                                         {75, {88.0, -0.6, 4.4}},
+                                         {110, {86.1, -0.6, 4.0}}});
+  const PaintFitReport l1 = report_of(white), by_color = report_of(white, {.method = FitMethod::kDeltaE});
+  ASSERT_GT(l1.de00_max, kVisible_de00);
+  ASSERT_LT(by_color.de00_max, 0.9 * l1.de00_max);
+  EXPECT_EQ(l1.limit, fmt::format("l1 spreads the error by reflectance: --method deltae comes to dE00 {:.2f} with the "
+                                  "same basis",
+                                  by_color.de00_max));
+}
+
 // Two readings at one aspecular angle: no weights for all views do better than the floor, whatever the method, and
 // weights for the two views do.
 TEST(PaintFit, NoFitForAllViewsComesBelowTheFloor) {

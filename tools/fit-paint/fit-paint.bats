@@ -508,3 +508,9 @@ XML
   fit-paint -q -b "$TESTDATA/b7.basis.xml" "$TESTDATA/paints.paints.xml#silver_fine" -o /dev/null --report r.json
   jq -e '.results.paints[0] | has("incidences") | not' r.json
 }
+
+@test "an input without a paint is told, and the exit status is 1" {
+  run --separate-stderr bash -c "echo '$head</paints>' | fit-paint -b '$basis'"
+  [ "$status" -eq 1 ]
+  [[ "$stderr" == *"the input holds no paints: nothing was fitted"* ]]
+}

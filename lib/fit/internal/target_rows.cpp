@@ -278,7 +278,7 @@ std::string fit_limit(const std::vector<paint::LabReading>& readings, const std:
   if (rise > kClearRise)
     return fmt::format("its {}{} grows by {:.0f} % away from specular, which no lobes do", kChannels[channel],
                        coat_index == paint::kNoCoat ? "" : " under the coat", 100 * rise);
-  return "its curve is not one of the basis's lobes";
+  return "";
 }
 
 }  // namespace goniochrome::fit

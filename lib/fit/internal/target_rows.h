@@ -88,8 +88,7 @@ Twins twins_of(const std::vector<paint::LabReading>& readings);
 
 // What limits the worst reading of a fit, in words: its color is outside the working space, its twin on the other side
 // of specular has another color (of a fit for all views), or a channel of the base under the coat grows away from
-// specular; where none of these is true, it is the exponents of the basis. `errors` are those of the readings, in their
-// order; at least one.
+// specular; "" where none of these is true. `errors` are those of the readings, in their order; at least one.
 std::string fit_limit(const std::vector<paint::LabReading>& readings, const std::vector<GeometryError>& errors,
                       const color::Xyz& white, double coat_index, bool by_view);
 
