@@ -42,7 +42,8 @@ struct Drawn {
   Frame frame;
 };
 
-Drawn drawn(const World& world, const std::string& effects, bool rays, int samples = 1, double most_in_all = 0) {
+Drawn drawn(const World& world, const std::string& effects, bool rays, int samples = 1, double most_in_all = 0,
+            double tolerance_de00 = PlanRequest{}.tolerance_de00) {
   auto renderer = Renderer::create();
   EXPECT_TRUE(renderer.ok());
   RaySetup setup;
@@ -56,6 +57,7 @@ Drawn drawn(const World& world, const std::string& effects, bool rays, int sampl
   request.effects = effects;
   request.samples = samples;
   request.most_ray_samples = most_in_all;
+  request.tolerance_de00 = tolerance_de00;
   auto plan = renderer->load(world.scene, {*seen}, request);
   EXPECT_TRUE(plan.ok()) << plan.error().message;
   Drawn result{*std::move(plan), {}};
@@ -156,6 +158,7 @@ TEST(RayEffects, NoisyPointsOfTheTruthAreTracedOn) {
 // The samples of a whole picture may be limited: it keeps to that, says which noise that leaves, and where effects are
 // asked for by name there is no such limit.
 TEST(RayEffects, APictureTakesNoMoreSamplesThanItMay) {
+  constexpr double kPart = 0.2, kTolerance_de00 = 0.2;
   const World world(ball_in_a_cup());
   const auto points = [](const Drawn& picture) {
     double count = 0;
@@ -163,13 +166,13 @@ TEST(RayEffects, APictureTakesNoMoreSamplesThanItMay) {
     for (std::size_t i = 3; i < g.data.size(); i += 4) count += g.data[i] != 0 ? 1 : 0;
     return count;
   };
-  const Drawn free = drawn(world, "auto", true);
+  const Drawn free = drawn(world, "auto", true, 1, 0, kTolerance_de00);
   const double taken = free.frame.rays.samples * points(free);
-  const Drawn limited = drawn(world, "auto", true, 1, 0.2 * taken);
+  const Drawn limited = drawn(world, "auto", true, 1, kPart * taken, kTolerance_de00);
   EXPECT_FALSE(limited.frame.rays.reached);
-  EXPECT_LE(limited.frame.rays.samples * points(limited), 0.2 * taken);
+  EXPECT_LE(limited.frame.rays.samples * points(limited), kPart * taken);
   EXPECT_GT(limited.frame.rays.de00_p95, 1.3 * free.frame.rays.de00_p95);
-  const Drawn named = drawn(world, "auto,+rays", true, 1, 0.2 * taken);
+  const Drawn named = drawn(world, "auto,+rays", true, 1, kPart * taken, kTolerance_de00);
   EXPECT_TRUE(named.frame.rays.reached);
   EXPECT_GT(named.frame.rays.samples * points(named), 0.5 * taken);
 }

@@ -381,7 +381,7 @@ Result<Transport> Renderer::State::traced_light(bool over_floor) const {
   GONIO_ASSIGN(Transport created, Transport::create(paths));
   if (over_floor) {
     GroundRequest request;
-    request.directions = request.bounced_directions = ground_directions(tolerance_de00);
+    request.directions = ground_directions(tolerance_de00), request.bounced_directions = 4 * request.directions;
     request.seed = effort_asked.seed;
     created.shade_ground(request, effort_asked.bounces);
   }

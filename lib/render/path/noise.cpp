@@ -52,14 +52,14 @@ Covariance Estimates::covariance() const {
 
 // L, a and b are linear in the error to first order: dL = 116 f'(Y) dY and so on. CIEDE2000 weighs it along L, chroma
 // and hue by the S functions; its a' = (1 + G) a stretches grays.
-double noise_de00(const color::Rgb& radiance, const Covariance& covariance, double white_luminance) {
-  const auto& rows = relative_xyz_rows();
+SeenRows::SeenRows(const color::Rgb& radiance, double white_luminance) {
+  const auto& xyz = relative_xyz_rows();
   const double scale = 1 / white_luminance;
   Curve f[3];
   Vec3 gradient[3];
   for (std::size_t i = 0; i < 3; ++i) {
-    f[i] = lab_curve(scale * dot(rows[i], radiance));
-    gradient[i] = (scale * f[i].slope) * rows[i];
+    f[i] = lab_curve(scale * dot(xyz[i], radiance));
+    gradient[i] = (scale * f[i].slope) * xyz[i];
   }
   const double lightness = 116 * f[1].value - 16, a = 500 * (f[0].value - f[1].value),
                b = 200 * (f[1].value - f[2].value), c7 = std::pow(std::hypot(a, b), 7);
@@ -74,9 +74,12 @@ double noise_de00(const color::Rgb& radiance, const Covariance& covariance, doub
   // Without chroma every direction is both.
   const double cosine = chroma > 1e-9 ? a_prime / chroma : 1, sine = chroma > 1e-9 ? b / chroma : 0;
   const Vec3 d_chroma = cosine * d_a + sine * d_b, d_hue = cosine * d_b - sine * d_a;
-  const double variance = variance_along(d_lightness, covariance) / (s_l * s_l) +
-                          variance_along(d_chroma, covariance) / (s_c * s_c) +
-                          variance_along(d_hue, covariance) / (s_h * s_h);
+  rows = {(1 / s_l) * d_lightness, (1 / s_c) * d_chroma, (1 / s_h) * d_hue};
+}
+
+double noise_de00(const color::Rgb& radiance, const Covariance& covariance, double white_luminance) {
+  double variance = 0;
+  for (const Vec3& row : SeenRows(radiance, white_luminance).rows) variance += variance_along(row, covariance);
   return std::sqrt(std::max(0.0, variance));
 }
 

@@ -32,9 +32,26 @@ class Estimates {
   int count_ = 0;
 };
 
+// CIEDE2000 near a radiance, as seen before a diffuse white of this luminance, to first order: the square of a small
+// difference is the sum of the squares of its products with three rows. The rotation term of blues, which is worth a
+// few percent, is left out.
+struct SeenRows {
+  std::array<Vec3, 3> rows = {};  // along lightness, chroma and hue
+
+  SeenRows() = default;
+  SeenRows(const color::Rgb& radiance, double white_luminance);
+  double square(const color::Rgb& difference) const {
+    double sum = 0;
+    for (const Vec3& row : rows) {
+      const double along = dot(row, difference);
+      sum += along * along;
+    }
+    return sum;
+  }
+};
+
 // The root mean square CIEDE2000 difference between a radiance and the same with a small random error of this
-// covariance, as seen before a diffuse white of this luminance. To first order in the error; without the rotation term
-// of blues, which is worth a few percent.
+// covariance, by SeenRows.
 double noise_de00(const color::Rgb& radiance, const Covariance& covariance, double white_luminance);
 
 }  // namespace goniochrome::render

@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "render/internal/seen.h"
+#include "render/path/reconstruction.h"
 #include "render/path/round_cut.h"
 #include "render/path/seen_point.h"
 
@@ -63,6 +64,7 @@ class Gathered {
     for (const color::Rgb& mean : means) of_round.add(mean);
     const double before = fours_, added = round.fours(), all = before + added, share = added / all;
     mean_ = (1 - share) * mean_ + share * of_round.mean();
+    for (std::size_t k = 0; k < halves_.size(); ++k) halves_[k] = (1 - share) * halves_[k] + share * means[k];
     const Covariance now = of_round.covariance();
     for (std::size_t k = 0; k < now.size(); ++k) {
       const double old = before > 0 ? (1 - share) * (1 - share) * of_four_[k] / before : 0;
@@ -72,6 +74,7 @@ class Gathered {
   }
 
   const color::Rgb& mean() const { return mean_; }
+  const Halves& halves() const { return halves_; }  // by the sequences of each round
   int fours() const { return fours_; }
   int freedom() const { return freedom_; }  // of the covariance
   // Of the mean, times fours(): what four samples count.
@@ -79,6 +82,7 @@ class Gathered {
 
  private:
   color::Rgb mean_;
+  Halves halves_{};
   Covariance of_four_{};
   int fours_ = 0, freedom_ = 0;
 };
@@ -159,6 +163,7 @@ class Picture {
     for (int y = 0; y < g.height; ++y)
       for (int x = 0; x < g.width; ++x) add_point(x, y);
     states_.resize(points_.size());
+    if (request_.reconstruct) shown_.assign(points_.size(), {0, 0, {-1, {}, {}}});
     options_ = whole_ = request_.options;
     whole_.correction = false;
     const bool given = seen_ != nullptr || count_ == 1;  // the surfaces of all samples
@@ -209,6 +214,7 @@ class Picture {
   struct State {
     Gathered sums;
     color::Rgb sure;
+    color::Rgb sharp;   // what is known without samples of the light that the mesh takes and adds
     double needed = 0;  // fours that bring the noise of the neighborhood to the tolerance
     bool certain = false;
     bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
@@ -256,12 +262,25 @@ class Picture {
     const SeenPoint at(transport_, options_of(i), spot, rays::float3(g.to_viewer(point.x, point.y)));
     state.certain = at.certain();
     state.sure = at.sure();
+    if (first_round_) show(i, spot, 1, state.sure, rays::float3(g.to_viewer(point.x, point.y)));
     if (state.certain && state.sums.fours() == 0) return;
     const Round round(fours);
     LightShares means[Round::kSequences];
     // Without the shares that stopped, nothing may be left.
     for (int fan = 0; fan < round.fans() && !state.certain; ++fan) add_fan(at, i, round, fan, means);
     add_round(i, round, means);
+  }
+
+  // Keeps what the reconstruction needs of a sample that counts by `share` in its pixel.
+  void show(std::size_t i, const rays::Spot& spot, double share, const color::Rgb& sure,
+            const rays::Float3& to_viewer) {
+    if (!request_.reconstruct) return;
+    State& state = states_[i];
+    ShownPoint& shown = shown_[i];
+    const ShownPiece piece{spot.part, spot.shading, spot.position, static_cast<float>(share)};
+    if (shown.piece.part < 0) shown = {points_[i].x, points_[i].y, piece};
+    if (share < 1) shown.pieces.push_back(piece);
+    state.sharp += share * (state.hidden ? SeenPoint(transport_, options_, spot, to_viewer).sure() : sure);
   }
 
   void add_round(std::size_t i, const Round& round, const LightShares (&means)[Round::kSequences]) {
@@ -333,7 +352,7 @@ class Picture {
       color::Rgb drawn[Round::kSequences];
       for (std::size_t k = 0; k < Round::kSequences; ++k) {
         const LightShares shares = first_shares(i, k);
-        drawn[k] = sum_of(shares, drawn_), kept_[i] += 0.5 * sum_of(shares, stopped);
+        drawn[k] = sum_of(shares, drawn_), kept_[i][k] = sum_of(shares, stopped);
       }
       states_[i].sums = {};
       states_[i].sums.add(round, drawn);
@@ -341,19 +360,21 @@ class Picture {
   }
 
   // What a sample of a pixel sees, which is something.
-  SeenPoint transport_at(std::size_t i, std::size_t sample, rays::Spot& spot) const {
+  SeenPoint transport_at(std::size_t i, std::size_t sample, rays::Spot& spot, rays::Float3& to_viewer) const {
     const PathPoint& point = points_[i];
     const rays::RayScene& scene = transport_.eye();
     if (seen_ != nullptr) {
       const VisibleSurface& surface = (*seen_)[sample];
       spot = spot_at(scene, surface, point.x, point.y);
-      return {transport_, options_of(i), spot, rays::float3(surface.gbuffer.to_viewer(point.x, point.y))};
+      to_viewer = rays::float3(surface.gbuffer.to_viewer(point.x, point.y));
+      return {transport_, options_of(i), spot, to_viewer};
     }
     const Rays& through = surface_.gbuffer.rays;
     const Vec3 toward = through.direction(point.x + 0.5 + shifts_[sample][0], point.y + 0.5 + shifts_[sample][1]);
     const rays::Float3 eye = scene.local(through.eye), direction = rays::float3(toward);
     spot = scene.spot(scene.closest(eye, direction), eye, direction);
-    return {transport_, options_of(i), spot, -direction};
+    to_viewer = -direction;
+    return {transport_, options_of(i), spot, to_viewer};
   }
 
   // Each round at a point has sequences of its own.
@@ -383,9 +404,11 @@ class Picture {
       auto fan = static_cast<int>((sample + count - first) % count);
       if (!first_time && (fan >= round.fans() || (state.uncertain >> sample & 1U) == 0)) continue;
       rays::Spot spot;
-      const SeenPoint at = transport_at(i, sample, spot);
+      rays::Float3 to_viewer;
+      const SeenPoint at = transport_at(i, sample, spot, to_viewer);
       if (first_time) {
         state.sure += (1.0 / count) * at.sure();
+        show(i, spot, 1.0 / count, at.sure(), to_viewer);
         if (!at.certain()) state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);
       }
       if (at.certain()) continue;
@@ -401,14 +424,55 @@ class Picture {
       for (std::size_t i = begin; i < end; ++i) {
         points_[i].radiance = states_[i].sure + states_[i].sums.mean();
         if (states_[i].hidden) points_[i].radiance += -1.0 * base_at(points_[i]);
-        if (!kept_.empty()) points_[i].radiance += kept_[i];
+        if (!kept_.empty()) points_[i].radiance += 0.5 * (kept_[i][0] + kept_[i][1]);
         points_[i].samples = kOfFour * states_[i].sums.fours();
       }
     });
-    parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) judge(i);
-    });
+    if (request_.reconstruct) {
+      reconstruct();
+    } else {
+      parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) judge(i);
+      });
+    }
     return worse_percentile([this](std::size_t i) { return points_[i].noise_de00; });
+  }
+
+  // Whether all samples of a pixel show one piece of surface.
+  bool is_even(const ShownPoint& shown) const {
+    constexpr float kSameTurn = 0.96F;  // cosine
+    return shown.pieces.empty() ||
+           (shown.pieces.size() == count_ && std::ranges::all_of(shown.pieces, [&](const auto& p) {
+              return p.part == shown.piece.part && rays::dot(p.normal, shown.piece.normal) > kSameTurn;
+            }));
+  }
+
+  // Light that is known without samples stays sharp. Where all that is left was summed, the rest is the same light less
+  // what points show without the mesh in the way, as everywhere else.
+  void reconstruct() {
+    std::vector<Halves> halves(points_.size());
+    std::vector<color::Rgb> beside(points_.size());
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const State& state = states_[i];
+      const color::Rgb base = base_ != nullptr ? base_at(points_[i]) : color::Rgb{};
+      beside[i] = base + state.sharp;
+      for (std::size_t k = 0; k < 2; ++k) {
+        halves[i][k] = state.sums.halves()[k];
+        if (state.hidden) halves[i][k] += state.sure - base - state.sharp;
+        if (!kept_.empty()) halves[i][k] += kept_[i][k];
+      }
+    }
+    for (ShownPoint& shown : shown_)
+      if (is_even(shown)) shown.pieces.clear();
+    const Gbuffer& g = surface_.gbuffer;
+    const Reconstruction found = reconstruction(g.width, g.height, shown_, halves, beside, request_.white_luminance);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const bool sampled = states_[i].sums.fours() > 0;
+      points_[i].radiance = states_[i].sharp + (sampled ? found.light[i] : halves[i][0]);
+      points_[i].noise_de00 = sampled ? found.error_de00[i] : 0;
+      const double excess = points_[i].noise_de00 / tolerance();
+      states_[i].needed = states_[i].sums.fours() * excess * excess;
+    }
   }
 
   // The larger of the 95th percentiles over the mesh and over the floor.
@@ -540,7 +604,8 @@ class Picture {
   unsigned drawn_ = kAllShares;  // the shares that are drawn on
   FoundShares found_;
   std::vector<std::array<std::array<float, 3>, 2 * kShareCount>> first_;  // by sequences; empty: not kept
-  std::vector<color::Rgb> kept_;                                          // of shares that stopped
+  std::vector<Halves> kept_;                                              // of shares that stopped
+  std::vector<ShownPoint> shown_;  // by the points; empty: nothing is reconstructed
 };
 
 }  // namespace

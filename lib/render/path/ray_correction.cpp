@@ -87,6 +87,7 @@ CorrectionNoise add_correction(const Transport& transport, const std::vector<Vis
   paths.options.into_lobes = request.effects.self;
   paths.options.into_diffuse = request.effects.bounce;
   paths.options.correction = true;
+  paths.reconstruct = true;
   paths.tolerance_de00 = request.tolerance_de00, paths.stop_de00 = kStopShare * request.tolerance_de00;
   paths.white_luminance = request.white_luminance > 0 ? request.white_luminance : 1;
   paths.seed = request.seed;

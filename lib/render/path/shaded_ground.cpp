@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "base/angles.h"
 #include "base/parallel.h"
@@ -19,8 +20,11 @@ constexpr unsigned kFanRays = 8;
 constexpr std::uint32_t kFew = 8, kMany = 64;
 // The grid is even about the mesh, to this part of its length beyond it. From there on cells grow by this factor, as
 // far as so many lengths.
-constexpr double kGridMargin = 0.1, kGridGrowth = 1.08, kGridReach = 16;
-constexpr std::size_t kBounceStep = 6;
+constexpr double kGridMargin = 0.1, kGridGrowth = 1.15, kGridReach = 16;
+constexpr std::size_t kBounceStep = 4;
+// A steep cell is divided into so many, each way.
+constexpr std::size_t kDivisions = 4, kFineNodes = kDivisions + 1;
+constexpr std::uint32_t kWhole = std::numeric_limits<std::uint32_t>::max();
 
 float mean_of(const Float3& a) {
   return (a.x + a.y + a.z) / 3;
@@ -131,7 +135,7 @@ ShadedGround::Directions ShadedGround::directions(const std::vector<LaidGround::
 
 ShadedGround::Source ShadedGround::source(
     const std::function<std::vector<LaidGround::SharedRay>(std::uint32_t count)>& drawn) {
-  Source source{directions(drawn(kFew)), directions(drawn(kMany)), {}};
+  Source source{directions(drawn(kFew)), directions(drawn(kMany)), {}, {}};
   for (const Float3& share : source.many.shares) source.share = source.share + share;
   return source;
 }
@@ -187,6 +191,99 @@ void ShadedGround::fill(Grid& grid, const Value& value) const {
 void ShadedGround::shade(const std::vector<float>& x, const std::vector<float>& z) {
   blocked_.x = x, blocked_.z = z;
   fill(blocked_, [&](const Float3& start, std::size_t) { return blocked(soft_, start); });
+  divide();
+  for (Source& source : sources_) mark(source);
+}
+
+// Marks the cells that the shadows of boxes about neighboring triangles meet, so that no place in shadow is missed.
+void ShadedGround::mark(Source& source) const {
+  constexpr std::size_t kBoxes = 4096;
+  const std::size_t columns = blocked_.x.size() - 1, triangles = scene_->triangles(),
+                    each = std::max<std::size_t>(1, triangles / kBoxes);
+  source.may_be_taken.assign(columns * (blocked_.z.size() - 1), false);
+  const auto cells = [](const std::vector<float>& lines, float low, float high) {
+    const auto begin = std::upper_bound(lines.begin() + 1, lines.end() - 1, low);
+    const auto end = std::lower_bound(begin, lines.end() - 1, high);
+    return std::pair(static_cast<std::size_t>(begin - lines.begin()) - 1,
+                     static_cast<std::size_t>(end - lines.begin()));
+  };
+  for (std::size_t first = 0; first < triangles; first += each) {
+    Float3 low{HUGE_VALF, HUGE_VALF, HUGE_VALF}, high = -low;
+    for (std::size_t t = first; t < std::min(triangles, first + each); ++t) {
+      for (const Float3& corner : scene_->corners(static_cast<std::uint32_t>(t))) {
+        low = {std::min(low.x, corner.x), std::min(low.y, corner.y), std::min(low.z, corner.z)};
+        high = {std::max(high.x, corner.x), std::max(high.y, corner.y), std::max(high.z, corner.z)};
+      }
+    }
+    const float bottom = std::max(0.0F, low.y - height_), top = high.y - height_;
+    if (!(top > 0)) continue;
+    for (const rays::Fan& fan : source.many.fans) {
+      for (unsigned i = 0; i < kFanRays; ++i) {
+        if ((fan.wanted >> i & 1U) == 0) continue;
+        const float x = fan.x[i] / fan.y[i], z = fan.z[i] / fan.y[i];
+        const auto [left, right] =
+            cells(blocked_.x, low.x - std::max(bottom * x, top * x), high.x - std::min(bottom * x, top * x));
+        const auto [back, front] =
+            cells(blocked_.z, low.z - std::max(bottom * z, top * z), high.z - std::min(bottom * z, top * z));
+        for (std::size_t row = back; row < front; ++row)
+          for (std::size_t column = left; column < right; ++column) source.may_be_taken[row * columns + column] = true;
+      }
+    }
+  }
+}
+
+bool ShadedGround::may_be_taken(const Source& source, const Float3& place) const {
+  std::size_t column = 0, row = 0;
+  float right = 0, down = 0;
+  return !blocked_.find(place, column, row, right, down) || source.may_be_taken[row * (blocked_.x.size() - 1) + column];
+}
+
+// The edges of shadows lie in few cells, which have nodes of their own.
+void ShadedGround::divide() {
+  const std::size_t columns = blocked_.x.size() - 1, rows = blocked_.z.size() - 1;
+  divided_.assign(columns * rows, kWhole);
+  std::vector<std::size_t> steep;
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      const auto [least, most] =
+          std::minmax({mean_of(blocked_.at(column, row)), mean_of(blocked_.at(column + 1, row)),
+                       mean_of(blocked_.at(column, row + 1)), mean_of(blocked_.at(column + 1, row + 1))});
+      if (most - least <= steep_) continue;
+      divided_[row * columns + column] = static_cast<std::uint32_t>(steep.size());
+      steep.push_back(row * columns + column);
+    }
+  }
+  fine_.resize(steep.size() * kFineNodes * kFineNodes);
+  parallel_for(steep.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t column = steep[k] % columns, row = steep[k] / columns;
+      for (std::size_t node = 0; node < kFineNodes * kFineNodes; ++node) {
+        const float right = static_cast<float>(node % kFineNodes) / kDivisions,
+                    down = static_cast<float>(node / kFineNodes) / kDivisions;
+        fine_[k * kFineNodes * kFineNodes + node] =
+            blocked(soft_, start_at(std::lerp(blocked_.x[column], blocked_.x[column + 1], right),
+                                    std::lerp(blocked_.z[row], blocked_.z[row + 1], down)));
+      }
+    }
+  });
+}
+
+// Means over the nodes beside each one, by 1 2 1 each way: what a mesh sends to a floor changes slowly, and has more
+// noise than what it takes.
+void ShadedGround::smooth(Grid& grid) {
+  const std::size_t columns = grid.x.size(), rows = grid.z.size();
+  const auto along = [&](std::size_t count, std::size_t step, std::size_t lines, std::size_t line_step) {
+    for (std::size_t line = 0; line < lines; ++line) {
+      Float3* values = &grid.values[line * line_step];
+      Float3 before = values[0];
+      for (std::size_t i = 0; i < count; ++i) {
+        const Float3 own = values[i * step], after = i + 1 < count ? values[(i + 1) * step] : own;
+        values[i * step] = 0.25F * before + 0.5F * own + 0.25F * after;
+        before = own;
+      }
+    }
+  };
+  along(columns, 1, rows, columns), along(rows, columns, columns, 1);
 }
 
 // Directions even by the cosine.
@@ -219,6 +316,7 @@ void ShadedGround::gather(const std::vector<float>& x, const std::vector<float>&
     for (int c = 0; c < 3; ++c) share[c] = irradiance[c] > 0 ? kPi / count * sum[c] / irradiance[c] : 0;
     return floats(share);
   });
+  smooth(bounced_);
 }
 
 Float3 ShadedGround::blocked(const Directions& directions, const Float3& start) const {
@@ -243,24 +341,37 @@ Float3 ShadedGround::blocked(const Source& source, const Float3& start) const {
   return mean_of(few) >= kAll * mean_of(source.share) ? source.share : blocked(source.many, start);
 }
 
-GroundLight ShadedGround::light(const Float3& place, bool seen) const {
+namespace {
+
+// Between four values, of which the second pair is the lower one.
+Float3 between(const Float3* upper, const Float3* lower, float right, float down) {
+  return (1 - down) * ((1 - right) * upper[0] + right * upper[1]) + down * ((1 - right) * lower[0] + right * lower[1]);
+}
+
+}  // namespace
+
+Float3 ShadedGround::soft_blocked(std::size_t column, std::size_t row, float right, float down) const {
+  const std::uint32_t divided = divided_[row * (blocked_.x.size() - 1) + column];
+  if (divided == kWhole) return between(&blocked_.at(column, row), &blocked_.at(column, row + 1), right, down);
+  const auto cell = [](float& part) {
+    part *= kDivisions;
+    const std::size_t i = std::min(kDivisions - 1, static_cast<std::size_t>(part));
+    part -= static_cast<float>(i);
+    return i;
+  };
+  const std::size_t x = cell(right), z = cell(down);
+  const Float3* upper = &fine_[(divided * kFineNodes + z) * kFineNodes + x];
+  return between(upper, upper + kFineNodes, right, down);
+}
+
+GroundLight ShadedGround::light(const Float3& place) const {
   GroundLight light;
   std::size_t column = 0, row = 0;
   float right = 0, down = 0;
   if (!blocked_.find(place, column, row, right, down)) return light;
-  const auto between = [&](const Grid& grid) {
-    return (1 - down) * ((1 - right) * grid.at(column, row) + right * grid.at(column + 1, row)) +
-           down * ((1 - right) * grid.at(column, row + 1) + right * grid.at(column + 1, row + 1));
-  };
-  const auto is_steep = [&] {
-    const auto [least, most] =
-        std::minmax({mean_of(blocked_.at(column, row)), mean_of(blocked_.at(column + 1, row)),
-                     mean_of(blocked_.at(column, row + 1)), mean_of(blocked_.at(column + 1, row + 1))});
-    return most - least > steep_;
-  };
-  const Float3 hidden = seen && is_steep() ? blocked(soft_, start_at(place.x, place.z)) : between(blocked_);
-  light.left = color::Rgb{1, 1, 1} - rays::vec3(hidden);
-  if (bounced_.find(place, column, row, right, down)) light.bounced = rays::vec3(between(bounced_));
+  light.left = color::Rgb{1, 1, 1} - rays::vec3(soft_blocked(column, row, right, down));
+  if (bounced_.find(place, column, row, right, down))
+    light.bounced = rays::vec3(between(&bounced_.at(column, row), &bounced_.at(column, row + 1), right, down));
   return light;
 }
 
@@ -277,14 +388,15 @@ void keep_positive(GroundLight& light) {
 }  // namespace
 
 GroundLight ShadedGround::seen(const Float3& place) const {
-  GroundLight shown = light(place, true);
-  for (const Source& source : sources_) take(blocked(source, start_at(place.x, place.z)), shown);
+  GroundLight shown = light(place);
+  for (const Source& source : sources_)
+    if (may_be_taken(source, place)) take(blocked(source, start_at(place.x, place.z)), shown);
   keep_positive(shown);
   return shown;
 }
 
 GroundLight ShadedGround::met(const Float3& place, double number) const {
-  GroundLight shown = light(place, false);
+  GroundLight shown = light(place);
   const Float3 start = start_at(place.x, place.z);
   for (const Source& source : sources_) {
     const std::size_t count = source.many.fans.size() * kFanRays;

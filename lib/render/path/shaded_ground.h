@@ -24,9 +24,9 @@ struct GroundLight {
 
 struct GroundRequest {
   int directions = 256;          // at each node, a power of two
-  double cell = 1.0 / 160;       // of the grid about the mesh, in lengths of the mesh; farther away cells grow
-  double steep = 0.06;           // nodes that differ by more are not interpolated between where the floor is seen
-  int bounced_directions = 256;  // at each sixth node, a power of two
+  double cell = 1.0 / 96;        // of the grid about the mesh, in lengths of the mesh; farther away cells grow
+  double steep = 0.03;           // cells whose nodes differ by more are divided
+  int bounced_directions = 256;  // at each fourth node, a power of two
   std::uint64_t seed = 1;
   // The radiance that the mesh sends along a ray from the floor that meets it there, for the numbers of a sample; none:
   // black.
@@ -47,12 +47,11 @@ class ShadedGround {
   ShadedGround(std::shared_ptr<const rays::RayScene> scene, const LaidGround& ground, const std::vector<Light>& lights,
                const mesh::Box& box, float mesh_radius, const GroundRequest& request);
 
-  // At a place of the floor, local, as a picture shows it. Soft light is interpolated where that is flat, and summed at
-  // the place where it is not; the brightest texels and lamps that are discs get the more rays the more of them the
-  // edge of their shadow needs. There is no randomness in it.
+  // At a place of the floor, local, as a picture shows it. Soft light is interpolated; the brightest texels and lamps
+  // that are discs get the more rays the more of them the edge of their shadow needs. There is no randomness in it.
   GroundLight seen(const rays::Float3& place) const;
-  // The same where a path meets the floor: interpolated everywhere, and one ray to the brightest texels and to each
-  // lamp, which `number` in [0,1) draws.
+  // The same where a path meets the floor, with one ray to the brightest texels and to each lamp, which `number` in
+  // [0,1) draws.
   GroundLight met(const rays::Float3& place, double number) const;
 
  private:
@@ -64,7 +63,8 @@ class ShadedGround {
   // A lamp, or the brightest texels together.
   struct Source {
     Directions few, many;
-    rays::Float3 share;  // of all of it
+    rays::Float3 share;              // of all of it
+    std::vector<bool> may_be_taken;  // of each cell of blocked_: whether the mesh lies between it and the source
   };
   // Values at the crossings of lines; beyond the last line there are none.
   struct Grid {
@@ -77,22 +77,29 @@ class ShadedGround {
   static Source source(const std::function<std::vector<LaidGround::SharedRay>(std::uint32_t count)>& drawn);
   void add_lamp(const Light& light, const color::Rgb& irradiance);
   void shade(const std::vector<float>& x, const std::vector<float>& z);
+  static void smooth(Grid& grid);
+  void divide();
+  void mark(Source& source) const;
   void gather(const std::vector<float>& x, const std::vector<float>& z, const GroundRequest& request,
               const color::Rgb& irradiance);
   template <class Value>
   void fill(Grid& grid, const Value& value) const;
-  GroundLight light(const rays::Float3& place, bool seen) const;
+  rays::Float3 soft_blocked(std::size_t column, std::size_t row, float right, float down) const;
+  GroundLight light(const rays::Float3& place) const;
   struct Cone;
   Cone cone(const rays::Float3& start) const;
   rays::Float3 blocked(const Directions& directions, const rays::Float3& start) const;
   rays::Float3 blocked(const Source& source, const rays::Float3& start) const;
+  bool may_be_taken(const Source& source, const rays::Float3& place) const;
   rays::Float3 start_at(float x, float z) const { return {x, height_ + rays::kLift, z}; }
 
   std::shared_ptr<const rays::RayScene> scene_;
   float mesh_radius_ = 0, steep_ = 0, height_ = 0;
   Directions soft_;
   std::vector<Source> sources_;
-  Grid blocked_, bounced_;  // of the soft light; of the open irradiance
+  Grid blocked_, bounced_;              // of the soft light; of the open irradiance
+  std::vector<std::uint32_t> divided_;  // of each cell of blocked_: its number among those that are divided, or kWhole
+  std::vector<rays::Float3> fine_;      // the nodes of these, row by row
 };
 
 }  // namespace goniochrome::render

@@ -16,7 +16,6 @@ using rays::Float3;
 using rays::Spot;
 using Floats = std::array<float, kBands>;
 
-
 Floats floats(const color::Bands& bands, double scale = 1) {
   Floats result;
   for (std::size_t b = 0; b < result.size(); ++b) result[b] = static_cast<float>(scale * bands[b]);

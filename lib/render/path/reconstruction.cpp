@@ -1,0 +1,338 @@
+#include "render/path/reconstruction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "render/path/noise.h"
+#include "render/path/regression_kernel.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+using Predicted = std::array<float, kHalvesChannels>;
+
+// A filter: the level of the pyramid of surfaces on which it works, and its window there.
+struct Filter {
+  int level;
+  RegressionWindow window;
+};
+constexpr std::array<Filter, 5> kFilters = {{
+    {0, {2, 0.1F, 0.5F}},
+    {0, {5, 0.1F, 0.5F}},
+    {1, {5, 0.1F, 0.5F}},
+    {2, {5, 0.15F, 0.5F}},
+    {3, {5, 0.25F, 0.5F}},
+}};
+constexpr int kLevels = 4;
+// The light as it was sampled, and by each filter.
+constexpr std::size_t kChoices = kFilters.size() + 1;
+// Errors are means over this neighborhood.
+constexpr Filter kErrorMean = {1, {5, 0.25F, 0.5F, kNoSlopes}};
+// Choices are mixed by this power of one over their squared error.
+constexpr int kSharpness = 4;
+// A filter is off at a point where it differs from its reference by more than this part of their common variance.
+constexpr float kSurprise = 6;
+// The variance of a point itself, of two halves, counts by this part: few rare samples are not in the mean around them.
+constexpr float kSpike = 4;
+constexpr std::size_t kPointsAtOnce = 4096;
+constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
+
+template <class Visit>
+void each_point(std::size_t count, const Visit& visit) {
+  parallel_for(count, kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) visit(n);
+  });
+}
+
+color::Rgb half(const Predicted& p, std::size_t which) {
+  return {p[3 * which], p[3 * which + 1], p[3 * which + 2]};
+}
+
+SurfaceImage image_of(int width, int height, const std::vector<ShownPoint>& points,
+                      const std::vector<Predicted>& values) {
+  SurfaceImage image(width, height);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    if (!points[n].pieces.empty()) continue;
+    const ShownPiece& p = points[n].piece;
+    const std::size_t i = image.at(points[n].x, points[n].y);
+    image.weight[i] = 1, image.part[i] = static_cast<float>(p.part);
+    image.normal[0][i] = p.normal.x, image.normal[1][i] = p.normal.y, image.normal[2][i] = p.normal.z;
+    image.position[0][i] = p.position.x, image.position[1][i] = p.position.y, image.position[2][i] = p.position.z;
+    for (std::size_t c = 0; c < kHalvesChannels; ++c) image.value[c][i] = values[n][c];
+  }
+  return image;
+}
+
+// An element of the coarser image is the mean of those of its four that lie on one piece of surface.
+SurfaceImage coarser(const SurfaceImage& fine) {
+  constexpr float kSameTurn = 0.96F;  // cosine
+  SurfaceImage image((fine.width + 1) / 2, (fine.height + 1) / 2);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      std::size_t pivot = fine.at(2 * x, 2 * y);
+      for (int k = 1; k < 4; ++k) {
+        const std::size_t j = fine.at(2 * x + k % 2, 2 * y + k / 2);
+        if (fine.weight[j] > fine.weight[pivot]) pivot = j;
+      }
+      if (!(fine.weight[pivot] > 0)) continue;
+      const std::size_t i = image.at(x, y);
+      image.part[i] = fine.part[pivot];
+      float sum = 0;
+      for (int k = 0; k < 4; ++k) {
+        const std::size_t j = fine.at(2 * x + k % 2, 2 * y + k / 2);
+        const float weight = fine.weight[j];
+        float turn = 0;
+        for (std::size_t c = 0; c < 3; ++c) turn += fine.normal[c][j] * fine.normal[c][pivot];
+        if (!(weight > 0) || fine.part[j] != fine.part[pivot] || turn < kSameTurn) continue;
+        sum += weight;
+        image.shift[0][i] += weight * (static_cast<float>(k % 2) - 0.5F + fine.shift[0][j]) / 2;
+        image.shift[1][i] += weight * (static_cast<float>(k / 2) - 0.5F + fine.shift[1][j]) / 2;
+        for (std::size_t c = 0; c < 3; ++c)
+          image.normal[c][i] += weight * fine.normal[c][j], image.position[c][i] += weight * fine.position[c][j];
+        for (std::size_t c = 0; c < kHalvesChannels; ++c) image.value[c][i] += weight * fine.value[c][j];
+      }
+      image.weight[i] = sum;
+      float length = 0;
+      for (std::size_t c = 0; c < 3; ++c) length += image.normal[c][i] * image.normal[c][i];
+      length = std::sqrt(length);
+      for (std::size_t c = 0; c < 3; ++c) image.normal[c][i] /= length, image.position[c][i] /= sum;
+      for (auto& plane : image.shift) plane[i] /= sum;
+      for (auto& plane : image.value) plane[i] /= sum;
+    }
+  }
+  return image;
+}
+
+// The linear functions around each element of an image, which lies on a level of the pyramid.
+class Fits {
+ public:
+  Fits(const SurfaceImage& image, const Filter& filter) : image_(image), filter_(filter) {
+    row_ = (static_cast<std::size_t>(image.width) + SurfaceImage::kLanes - 1) / SurfaceImage::kLanes *
+           SurfaceImage::kLanes;
+    plane_ = row_ * static_cast<std::size_t>(image.height);
+    coefficients_.resize(kCoefficients * plane_);
+    parallel_for(static_cast<std::size_t>(image.height), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t y = begin; y < end; ++y) {
+        std::array<float*, kCoefficients> at{};
+        for (std::size_t k = 0; k < kCoefficients; ++k) at[k] = &coefficients_[k * plane_ + y * row_];
+        fit_row(image, filter.window, static_cast<int>(y), at.data());
+      }
+    });
+  }
+
+  Predicted at(const ShownPoint& point) const {
+    if (point.pieces.empty()) return filter_.level == 0 ? own(point) : about(point.x, point.y, point.piece);
+    Predicted sum{};
+    for (const ShownPiece& piece : point.pieces) {
+      const Predicted one = about(point.x, point.y, piece);
+      for (std::size_t c = 0; c < kHalvesChannels; ++c) sum[c] += piece.share * one[c];
+    }
+    return sum;
+  }
+
+ private:
+  static constexpr std::size_t kCoefficients = kSurfaceFeatures * kHalvesChannels;
+
+  float coefficient(std::size_t k, int x, int y) const {
+    return coefficients_[k * plane_ + static_cast<std::size_t>(y) * row_ + static_cast<std::size_t>(x)];
+  }
+  Predicted own(const ShownPoint& point) const {
+    Predicted result;
+    for (std::size_t c = 0; c < kHalvesChannels; ++c) result[c] = coefficient(c, point.x, point.y);
+    return result;
+  }
+
+  // The mean of what the elements about a pixel tell of a piece of surface in it; not a number where none does.
+  Predicted about(int pixel_x, int pixel_y, const ShownPiece& piece) const {
+    constexpr float kReach = 1.5F;  // elements
+    const auto size = static_cast<float>(1 << filter_.level);
+    const float u = (static_cast<float>(pixel_x) + 0.5F) / size - 0.5F,
+                v = (static_cast<float>(pixel_y) + 0.5F) / size - 0.5F;
+    const int left = static_cast<int>(std::ceil(u - kReach)), top = static_cast<int>(std::ceil(v - kReach));
+    Predicted sum{};
+    float weights = 0;
+    for (int y = std::max(0, top); y < std::min(image_.height, top + 3); ++y)
+      for (int x = std::max(0, left); x < std::min(image_.width, left + 3); ++x)
+        weights += add(x, y, u - static_cast<float>(x), v - static_cast<float>(y), piece, kReach, sum);
+    for (float& value : sum) value = weights > 1e-3F ? value / weights : kNowhere;
+    return sum;
+  }
+
+  // Adds what the fit of an element tells, and returns the weight of that.
+  float add(int x, int y, float right, float down, const ShownPiece& piece, float reach, Predicted& sum) const {
+    const std::size_t i = image_.at(x, y);
+    if (!(image_.weight[i] > 0) || image_.part[i] != static_cast<float>(piece.part)) return 0;
+    const RegressionWindow& window = filter_.window;
+    const rays::Float3 normal{image_.normal[0][i], image_.normal[1][i], image_.normal[2][i]},
+        position{image_.position[0][i], image_.position[1][i], image_.position[2][i]};
+    const rays::Float3 turned = piece.normal - normal, way = piece.position - position;
+    const float off = rays::dot(way, normal);
+    const float far = rays::dot(turned, turned) / (window.normal * window.normal) +
+                      off * off / (rays::dot(way, way) + 1e-20F) / (window.plane * window.plane);
+    if (far >= 1) return 0;
+    const float weight = (reach - std::abs(right)) * (reach - std::abs(down)) * (1 - far) * (1 - far);
+    if (!(weight > 0)) return 0;
+    const float scale = 1.0F / (static_cast<float>(window.reach) + 0.5F);
+    const auto tangents = tangents_of(normal.x, normal.y, normal.z);
+    std::array<float, kSurfaceFeatures> feature = {1, scale * (right - image_.shift[0][i]),
+                                                   scale * (down - image_.shift[1][i])};
+    for (std::size_t t = 0; t < 2; ++t)
+      feature[3 + t] =
+          (turned.x * tangents[t][0] + turned.y * tangents[t][1] + turned.z * tangents[t][2]) / window.normal;
+    for (std::size_t f = 0; f < kSurfaceFeatures; ++f)
+      for (std::size_t c = 0; c < kHalvesChannels; ++c)
+        sum[c] += weight * feature[f] * coefficient(f * kHalvesChannels + c, x, y);
+    return weight;
+  }
+
+  const SurfaceImage& image_;
+  const Filter& filter_;
+  std::size_t row_, plane_;
+  std::vector<float> coefficients_;  // feature and channel, y, x
+};
+
+std::vector<Predicted> predictions(const Filter& filter, const SurfaceImage& image,
+                                   const std::vector<ShownPoint>& points) {
+  std::vector<Predicted> result(points.size());
+  const Fits fits(image, filter);
+  each_point(points.size(), [&](std::size_t n) { result[n] = fits.at(points[n]); });
+  return result;
+}
+
+// Of the mean of two halves, whose difference is noise alone.
+double variance(const SeenRows& seen, const Predicted& halves) {
+  return 0.25 * seen.square(half(halves, 0) - half(halves, 1));
+}
+
+// The squared bias of a filter beside a reference: each filtered half differs from the other half of the reference by
+// the bias, by the noise that the filter leaves of one, and by that of the other. Its expectation is exact, and it may
+// be negative.
+double squared_bias(const SeenRows& seen, const Predicted& reference, const Predicted& filtered) {
+  return 0.5 * (seen.square(half(filtered, 0) - half(reference, 1)) +
+                seen.square(half(filtered, 1) - half(reference, 0))) -
+         2 * (variance(seen, reference) + variance(seen, filtered));
+}
+
+using Values = std::array<float, kChoices>;
+static_assert(kChoices == kHalvesChannels);
+
+// The reference of the wider filters is the smallest one, whose noise is less than that of the samples.
+std::size_t reference_of(std::size_t choice) {
+  return choice > 1 ? 1 : 0;
+}
+
+// Errors at edges are no mean of those beside them: edges are parts of their own.
+std::vector<ShownPoint> by_kind(std::vector<ShownPoint> points) {
+  for (ShownPoint& point : points) {
+    if (point.pieces.empty()) continue;
+    point.pieces.clear(), point.piece.part = -2 - point.piece.part;
+  }
+  return points;
+}
+
+// What the light by all choices tells of their errors at each point.
+struct Measured {
+  std::vector<SeenRows> seen;
+  std::vector<Values> variances, mean_variances, mean_biases;
+};
+
+using Predictions = std::array<std::vector<Predicted>, kChoices>;
+
+Predictions all_predictions(int width, int height, const std::vector<ShownPoint>& points,
+                            const std::vector<Halves>& halves) {
+  Predictions predicted;
+  predicted[0].resize(points.size());
+  each_point(points.size(), [&](std::size_t n) {
+    for (std::size_t c = 0; c < kHalvesChannels; ++c)
+      predicted[0][n][c] = static_cast<float>(halves[n][c / 3][static_cast<int>(c % 3)]);
+  });
+  SurfaceImage image = image_of(width, height, points, predicted[0]);
+  for (int level = 0; level < kLevels; ++level) {
+    if (level > 0) image = coarser(image);
+    for (std::size_t f = 0; f < kFilters.size(); ++f)
+      if (kFilters[f].level == level) predicted[f + 1] = predictions(kFilters[f], image, points);
+  }
+  return predicted;
+}
+
+std::vector<Values> neighborhood_means(int width, int height, const std::vector<ShownPoint>& kinds,
+                                       const std::vector<Values>& of) {
+  SurfaceImage image = image_of(width, height, kinds, of);
+  for (int level = 0; level < kErrorMean.level; ++level) image = coarser(image);
+  std::vector<Values> result = predictions(kErrorMean, image, kinds);
+  each_point(kinds.size(), [&](std::size_t n) {
+    if (std::isnan(result[n][0])) result[n] = of[n];
+  });
+  return result;
+}
+
+// How visible an error is depends on the light that a filter tells, which is less noisy than its samples.
+Measured measured(int width, int height, const std::vector<ShownPoint>& points, const Predictions& predicted,
+                  const std::vector<color::Rgb>& beside, double white_luminance) {
+  Measured result;
+  result.seen.resize(points.size()), result.variances.resize(points.size());
+  std::vector<Values> biases(points.size());
+  each_point(points.size(), [&](std::size_t n) {
+    const Predicted& smooth = std::isnan(predicted[2][n][0]) ? predicted[0][n] : predicted[2][n];
+    const color::Rgb shown = beside[n] + 0.5 * (half(smooth, 0) + half(smooth, 1));
+    const SeenRows seen({std::max(0.0, shown.x), std::max(0.0, shown.y), std::max(0.0, shown.z)}, white_luminance);
+    for (std::size_t k = 0; k < kChoices; ++k) {
+      const Predicted &one = predicted[k][n], &reference = predicted[reference_of(k)][n];
+      const bool known = !std::isnan(one[0]) && !std::isnan(reference[0]);
+      result.variances[n][k] = static_cast<float>(variance(seen, known ? one : predicted[0][n]));
+      biases[n][k] = known ? static_cast<float>(squared_bias(seen, reference, one)) : 0;
+    }
+    result.seen[n] = seen;
+  });
+  const std::vector<ShownPoint> kinds = by_kind(points);
+  result.mean_variances = neighborhood_means(width, height, kinds, result.variances);
+  result.mean_biases = neighborhood_means(width, height, kinds, biases);
+  return result;
+}
+
+// The squared error of a choice at a point, where it is a number.
+float squared_error(const Predictions& predicted, const Measured& measured, std::size_t n, std::size_t choice) {
+  const Values &own = measured.variances[n], &mean = measured.mean_variances[n];
+  const std::size_t reference = reference_of(choice);
+  float bias = std::max(0.0F, measured.mean_biases[n][choice]);
+  if (reference > 0) bias += std::max(0.0F, measured.mean_biases[n][reference]);
+  const Predicted &one = predicted[choice][n], &other = predicted[reference][n];
+  if (choice > 0 && !std::isnan(other[0])) {
+    const color::Rgb apart = 0.5 * (half(one, 0) + half(one, 1) - half(other, 0) - half(other, 1));
+    const float noise = std::max(mean[choice], own[choice]) + std::max(mean[reference], own[reference]);
+    bias = std::max(bias, static_cast<float>(measured.seen[n].square(apart)) - kSurprise * noise);
+  }
+  return std::max({mean[choice], own[choice] / kSpike, 1e-6F}) + bias;
+}
+
+}  // namespace
+
+Reconstruction reconstruction(int width, int height, const std::vector<ShownPoint>& points,
+                              const std::vector<Halves>& halves, const std::vector<color::Rgb>& beside,
+                              double white_luminance) {
+  const Predictions predicted = all_predictions(width, height, points, halves);
+  const Measured errors = measured(width, height, points, predicted, beside, white_luminance);
+  Reconstruction result;
+  result.light.resize(points.size()), result.error_de00.resize(points.size());
+  each_point(points.size(), [&](std::size_t n) {
+    Values error{};
+    for (std::size_t k = 0; k < kChoices; ++k)
+      error[k] = std::isnan(predicted[k][n][0]) ? HUGE_VALF : squared_error(predicted, errors, n, k);
+    const float least = *std::ranges::min_element(error);
+    double weights = 0, squared = 0;
+    for (std::size_t k = 0; k < kChoices; ++k) {
+      if (std::isinf(error[k])) continue;
+      const double weight = std::pow(least / error[k], kSharpness);
+      weights += weight, squared += weight * error[k];
+      result.light[n] += weight * 0.5 * (half(predicted[k][n], 0) + half(predicted[k][n], 1));
+    }
+    result.light[n] = (1 / weights) * result.light[n];
+    result.error_de00[n] = static_cast<float>(std::sqrt(squared / weights));
+  });
+  return result;
+}
+
+}  // namespace goniochrome::render

@@ -1,0 +1,43 @@
+// Reconstructs light on a surface from noisy samples of it. Several filters of growing reach smooth it along the
+// surface; two independent halves of the samples tell which of them errs least at each point, and by how much.
+// goniochrome-theory(7), RECONSTRUCTION.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "color/color.h"
+#include "rays/float3.h"
+
+namespace goniochrome::render {
+
+// A piece of surface that a pixel shows.
+struct ShownPiece {
+  int part = 0;  // Pieces of different parts are never mixed.
+  rays::Float3 normal, position;
+  float share = 1;  // of the pixel
+};
+
+// At an edge a pixel shows several pieces, and is reconstructed as their sum. Other pixels show one, and are what
+// filters learn from.
+struct ShownPoint {
+  int x = 0, y = 0;  // pixel
+  ShownPiece piece;
+  std::vector<ShownPiece> pieces = {};  // at edges
+};
+
+// The same light by two halves of its samples, which are independent.
+using Halves = std::array<color::Rgb, 2>;
+
+struct Reconstruction {
+  std::vector<color::Rgb> light;  // of each point
+  std::vector<float> error_de00;  // its standard error, over the neighborhood of each point
+};
+
+// `beside` is what each point shows beside the light that is reconstructed; with it, errors are seen before a white of
+// this luminance. Points come row by row, at most one for each pixel. Bit-identical for any number of threads.
+Reconstruction reconstruction(int width, int height, const std::vector<ShownPoint>& points,
+                              const std::vector<Halves>& halves, const std::vector<color::Rgb>& beside,
+                              double white_luminance);
+
+}  // namespace goniochrome::render
