@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "render/internal/seen.h"
+#include "render/path/gathered.h"
 #include "render/path/reconstruction.h"
 #include "render/path/round_cut.h"
 #include "render/path/seen_point.h"
@@ -17,9 +18,8 @@ namespace {
 
 // Points that one thread takes at a time.
 constexpr std::size_t kTogether = 64;
-// Samples are counted by fours, which are the fewest that can be traced. Most points need no more than a few: the first
-// round takes as many as tell a variance.
-constexpr int kOfFour = kHalfFan, kFirstFours = 2;
+// Most points need no more than a few samples: the first round takes as many fours as tell a variance.
+constexpr int kFirstFours = 2;
 // No round draws more than so many times the fours that a point has.
 constexpr int kRoundGrowth = 3;
 // A round draws no less than this part of all fours so far: after each the noise of every point is judged anew, which
@@ -34,58 +34,6 @@ constexpr std::size_t kCompared = 4096;
 std::uint64_t seed_of(std::uint64_t seed, std::uint64_t point, int batch) {
   return mixed(mixed(seed, point), static_cast<std::uint64_t>(batch));
 }
-
-// Of a round of so many fours at a point: as few sequences as tell a variance, each of as many directions as it takes,
-// for the longer a sequence is, the more evenly it covers what the point sees.
-struct Round {
-  static constexpr int kSequences = 2;
-  int length = 1;  // of each sequence, in fours: a power of two
-
-  // No more than asked for, but at least four of each sequence.
-  explicit Round(int fours) {
-    while (2 * length * kSequences <= fours) length *= 2;
-  }
-  int fours() const { return kSequences * length; }
-  // What is traced together: fans, but where a sequence is shorter.
-  int together() const { return std::min(length, kFan / kOfFour); }
-  int fans() const { return fours() / together(); }
-  // Of which sequence a fan is, and which of its samples is the fan's first.
-  int sequence_of(int fan) const { return fan * together() / length; }
-  std::uint32_t first_of(int fan) const { return static_cast<std::uint32_t>(kOfFour * (fan * together() % length)); }
-};
-
-// Independent estimates of what a point shows, gathered round by round. A round counts by its samples, whatever it
-// found.
-class Gathered {
- public:
-  // The means over the sequences of a round.
-  void add(const Round& round, const color::Rgb (&means)[Round::kSequences]) {
-    Estimates of_round;
-    for (const color::Rgb& mean : means) of_round.add(mean);
-    const double before = fours_, added = round.fours(), all = before + added, share = added / all;
-    mean_ = (1 - share) * mean_ + share * of_round.mean();
-    for (std::size_t k = 0; k < halves_.size(); ++k) halves_[k] = (1 - share) * halves_[k] + share * means[k];
-    const Covariance now = of_round.covariance();
-    for (std::size_t k = 0; k < now.size(); ++k) {
-      const double old = before > 0 ? (1 - share) * (1 - share) * of_four_[k] / before : 0;
-      of_four_[k] = all * (old + share * share * now[k] / Round::kSequences);
-    }
-    fours_ += round.fours(), freedom_ += Round::kSequences - 1;
-  }
-
-  const color::Rgb& mean() const { return mean_; }
-  const Halves& halves() const { return halves_; }  // by the sequences of each round
-  int fours() const { return fours_; }
-  int freedom() const { return freedom_; }  // of the covariance
-  // Of the mean, times fours(): what four samples count.
-  const Covariance& of_four() const { return of_four_; }
-
- private:
-  color::Rgb mean_;
-  Halves halves_{};
-  Covariance of_four_{};
-  int fours_ = 0, freedom_ = 0;
-};
 
 class Picture {
  public:
