@@ -2,6 +2,14 @@
 # Every option of every tool: without its value, with a wrong one, and with the one that its man page gives as an example.
 # What an option does is tested beside its tool.
 
+# The options of each tool in a file of its name.
+setup_file() {
+  local tool
+  for tool in $(cd "$BATS_TEST_DIRNAME" && printf '%s\n' */ | tr -d /); do
+    options "$tool" >"$BATS_FILE_TMPDIR/$tool"
+  done
+}
+
 setup() {
   cd "$BATS_TEST_TMPDIR"
   top=$(cd "$BATS_TEST_DIRNAME/.." && pwd)
@@ -29,7 +37,7 @@ options() {
       [ "$status" -eq 2 ] || { echo "$tool $option: $status"; false; }
       [[ "$output" == "$tool: $option needs a value"* ]] || { echo "$output"; false; }
       checked=$((checked + 1))
-    done < <(options "$tool")
+    done <"$BATS_FILE_TMPDIR/$tool"
   done
   [ "$checked" -gt 200 ]
 }
@@ -39,7 +47,7 @@ options() {
   for tool in $tools; do
     while read -r option _ kind _; do
       [ "$kind" != free ] || continue
-      required=$(options "$tool" | awk -v asked="$option" '$2 == "required" && $1 != asked { print $1 "=" $4 }')
+      required=$(awk -v asked="$option" '$2 == "required" && $1 != asked { print $1 "=" $4 }' "$BATS_FILE_TMPDIR/$tool")
       values=(wrong '')
       [ "$kind" = checked ] || values+=(1e299 -1e299)
       for value in "${values[@]}"; do
@@ -48,7 +56,7 @@ options() {
         [[ "$output" == "$tool: $option "*": give "* || "$output" == *"needs a value"* || "$output" == *"too large"* ]] || { echo "$output"; false; }
         checked=$((checked + 1))
       done
-    done < <(options "$tool")
+    done <"$BATS_FILE_TMPDIR/$tool"
   done
   [ "$checked" -gt 200 ]
 }

@@ -41,9 +41,6 @@ namespace {
 // The exit statuses of a child. A sanitizer ends with 1, and a library may call exit() with another small number.
 constexpr int kDone = 0, kRefused = 40, kNoMemory = 41, kThreadless = 42;
 
-// A child that waits for a lock uses no processor time. This many seconds are far more than a busy machine adds.
-constexpr int kWaitingFactor = 20;
-
 // The bytes of addresses that this process has mapped, where the system tells them. A child asks for itself: other
 // threads of its parent go on mapping until the very fork, and the allocator takes 64 MB of addresses for each of them.
 std::optional<std::size_t> mapped_bytes() {
@@ -99,7 +96,7 @@ void confine(const ChildLimits& limits, pid_t parent) {
   sigprocmask(SIG_SETMASK, &none, nullptr);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, static_cast<rlim_t>(limits.processor_s), 2);
-  alarm(static_cast<unsigned>(kWaitingFactor * limits.processor_s));
+  alarm(static_cast<unsigned>(limits.waiting_factor * limits.processor_s));
   // A sanitizer has taken its terabytes of addresses by now, so that they are among those that are mapped.
   if (const auto mapped = mapped_bytes()) limit(RLIMIT_AS, *mapped + limits.memory_bytes);
 #if defined(GONIO_SANITIZED)
@@ -168,7 +165,8 @@ bool end_in_time(pid_t child, const ChildLimits& limits) {
   const int handle = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
   if (handle < 0) return false;
   // A second more than the alarm of the child's own.
-  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(kWaitingFactor * limits.processor_s + 1);
+  const auto until =
+      std::chrono::steady_clock::now() + std::chrono::seconds(limits.waiting_factor * limits.processor_s + 1);
   bool late = false;
   for (;;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());

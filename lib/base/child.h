@@ -15,6 +15,9 @@ namespace goniochrome {
 struct ChildLimits {
   std::size_t memory_bytes = 0;  // of addresses, beyond those that this process has when the child begins
   int processor_s = 0;           // whole seconds of processor time
+  // A child that waits for a lock uses no processor time. So many times as many seconds are far more than a busy
+  // machine adds.
+  int waiting_factor = 20;
 };
 
 // What a child process made: bytes in memory that is shared with nobody any more.

@@ -113,7 +113,7 @@ TEST(Child, TimeBeyondTheLimitIsAnError) {
 
 // It uses no processor time, and neither an alarm nor SIGTERM reaches it.
 TEST(Child, WaitingWithEverySignalBlockedIsEnded) {
-  const auto waiting = made_by_child("stuck.ppm", kLimits, [](ChildOutput&) -> Result<void> {
+  const auto waiting = made_by_child("stuck.ppm", {kLimits.memory_bytes, 1, 2}, [](ChildOutput&) -> Result<void> {
     sigset_t all;
     sigfillset(&all);
     sigprocmask(SIG_SETMASK, &all, nullptr);

@@ -80,12 +80,12 @@ TEST(CoatFacets, GatherADisc) {
         for (const double apart_deg : {0.0, 0.2, 1.0, 6.0}) {
           const Vec3 out = direction(view), middle = direction(view - apart_deg, 180);
           const double radius = radius_deg * kDegree;
-          constexpr int kRadii = 300, kAround = 300;
+          constexpr int kRadii = 100, kAround = 50;  // half of the disc, whose other half mirrors it
           double truth = 0;
           const Vec3 y = {0, 1, 0}, x = cross(y, middle);
           for (int i = 0; i < kRadii; ++i)
             for (int j = 0; j < kAround; ++j) {
-              const double t = radius * (i + 0.5) / kRadii, p = 2 * kPi * (j + 0.5) / kAround;
+              const double t = radius * (i + 0.5) / kRadii, p = kPi * (j + 0.5) / kAround;
               const Vec3 light =
                   std::cos(t) * middle + (std::sin(t) * std::cos(p)) * x + (std::sin(t) * std::sin(p)) * y;
               if (light.z > 0) truth += radius / kRadii * 2 * kPi / kAround * std::sin(t) * coat.f_cos(light, out);

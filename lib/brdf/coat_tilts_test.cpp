@@ -26,15 +26,16 @@ double through(const Window& window, const TrueCoat& coat, double view_deg) {
   const Vec3 axis = window.axis(view_deg);
   const Vec3 out = {-std::sin(view_deg * kDegree), 0, std::cos(view_deg * kDegree)};
   double sum = 0;
-  coat.each_light(out, 60000, [&](const Vec3& light, double energy) {
-    if (dot(light, axis) > std::cos(window.radius_deg * kDegree)) sum += energy;
-  });
+  const auto is_inside = [&, low = std::cos(window.radius_deg * kDegree)](const Vec3& light) {
+    return dot(light, axis) > low;
+  };
+  coat.each_light(out, 60000, is_inside, [&](const Vec3&, double energy) { sum += energy; });
   return sum;
 }
 
 double through(const Window& window, const paint::TiltedLobes& set, double view_deg) {
   const Vec3 axis = window.axis(view_deg);
-  constexpr int kPoints = 4000;
+  constexpr int kPoints = 1000;
   const double versine = 1 - std::cos(window.radius_deg * kDegree);
   const Vec3 x = normalized(cross(axis, std::abs(axis.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})), y = cross(axis, x);
   double sum = 0;

@@ -17,7 +17,7 @@ TurnedLobe lobe(double exponent, double share, double turn_rad = 0, double acros
 // The light that reaches a viewer from all around.
 color::Rgb reflected(const LobeSurface& surface, const Vec3& wo) {
   color::Rgb sum;
-  constexpr int kSteps = 120;
+  constexpr int kSteps = 60;
   for (int i = 0; i < kSteps; ++i) {
     const double z = (i + 0.5) / kSteps, s = std::sqrt(1 - z * z);
     for (int j = 0; j < 2 * kSteps; ++j) {

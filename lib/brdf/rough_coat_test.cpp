@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
@@ -47,7 +49,7 @@ paint::LobeFit coated(const std::vector<paint::GlossReading>& readings) {
 // Fresnel at the half vector.
 double shown_reading(const paint::LobeFit& fit, const TestMeter& meter, double gloss_deg) {
   const auto source = window_points(meter.angle_deg, kSourceParallel_deg, kSourcePerpendicular_deg, 4),
-             receptor = window_points(meter.angle_deg, meter.receptor_par_deg, meter.receptor_perp_deg, 32);
+             receptor = window_points(meter.angle_deg, meter.receptor_par_deg, meter.receptor_perp_deg, 20);
   double numerator = 0, mirror = 0, denominator = 0;
   for (const WindowPoint& i : source) {
     const Vec3 light = {-i.w.x, -i.w.y, i.w.z};
@@ -80,11 +82,13 @@ TEST(RoughCoat, RingsHoldTheLightOfFacetsDrawnAtRandom) {
       const double t = kCoatViews_deg[view] * kDegree;
       const Vec3 out = {std::sin(t), 0, std::cos(t)}, axis = {-out.x, 0, out.z};
       std::vector<double> within(ring_angles_rad().size());
+      const double mirror = TrueCoat::fresnel(out.z, 1.5);
       coat.each_light(out, 200000, [&](const Vec3& light, double energy) {
         const double angle = std::atan2(length(cross(axis, light)), dot(axis, light));
-        for (std::size_t k = 0; k < within.size(); ++k)
-          if (angle <= ring_angles_rad()[k]) within[k] += energy / TrueCoat::fresnel(out.z, 1.5);
+        const auto ring = std::ranges::lower_bound(ring_angles_rad(), angle) - ring_angles_rad().begin();
+        if (ring < std::ssize(within)) within[ring] += energy / mirror;
       });
+      std::partial_sum(within.begin(), within.end(), within.begin());
       const std::vector<double> found = coat_within(ours(coat), view);
       for (std::size_t k = 0; k < within.size(); ++k)
         EXPECT_NEAR(found[k], within[k], coat.beckmann ? 1.2e-2 : 1e-2)
@@ -150,8 +154,8 @@ TEST(RoughCoat, ReadingsTellHowSlopesAreDistributed) {
       for (int k = 0; k < 40; ++k) {
         const RoughCoat control{0.075 * i, 0.005 * std::pow(10, j / 40.0), 0.02 * std::pow(30, k / 40.0)};
         double off = 0;
-        for (const paint::GlossReading& reading : readings)
-          off = std::max(off, std::abs(*coat_reading(control, reading.angle_deg, 1.5) - reading.gloss_units));
+        for (std::size_t m = 0; m < readings.size() && off < best; ++m)
+          off = std::max(off, std::abs(*coat_reading(control, readings[m].angle_deg, 1.5) - readings[m].gloss_units));
         best = std::min(best, off);
       }
   EXPECT_GT(best, 1) << "the control";

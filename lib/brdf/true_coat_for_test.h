@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -43,49 +44,80 @@ struct TrueCoat {
     return fresnel(cosine, 1.5) * sum / (4 * out.z);
   }
 
-  // Calls see(light, weight) for `count` directions that send light to `out`; the weights are what each of them adds to
-  // an even light of 1.
-  template <class See>
-  void each_light(const Vec3& out, int count, const See& see) const {
+  // Normals of `count` facets of each scale, evenly spread. Those of the last coat are kept, as many views ask for
+  // them.
+  const std::vector<Vec3>& facets(int count) const {
+    struct Kept {
+      TrueCoat coat{};
+      int count = 0;
+      std::vector<Vec3> normals;
+    };
+    thread_local Kept kept;
+    const TrueCoat& last = kept.coat;
+    if (count == kept.count &&
+        std::tie(k, slope, haze, beckmann) == std::tie(last.k, last.slope, last.haze, last.beckmann))
+      return kept.normals;
+    kept = {*this, count, {}};
     constexpr double kGolden = 1.32471795724474602596;  // evenly spread pairs [Roberts]
-    for (int i = 0; i < 2 * count; ++i) {
-      const double a = i % 2 == 0 ? slope : haze;
-      const double u = std::fmod(0.5 + (i / 2) / kGolden, 1), v = std::fmod(0.5 + (i / 2) / (kGolden * kGolden), 1);
-      const double t = a * (beckmann ? std::sqrt(-std::log(1 - u)) : std::sqrt(u / (1 - u))), p = 2 * kPi * v;
-      const double c = 1 / std::sqrt(1 + t * t);
-      const Vec3 half = {c * t * std::cos(p), c * t * std::sin(p), c};
+    for (int i = 0; i < count; ++i) {
+      const double u = std::fmod(0.5 + i / kGolden, 1), p = 2 * kPi * std::fmod(0.5 + i / (kGolden * kGolden), 1);
+      for (int scale = 0; scale < scales(); ++scale) {
+        const double t =
+            (scale == 0 ? slope : haze) * (beckmann ? std::sqrt(-std::log(1 - u)) : std::sqrt(u / (1 - u)));
+        const double c = 1 / std::sqrt(1 + t * t);
+        kept.normals.push_back({c * t * std::cos(p), c * t * std::sin(p), c});
+      }
+    }
+    return kept.normals;
+  }
+  int scales() const { return k > 0 ? 2 : 1; }
+
+  // Calls see(light, weight) for the `wanted` of `count` directions that send light to `out`; the weights are what each
+  // of them adds to an even light of 1.
+  template <class Wanted, class See>
+  void each_light(const Vec3& out, int count, const Wanted& wanted, const See& see) const {
+    const std::vector<Vec3>& normals = facets(count);
+    const double hidden[] = {lambda(out, slope), lambda(out, haze)};
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      const Vec3& half = normals[i];
       const double cosine = dot(out, half);
       if (cosine <= 0) continue;
       const Vec3 light = 2 * cosine * half - out;
-      if (light.z <= 0) continue;
-      const double share = std::exp(-k * cosine * cosine), part = i % 2 == 0 ? share : 1 - share;
-      const double seen = 1 / (1 + lambda(light, a) + lambda(out, a));
-      see(light, part * fresnel(cosine, 1.5) * seen * cosine / (out.z * c) / count);
+      if (light.z <= 0 || !wanted(light)) continue;
+      const bool second = scales() == 2 && i % 2 == 1;
+      const double share = std::exp(-k * cosine * cosine), part = second ? 1 - share : share;
+      const double seen = 1 / (1 + lambda(light, second ? haze : slope) + hidden[second ? 1 : 0]);
+      see(light, part * fresnel(cosine, 1.5) * seen * cosine / (out.z * half.z) / count);
     }
+  }
+  template <class See>
+  void each_light(const Vec3& out, int count, const See& see) const {
+    each_light(
+        out, count, [](const Vec3&) { return true; }, see);
   }
 };
 
 // The windows of the meters [ASTM D523].
 // What the meter reads: the light of each point of the source, counted where it enters the receptor.
 inline double true_reading(const TrueCoat& coat, const TestMeter& meter, int count) {
-  const double t = meter.angle_deg * kDegree;
+  const double sine = std::sin(meter.angle_deg * kDegree), cosine = std::cos(meter.angle_deg * kDegree);
   const auto window = [](double deg) { return std::tan(deg / 2 * kDegree); };
+  const double half_par = window(meter.receptor_par_deg), half_perp = window(meter.receptor_perp_deg);
   double read = 0, standard = 0;
   constexpr int kPoints = 6;
   for (int i = 0; i < kPoints; ++i)
     for (int j = 0; j < kPoints; ++j) {
       const double p = window(0.75) * ((2 * i + 1.0) / kPoints - 1), q = window(2.5) * ((2 * j + 1.0) / kPoints - 1);
-      const Vec3 from = {-std::sin(t) - p * std::cos(t), q, std::cos(t) - p * std::sin(t)};
+      const Vec3 from = {-sine - p * cosine, q, cosine - p * sine};
       const double size = length(from), weight = 1 / (size * size * size);
       const Vec3 in = (1 / size) * from;
       standard += weight * in.z * TrueCoat::fresnel(in.z, 1.567);
-      coat.each_light(in, count, [&](const Vec3& out, double energy) {
-        const double along = out.x * std::sin(t) + out.z * std::cos(t);
-        if (along <= 0) return;
-        const double p_out = (out.x * std::cos(t) - out.z * std::sin(t)) / along, q_out = out.y / along;
-        if (std::abs(p_out) <= window(meter.receptor_par_deg) && std::abs(q_out) <= window(meter.receptor_perp_deg))
-          read += weight * in.z * energy;
-      });
+      const auto is_received = [&](const Vec3& out) {
+        const double along = out.x * sine + out.z * cosine;
+        return along > 0 && std::abs(out.x * cosine - out.z * sine) <= along * half_par &&
+               std::abs(out.y) <= along * half_perp;
+      };
+      coat.each_light(in, count, is_received, [&](const Vec3&, double energy) { read += weight * in.z * energy; });
     }
   return 100 * read / standard;
 }

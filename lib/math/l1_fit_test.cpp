@@ -45,22 +45,28 @@ double clp_objective(Problem p, int scaling, bool unit, int* status) {
     for (int i = 0; i < m; ++i) largest = std::max(largest, std::abs(p.m(i, j)));
     for (int i = 0; i < m && largest > 0; ++i) p.m(i, j) /= largest;
   }
-  ClpSimplex clp;
+  // Columns of M, of u and of v, one after another. To make a solver takes longer than to solve, so one serves all.
+  std::vector<CoinBigIndex> starts = {0};
+  std::vector<int> rows;
+  std::vector<double> values, costs(n + 2 * m, 1.0);
+  std::fill_n(costs.begin(), n, 0.0);
+  for (int j = 0; j < n; ++j) {
+    values.insert(values.end(), p.m.column(j), p.m.column(j) + m);
+    for (int i = 0; i < m; ++i) rows.push_back(i);
+    starts.push_back(static_cast<CoinBigIndex>(rows.size()));
+  }
+  for (int i = 0; i < 2 * m; ++i) {
+    values.push_back(i < m ? 1 : -1), rows.push_back(i % m);
+    starts.push_back(static_cast<CoinBigIndex>(rows.size()));
+  }
+  static ClpSimplex clp;
   clp.setLogLevel(0);
   clp.messageHandler()->setLogLevel(0);
+  clp.loadProblem(n + 2 * m, m, starts.data(), rows.data(), values.data(), nullptr, nullptr, costs.data(), p.b.data(),
+                  p.b.data());
   clp.scaling(scaling);
   clp.setPrimalTolerance(1e-10);
   clp.setDualTolerance(1e-10);
-  clp.resize(m, 0);
-  std::vector<int> rows(m);
-  for (int i = 0; i < m; ++i) rows[i] = i;
-  for (int j = 0; j < n; ++j) clp.addColumn(m, rows.data(), p.m.column(j), 0, COIN_DBL_MAX, 0);
-  for (int i = 0; i < m; ++i) {
-    const double plus = 1, minus = -1;
-    clp.addColumn(1, &rows[i], &plus, 0, COIN_DBL_MAX, 1);
-    clp.addColumn(1, &rows[i], &minus, 0, COIN_DBL_MAX, 1);
-    clp.setRowBounds(i, p.b[i], p.b[i]);
-  }
   clp.dual();
   *status = clp.status();
   std::vector<double> x(clp.primalColumnSolution(), clp.primalColumnSolution() + n);

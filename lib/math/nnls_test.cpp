@@ -15,56 +15,73 @@ namespace {
 
 using problems::Problem;
 
-// The best objective over all subsets of columns, each by Householder QR in long double: independent of active sets.
-long double reference_objective(const Problem& p) {
-  const int m = p.m.rows, n = p.m.columns;
-  long double best = 0;
-  for (const double v : p.b) best += static_cast<long double>(v) * v;
-  best = std::sqrt(best);
-  for (int subset = 1; subset < 1 << n; ++subset) {
-    std::vector<std::vector<long double>> a;
-    for (int j = 0; j < n; ++j)
-      if (subset >> j & 1) a.emplace_back(p.m.column(j), p.m.column(j) + m);
-    const int k = static_cast<int>(a.size());
-    if (k > m) continue;
-    std::vector<long double> b(p.b.begin(), p.b.end());
-    bool singular = false;
-    for (int c = 0; c < k && !singular; ++c) {
+// The best objective over all subsets of columns, by Householder QR in long double: independent of active sets. Subsets
+// that begin alike share the reflections of their first columns.
+class BestSubset {
+ public:
+  explicit BestSubset(const Problem& p) : p_(p) { extend(0, std::vector<long double>(p.b.begin(), p.b.end())); }
+  long double objective() const { return best_; }
+
+ private:
+  using Column = std::vector<long double>;
+  struct Reflection {
+    Column v;  // from its row on
+    long double half;
+  };
+
+  // The subset of the columns so far, and all that follow it with further columns from `next` on; b is reflected
+  // already.
+  void extend(int next, const Column& b) {
+    offer(b);
+    if (std::ssize(reflections_) == p_.m.rows) return;
+    for (int j = next; j < p_.m.columns; ++j) {
+      Column a(p_.m.column(j), p_.m.column(j) + p_.m.rows);
+      for (std::size_t c = 0; c < reflections_.size(); ++c) reflect(reflections_[c], c, a);
+      const std::size_t row = reflections_.size();
       long double norm = 0, whole = 0;
-      for (int i = 0; i < m; ++i) whole += a[c][i] * a[c][i];
-      for (int i = c; i < m; ++i) norm += a[c][i] * a[c][i];
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        whole += a[i] * a[i];
+        if (i >= row) norm += a[i] * a[i];
+      }
       norm = std::sqrt(norm);
-      singular = norm <= 1e-17L * std::sqrt(whole);
-      if (singular) break;
-      const long double diagonal = a[c][c] > 0 ? -norm : norm;
-      std::vector<long double> v(a[c].begin() + c, a[c].end());
-      v[0] -= diagonal;
-      long double half = 0;
-      for (const long double x : v) half += x * x / 2;
-      const auto reflect = [&](std::vector<long double>& t) {
-        long double s = 0;
-        for (int i = c; i < m; ++i) s += v[i - c] * t[i];
-        for (int i = c; i < m; ++i) t[i] -= s / half * v[i - c];
-      };
-      for (int q = c; q < k; ++q) reflect(a[q]);
-      reflect(b);
+      if (norm <= 1e-17L * std::sqrt(whole)) continue;  // singular, as is every subset with these columns
+      Reflection reflection{Column(a.begin() + static_cast<std::ptrdiff_t>(row), a.end()), 0};
+      reflection.v[0] -= a[row] > 0 ? -norm : norm;
+      for (const long double x : reflection.v) reflection.half += x * x / 2;
+      reflect(reflection, row, a);
+      Column reflected = b;
+      reflect(reflection, row, reflected);
+      reflections_.push_back(std::move(reflection));
+      triangle_.push_back(std::move(a));
+      extend(j + 1, reflected);
+      reflections_.pop_back();
+      triangle_.pop_back();
     }
-    if (singular) continue;
-    std::vector<long double> x(k);
-    bool feasible = true;
+  }
+  static void reflect(const Reflection& reflection, std::size_t row, Column& t) {
+    long double s = 0;
+    for (std::size_t i = row; i < t.size(); ++i) s += reflection.v[i - row] * t[i];
+    for (std::size_t i = row; i < t.size(); ++i) t[i] -= s / reflection.half * reflection.v[i - row];
+  }
+  void offer(const Column& b) {
+    const int k = static_cast<int>(triangle_.size());
+    Column x(triangle_.size());
     for (int c = k - 1; c >= 0; --c) {
       x[c] = b[c];
-      for (int q = c + 1; q < k; ++q) x[c] -= a[q][c] * x[q];
-      x[c] /= a[c][c];
-      feasible = feasible && x[c] >= 0;
+      for (int q = c + 1; q < k; ++q) x[c] -= triangle_[q][c] * x[q];
+      x[c] /= triangle_[c][c];
+      if (!(x[c] >= 0)) return;
     }
-    if (!feasible) continue;
     long double rest = 0;
-    for (int i = k; i < m; ++i) rest += b[i] * b[i];
-    best = std::min(best, std::sqrt(rest));
+    for (std::size_t i = triangle_.size(); i < b.size(); ++i) rest += b[i] * b[i];
+    best_ = std::min(best_, std::sqrt(rest));
   }
-  return best;
-}
+
+  const Problem& p_;
+  std::vector<Reflection> reflections_;
+  std::vector<Column> triangle_;  // the reflected columns
+  long double best_ = INFINITY;
+};
 
 double norm(const std::vector<double>& v) {
   double s = 0;
@@ -83,7 +100,8 @@ TEST(Nnls, MatchesTheBestSubsetInLongDouble) {
     ASSERT_TRUE(fit.converged) << p.kind << " " << trial;
     for (const double x : fit.x) ASSERT_GE(x, 0);
     // A gradient known to a few ulp of |b| fixes the squared objective to as many ulp of |b|^2 times the weights.
-    const double ours = fit.objective / norm(p.b), reference = static_cast<double>(reference_objective(p)) / norm(p.b);
+    const double ours = fit.objective / norm(p.b),
+                 reference = static_cast<double>(BestSubset(p).objective()) / norm(p.b);
     if (norm(p.b) == 0) continue;
     EXPECT_NEAR(ours * ours, reference * reference, 2e-14) << p.kind << " " << trial;
     EXPECT_LE(ours, reference + 1e-9) << p.kind << " " << trial;

@@ -46,19 +46,24 @@ Library random_library(std::mt19937_64& random, std::size_t size, const std::vec
   return library;
 }
 
+// Every paint, one after another. The differences of a paint are added in the order of the terms, until it is out.
 std::vector<Match> brute_force(const Library& library, const std::vector<SearchTerm>& terms, ColorMetric metric,
                                std::size_t count, const std::function<bool(std::size_t)>& passes = {}) {
-  std::vector<Match> all;
-  std::vector<color::Lab> lab(terms.size());
+  std::vector<Match> best;
   for (std::size_t i = 0; i < library.size(); ++i) {
     if (passes && !passes(i)) continue;
-    for (std::size_t t = 0; t < terms.size(); ++t) lab[t] = library.color(i, terms[t].geometry);
-    all.push_back({search_distance(terms, lab, metric), static_cast<std::uint32_t>(i)});
+    Match match{0, static_cast<std::uint32_t>(i)};
+    const auto is_out = [&] { return best.size() == count && !(match < best.back()); };
+    for (std::size_t t = 0; t < terms.size() && !is_out(); ++t) {
+      const color::Lab lab = library.color(i, terms[t].geometry);
+      match.distance += terms[t].weight * (metric == ColorMetric::kDe76 ? color::delta_e_76(terms[t].lab, lab)
+                                                                        : color::delta_e_2000(terms[t].lab, lab));
+    }
+    if (is_out()) continue;
+    best.insert(std::upper_bound(best.begin(), best.end(), match), match);
+    if (best.size() > count) best.pop_back();
   }
-  const auto kept = static_cast<std::ptrdiff_t>(std::min(count, all.size()));
-  std::partial_sort(all.begin(), all.begin() + kept, all.end());
-  all.resize(static_cast<std::size_t>(kept));
-  return all;
+  return best;
 }
 
 void expect_equal(const std::vector<Match>& found, const std::vector<Match>& wanted, const std::string& what) {
