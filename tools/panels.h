@@ -56,6 +56,11 @@ inline void add_seam_options(cli::ToolSpec& spec, panels::SeamTexts& seam) {
   spec.flag("open", &seam.open, "let the light of --environment come to the seam as if there were no mesh");
 }
 
+// Warns of what the file of a mesh says that is not understood.
+inline void tell_remarks(const mesh::Mesh& mesh, cli::Session& session) {
+  for (const std::string& remark : mesh.remarks) session.warn(remark);
+}
+
 // Tells which pairs of light and viewer a run leaves out, and puts them into its report.
 inline void tell_left_out(const std::vector<panels::LightView>& glare, int below_horizon, cli::Session& session) {
   constexpr std::size_t kNamed = 5;

@@ -1,5 +1,5 @@
-// Measured BRDFs in the file formats of the laboratories that measured them: MERL tables, Cornell spectra, NVIDIA MBSDF
-// and RGL tensor files. This header tells what a file says at a pair of directions, how far it can be trusted, and what
+// Measured BRDFs in the file formats of the laboratories that measured them: MERL tables, Cornell spectra, NVIDIA MBSDF,
+// RGL tensor files and tables of OpenMATERIAL. This header tells what a file says at a pair of directions, how far it can be trusted, and what
 // a multi-angle instrument would have read. goniochrome-theory(7), MEASURED BRDFS.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace goniochrome::brdf {
 
 // What the file says of itself and of its samples.
 struct MeasuredTraits {
-  std::string format = {};       // merl | cornell | mbsdf | rgl
+  std::string format = {};       // merl | cornell | mbsdf | rgl | openmaterial
   std::string description = {};  // the file's own words, or empty
   std::vector<double> wavelengths_nm =
       {};                   // one per channel; empty: linear Rec.709 RGB, seen under D65 by the 2 deg observer

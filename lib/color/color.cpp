@@ -4,6 +4,8 @@
 #include <array>
 
 #include "color/acescg.h"
+#include "color/illuminant.h"
+#include "color/spectrum.h"
 #include "math/elementary.h"
 
 namespace goniochrome::color {
@@ -104,15 +106,17 @@ double ratio_of_response(double f) {
 
 }  // namespace
 
-Result<Xyz> white_point(const ViewingCondition& condition) {
-  const auto white = std::ranges::find(kWhites, condition.illuminant, &White::illuminant);
-  if (white == kWhites.end()) {
-    std::string known;
-    for (const White& w : kWhites) known += fmt::format("{}{}", known.empty() ? "" : ", ", w.illuminant);
-    return input_error("illuminant \"{}\" is not known: give one of {}", condition.illuminant, known);
-  }
+Result<Xyz> white_point(const ViewingCondition& stated) {
+  const ViewingCondition condition = condition_of(stated.illuminant, stated.observer_deg);
+  if (!illuminant_named(condition.illuminant))
+    return input_error("illuminant \"{}\" is not known: give one of {}", stated.illuminant, spectral_illuminants());
   if (condition.observer_deg != 2 && condition.observer_deg != 10)
     return input_error("observer {} is not known: give 2 or 10 (degrees)", condition.observer_deg);
+  const auto white = std::ranges::find(kWhites, condition.illuminant, &White::illuminant);
+  if (white == kWhites.end()) {
+    GONIO_ASSIGN(const SpectralColorimeter meter, SpectralColorimeter::make(std::array{360.0, 780.0}, condition));
+    return meter.white();
+  }
   const auto& [X, Z] = condition.observer_deg == 2 ? white->xz_2deg : white->xz_10deg;
   return Xyz{X / 100, 1, Z / 100};
 }

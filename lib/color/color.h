@@ -31,8 +31,9 @@ struct ViewingCondition {
   friend bool operator==(const ViewingCondition&, const ViewingCondition&) = default;
 };
 
-// The white point (Y = 1) of an illuminant seen by an observer (CIE 15). Error: names what is known.
-Result<Xyz> white_point(const ViewingCondition& condition);
+// The white point (Y = 1) of an illuminant seen by an observer, as CIE 15 prints it or as its table gives it. Error:
+// names what is known.
+Result<Xyz> white_point(const ViewingCondition& stated);
 
 // CIE 1976 L*a*b*; the linear branch below (6/29)^3 goes on below zero, so slightly negative XYZ survive a round trip.
 Lab lab_from_xyz(const Xyz& xyz, const Xyz& white);

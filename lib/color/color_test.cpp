@@ -12,6 +12,7 @@
 #include "base/hard_case_for_test.h"
 #include "base/text.h"
 #include "color/acescg.h"
+#include "color/spectrum.h"
 
 namespace goniochrome::color::color_test {
 namespace {
@@ -54,7 +55,7 @@ TEST(Color, WhitePointsHaveThePublishedChromaticity) {
 
 TEST(Color, AnUnknownWhiteIsRefusedAndTheKnownOnesNamed) {
   EXPECT_EQ(white_point({"D93", 2}).error().message,
-            "illuminant \"D93\" is not known: give one of D65, D50, A, C, D55, D75, F2, F7, F11");
+            "illuminant \"D93\" is not known: give one of " + spectral_illuminants());
   EXPECT_EQ(white_point({"D65", 4}).error().message, "observer 4 is not known: give 2 or 10 (degrees)");
 }
 

@@ -5,26 +5,22 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <utility>
 
+#include "color/illuminant.h"
 #include "color/internal/cie_tables.h"
 
 namespace goniochrome::color {
 
 namespace {
 
-// The columns of both tables, side by side.
-constexpr std::array kIlluminants = {"D65", "D50", "A", "C", "D55", "D75", "F2", "F7", "F11"};
 constexpr std::size_t kFirstColumns = 3;
 
 std::optional<std::size_t> illuminant_column(const std::string& name) {
-  const auto found = std::ranges::find(kIlluminants, name);
-  if (found == kIlluminants.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - kIlluminants.begin());
+  const auto found = std::ranges::find(kIlluminantNames, name);
+  if (found == kIlluminantNames.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - kIlluminantNames.begin());
 }
-
-// Fluorescent lamps have lines, so that straight lines between their values would spread them: each value stands for
-// the light of its 5 nm, all of it at the wavelength of the table.
-constexpr std::size_t kFirstLamp = 6;
 
 double illuminant_power(std::size_t row, std::size_t column) {
   return column < kFirstColumns ? kCieTable[row].illuminants[column]
@@ -51,6 +47,42 @@ double lagrange_weight(std::span<const double> nodes, const Window& window, std:
   return weight;
 }
 
+// A wavelength of the grid on which reflectance is interpolated, and the measured values that it is made of.
+struct Node {
+  double nm = 0;
+  std::array<std::pair<std::size_t, double>, 4> shares = {};
+  std::size_t count = 0;
+
+  void add(std::size_t measured, double weight) { shares[count++] = {measured, weight}; }
+};
+
+// The measured wavelengths. Between those of 20 nm there are others in the middle, and beyond the outermost the grid
+// goes on to the ends of the tables with their values (ASTM E308, 7.3 and 7.4).
+std::vector<Node> nodes_of(std::span<const double> measured_nm) {
+  std::vector<Node> nodes;
+  for (std::size_t i = 0; i < measured_nm.size(); ++i) {
+    nodes.push_back({measured_nm[i]});
+    nodes.back().add(i, 1);
+    if (i + 1 == measured_nm.size() || measured_nm[i + 1] - measured_nm[i] != 20) continue;
+    const double middle = measured_nm[i] + 10;
+    const Window window = window_around(measured_nm, middle);
+    nodes.push_back({middle});
+    for (std::size_t k = window.first; k < window.first + window.count; ++k)
+      nodes.back().add(k, lagrange_weight(measured_nm, window, k, middle));
+  }
+  constexpr double kFinest_nm = 1;
+  const std::size_t last = nodes.size() - 1;
+  const double before = std::max(nodes[1].nm - nodes[0].nm, kFinest_nm),
+               behind = std::max(nodes[last].nm - nodes[last - 1].nm, kFinest_nm);
+  Node end = nodes.back();
+  while (end.nm < kCieEnd_nm) end.nm += behind, nodes.push_back(end);
+  std::vector<Node> front;
+  Node begin = nodes.front();
+  while (begin.nm > kCieStart_nm) begin.nm -= before, front.push_back(begin);
+  nodes.insert(nodes.begin(), front.rbegin(), front.rend());
+  return nodes;
+}
+
 using Triple = std::array<double, 3>;
 
 // Illuminant times color-matching functions, `row` nm above the first wavelength of the tables.
@@ -58,7 +90,6 @@ Triple weighted_observer(std::size_t row, std::size_t illuminant, int observer_d
   constexpr auto kStep = static_cast<std::size_t>(kCieStep_nm);
   const std::size_t i = std::min(row / kStep, kCieTable.size() - 2);
   const double between = static_cast<double>(row - kStep * i) / kCieStep_nm;
-  if (illuminant >= kFirstLamp && between != 0 && between != 1) return {};
   const double light = std::lerp(illuminant_power(i, illuminant), illuminant_power(i + 1, illuminant), between);
   const Triple& observer = observer_deg == 2 ? kCieObservers[row].observer_2 : kCieObservers[row].observer_10;
   return {light * observer[0], light * observer[1], light * observer[2]};
@@ -67,7 +98,7 @@ Triple weighted_observer(std::size_t row, std::size_t illuminant, int observer_d
 }  // namespace
 
 Result<double> illuminant_power(double nm, const std::string& name) {
-  const auto column = illuminant_column(name);
+  const auto column = illuminant_column(illuminant_named(name).value_or(name));
   if (!column) return input_error("illuminant is \"{}\": {} are known", name, spectral_illuminants());
   const double at = (nm - kCieStart_nm) / kCieStep_nm;
   if (!(at >= 0 && at <= kCieRows - 1)) return input_error("the tables of illuminants end at 360 and 780 nm");
@@ -86,17 +117,18 @@ double interpolated(std::span<const double> wavelengths_nm, std::span<const doub
 
 std::string spectral_illuminants() {
   std::string all;
-  for (std::size_t i = 0; i < kIlluminants.size(); ++i)
-    all += (i == 0 ? "" : i + 1 < kIlluminants.size() ? ", " : " or ") + std::string(kIlluminants[i]);
+  for (std::size_t i = 0; i < kIlluminantNames.size(); ++i)
+    all += (i == 0 ? "" : i + 1 < kIlluminantNames.size() ? ", " : " or ") + std::string(kIlluminantNames[i]);
   return all;
 }
 
 // X = k sum_l S(l) xbar(l) R(l) over every nanometer, k = 1 / sum_l S(l) ybar(l) (CIE 15:2004, 7.1). The 5 nm of the
-// illuminants (but for lamps with lines) become 1 nm along straight lines, as their makers say. R between the measured
-// wavelengths is the Lagrange cubic through four of them; beyond them the outermost value is held. All this is linear
-// in R, so it folds into one weight per measured wavelength.
+// illuminants become 1 nm along straight lines. R between the wavelengths of the grid is the Lagrange cubic through
+// four of them (ASTM E2022). All this is linear in R, so it folds into one weight per measured wavelength: those of
+// ASTM E308 for 10 and 20 nm.
 Result<SpectralColorimeter> SpectralColorimeter::make(std::span<const double> wavelengths_nm,
-                                                      const ViewingCondition& condition) {
+                                                      const ViewingCondition& stated) {
+  const ViewingCondition condition = condition_of(stated.illuminant, stated.observer_deg);
   const auto illuminant = illuminant_column(condition.illuminant);
   if (!illuminant)
     return input_error("illuminant is \"{}\": spectra are integrated under {}", condition.illuminant,
@@ -109,21 +141,29 @@ Result<SpectralColorimeter> SpectralColorimeter::make(std::span<const double> wa
 
   SpectralColorimeter result;
   result.weights_.assign(wavelengths_nm.size(), {});
+  const std::vector<Node> nodes = nodes_of(wavelengths_nm);
+  std::vector<double> grid_nm;
+  for (const Node& node : nodes) grid_nm.push_back(node.nm);
+  std::vector<Triple> weights(nodes.size());
   Triple total{}, held{};
   for (std::size_t row = 0; row < kCieObservers.size(); ++row) {
     const double nm = kCieStart_nm + static_cast<double>(row);
     const Triple power = weighted_observer(row, *illuminant, condition.observer_deg);
-    const double inside_nm = std::clamp(nm, wavelengths_nm.front(), wavelengths_nm.back());
-    const Window window = window_around(wavelengths_nm, inside_nm);
+    const bool is_held = nm < wavelengths_nm.front() || nm > wavelengths_nm.back();
+    const Window window = window_around(grid_nm, nm);
     for (std::size_t c = 0; c < 3; ++c) {
       total[c] += power[c];
-      if (inside_nm != nm) held[c] += power[c];
+      if (is_held) held[c] += power[c];
     }
     for (std::size_t k = window.first; k < window.first + window.count; ++k) {
-      const double share = lagrange_weight(wavelengths_nm, window, k, inside_nm);
-      for (std::size_t c = 0; c < 3; ++c) result.weights_[k][c] += power[c] * share;
+      const double share = lagrange_weight(grid_nm, window, k, nm);
+      for (std::size_t c = 0; c < 3; ++c) weights[k][c] += power[c] * share;
     }
   }
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    for (std::size_t s = 0; s < nodes[k].count; ++s)
+      for (std::size_t c = 0; c < 3; ++c)
+        result.weights_[nodes[k].shares[s].first][c] += nodes[k].shares[s].second * weights[k][c];
   for (auto& weight : result.weights_)
     for (double& w : weight) w /= total[1];
   result.white_ = {total[0] / total[1], 1.0, total[2] / total[1]};

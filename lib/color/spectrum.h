@@ -12,11 +12,11 @@
 
 namespace goniochrome::color {
 
-// The illuminants under which spectra are integrated, for help and messages: "D65, D50, ... or F11".
+// The illuminants under which spectra are integrated, for help and messages: "D65, D50, ... or ID65".
 std::string spectral_illuminants();
 
 // The relative power of such an illuminant at a wavelength of 360 to 780 nm: along straight lines between the values of
-// the table; of lamps with lines too, whose values each stand for the light of 5 nm. Error: the names.
+// the table. Error: the names.
 Result<double> illuminant_power(double nm, const std::string& name);
 
 // The Lagrange cubic through four of the values, and outside of the wavelengths the outermost value. The wavelengths
@@ -32,8 +32,9 @@ constexpr double kMostHeldShare = 0.2, kToldHeldShare = 0.01;
 class SpectralColorimeter {
  public:
   // `wavelengths_nm` ascend, and there are at least two. Error: they are not like that, they leave out more than
-  // kMostHeldShare of what the observer sees, or the condition is not known (the message says what is known).
-  static Result<SpectralColorimeter> make(std::span<const double> wavelengths_nm, const ViewingCondition& condition);
+  // kMostHeldShare of what the observer sees, or the condition, in any of the names of color/illuminant.h, is not known
+  // (the message says what is known).
+  static Result<SpectralColorimeter> make(std::span<const double> wavelengths_nm, const ViewingCondition& stated);
 
   // XYZ of a reflectance factor per wavelength; Y = 1 for the perfect diffuser. Values may be negative or above 1.
   Xyz xyz(std::span<const double> reflectance) const;

@@ -7,28 +7,12 @@
 #include <unordered_map>
 
 #include "base/text.h"
-#include "formats/encoding.h"
-#include "formats/internal/spectral_rows.h"
+#include "color/illuminant.h"
+#include "formats/internal/spectral_records.h"
 
 namespace goniochrome::formats {
 
 namespace {
-
-constexpr std::size_t kLargestFile = std::size_t{1} << 30;
-
-std::string utf8_from_latin1(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80) {
-      result += c;
-    } else {
-      result += static_cast<char>(0xC0 | byte >> 6);
-      result += static_cast<char>(0x80 | (byte & 0x3F));
-    }
-  }
-  return result;
-}
 
 // The words of a line up to a comment. They stand between white space or in quotation marks, which are doubled inside.
 std::vector<std::string> words_of(std::string_view line) {
@@ -67,30 +51,6 @@ std::string unquoted(std::string_view text) {
   return std::string(trimmed(text));
 }
 
-// The first word of `text` that names an illuminant; "" if none does.
-std::string illuminant_in(std::string_view text) {
-  static constexpr std::array kKnown = {"A", "C",  "D50", "D55", "D60", "D65", "D75",
-                                        "E", "F2", "F7",  "F11", "F12", "TL84"};
-  std::string word;
-  for (const char c : upper(text) + " ") {
-    const bool alphanumeric = (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (alphanumeric) {
-      word += c;
-      continue;
-    }
-    if (std::ranges::find(kKnown, word) != kKnown.end()) return word;
-    word.clear();
-  }
-  return "";
-}
-
-// 2 or 10 where `text` begins with such a number of degrees (`10 degree`, `2`); 0 otherwise.
-int leading_observer(std::string_view text) {
-  text = trimmed(text);
-  const auto digits = text.substr(0, std::min(text.find_first_not_of("0123456789"), text.size()));
-  return digits == "2" ? 2 : digits == "10" ? 10 : 0;
-}
-
 // What follows `key` in `text`, up to white space.
 std::string_view after(std::string_view text, std::string_view key) {
   const auto at = text.find(key);
@@ -110,7 +70,7 @@ struct ColorColumns {
 struct Columns {
   std::vector<std::string> fields;
   int name = kNone, id = kNone, geometry = kNone, illuminant = kNone, observer = kNone;
-  int instrument = kNone, paint_class = kNone, code = kNone;
+  int instrument = kNone, paint_class = kNone, code = kNone, date = kNone;
   std::vector<ColorColumns> colors;
   std::vector<WavelengthColumn> wavelengths;  // five or more, or none
   std::vector<std::pair<double, int>> gloss;  // angle, column
@@ -171,19 +131,52 @@ class CgatsParser {
     } else if (key == "MEASUREMENT_GEOMETRY") {
       stated_geometry_ = value;
     } else if (key == "ILLUMINANT" || key == "ILLUMINATION_NAME") {
-      if (const auto found = illuminant_in(value); !found.empty()) stated_.illuminant = found;
+      take_illuminant(key, value);
     } else if (key == "OBSERVER" || key == "OBSERVER_ANGLE") {
-      if (const int found = leading_observer(value)) stated_.observer_deg = found;
+      if (const int found = color::observer_in(value)) stated_.observer_deg = found;
     } else if (key == "WEIGHTING_FUNCTION") {
       const auto comma = value.find(',');
       const std::string kind = upper(trimmed(value.substr(0, comma)));
       const std::string what = comma == std::string::npos ? "" : value.substr(comma + 1);
-      if (kind == "ILLUMINANT" && !illuminant_in(what).empty()) stated_.illuminant = illuminant_in(what);
-      if (kind == "OBSERVER" && leading_observer(what)) stated_.observer_deg = leading_observer(what);
+      if (kind == "ILLUMINANT")
+        take_illuminant(key, what);
+      else if (kind == "OBSERVER" && color::observer_in(what))
+        stated_.observer_deg = color::observer_in(what);
+      else
+        note_unheard(key, value);
     } else if (key == "MEASUREMENT_SOURCE") {
-      if (stated_.illuminant.empty()) stated_.illuminant = illuminant_in(after(value, "Illumination="));
-      if (stated_.observer_deg == 0) stated_.observer_deg = leading_observer(after(value, "ObserverAngle="));
+      if (stated_.illuminant.empty())
+        stated_.illuminant = color::condition_among(after(value, "Illumination=")).illuminant;
+      if (stated_.observer_deg == 0) stated_.observer_deg = color::observer_in(after(value, "ObserverAngle="));
+      if (!is_none(after(value, "Filter="))) note_unheard("Filter", after(value, "Filter="));
+      const std::string_view white = after(value, "WhiteBase=");
+      if (!white.empty() && !lower(white).starts_with("abs")) note_unheard("WhiteBase", white);
+    } else if (std::ranges::find(kChangesMeaning, key) != kChangesMeaning.end() && !is_none(value)) {
+      note_unheard(key, value);
     }
+  }
+
+  void take_illuminant(std::string_view key, std::string_view value) {
+    const color::ViewingCondition found = color::condition_among(value);
+    if (found.illuminant.empty()) return note_unheard(key, value);
+    stated_.illuminant = found.illuminant;
+    if (found.observer_deg != 0) stated_.observer_deg = found.observer_deg;
+  }
+
+  // Keywords that change what the readings are. [ISO 28178:2009, table of keywords]
+  static constexpr std::array<std::string_view, 5> kChangesMeaning = {"FILTER", "INSTRUMENT_FILTER", "POLARIZATION",
+                                                                      "COMPUTATIONAL_PARAMETER", "DEVICE_CLASS"};
+
+  static bool is_none(std::string_view value) {
+    static constexpr std::array<std::string_view, 8> kNone = {"", "no", "none", "na", "n/a", "0", "output", "input"};
+    return std::ranges::find(kNone, lower(trimmed(value))) != kNone.end();
+  }
+  void note_unheard(std::string_view key, std::string_view value) {
+    remarks_.note(
+        fmt::format("{} \"{}\" may change what the readings are, and has no place in a paint: they are kept as "
+                    "they stand",
+                    key, shown(value)),
+        "");
   }
 
   Result<void> format() {
@@ -212,6 +205,7 @@ class CgatsParser {
       if (field == "INSTRUMENT") columns_.instrument = i;
       if (field == "PAINT_CLASS") columns_.paint_class = i;
       if (field == "PAINT_CODE") columns_.code = i;
+      if (field == "DATE" || field == "DATETIME" || field == "MEASUREMENT_DATE" || field == "SAMPLE_DATE") columns_.date = i;
       if (field == "GLOSS") columns_.gloss.push_back({60, i});
       if (field.starts_with("GLOSS_"))
         if (const auto angle = parse_number(field.substr(6))) columns_.gloss.push_back({*angle, i});
@@ -341,8 +335,11 @@ class CgatsParser {
     if (!columns_.wavelengths.empty()) {
       GONIO_ASSIGN(measured, spectrum(name, condition, readings));
     }
-    if (columns_.geometry == kNone || name != open_.paint.name) {
+    const bool is_other = !cell(columns_.code).empty() && cell(columns_.code) != open_.paint.code;
+    const bool is_again = cell(columns_.date) != open_date_ && has_any_of(readings);
+    if (columns_.geometry == kNone || name != open_.paint.name || is_other || is_again) {
       finish_paint();
+      open_date_ = cell(columns_.date);
       open_.paint.name = std::move(name);
       open_.paint.gloss = std::move(gloss);
       open_.paint.code = cell(columns_.code);
@@ -352,6 +349,15 @@ class CgatsParser {
     open_.readings.insert(open_.readings.end(), readings.begin(), readings.end());
     if (measured) open_.spectra.push_back(std::move(*measured));
     return {};
+  }
+
+  // True where the open paint has a reading like one of these.
+  bool has_any_of(const std::vector<SeenReading>& readings) const {
+    return std::ranges::any_of(open_.readings, [&](const SeenReading& known) {
+      return std::ranges::any_of(readings, [&](const SeenReading& r) {
+        return r.condition == known.condition && r.reading.geometry == known.reading.geometry;
+      });
+    });
   }
 
   // The spectrum of the row, if it has one, as factors. It becomes a reading where no color stands beside it.
@@ -391,11 +397,16 @@ class CgatsParser {
   // What the row states, or else the header, or else the options, or else D50/2, which is the standard's condition.
   Result<color::ViewingCondition> condition_of_row() {
     color::ViewingCondition condition = stated_;
-    if (!cell(columns_.illuminant).empty()) condition.illuminant = cell(columns_.illuminant);
     if (!cell(columns_.observer).empty()) {
-      condition.observer_deg = leading_observer(cell(columns_.observer));
+      condition.observer_deg = color::observer_in(cell(columns_.observer));
       if (condition.observer_deg == 0)
         return error(fmt::format("OBSERVER is \"{}\": write 2 or 10", cell(columns_.observer)));
+    }
+    if (!cell(columns_.illuminant).empty()) {
+      const auto own =
+          stated_condition(cell(columns_.illuminant), cell(columns_.observer).empty() ? 0 : condition.observer_deg);
+      if (!own.ok()) return error(own.error().message);
+      condition = {own->illuminant, own->observer_deg == 0 ? condition.observer_deg : own->observer_deg};
     }
     if (condition.illuminant.empty() && condition.observer_deg == 0 && options_.illuminant.empty() &&
         options_.observer_deg == 0)
@@ -417,18 +428,7 @@ class CgatsParser {
       remarks_.note("states no geometry: taken as 45/0, that is 45as45", "");
       return std::optional(forty_five_zero);
     }
-    const auto mark = stated_geometry_.find_first_of("/:");
-    const auto leading = [](std::string_view text) {
-      return std::string(text.substr(0, text.find_first_not_of("0123456789")));
-    };
-    if (mark != std::string::npos) {
-      const std::string from = leading(stated_geometry_), to = leading(trimmed(stated_geometry_).substr(mark + 1));
-      if ((from == "45" && to == "0") || (from == "0" && to == "45")) return std::optional(forty_five_zero);
-    }
-    if (const auto geometry = paint::parse_geometry(stated_geometry_)) return std::optional(*geometry);
-    remarks_.note(
-        fmt::format("the geometry \"{}\" has no aspecular angle: its readings were left out", stated_geometry_), "");
-    return std::optional<paint::Geometry>();
+    return geometry_in_words(stated_geometry_, options_, remarks_);
   }
 
   void finish_paint() {
@@ -456,7 +456,8 @@ class CgatsParser {
   Columns columns_;
   SpectralMeter meter_;
 
-  OpenPaint open_;  // without a name while there is none
+  OpenPaint open_;         // without a name while there is none
+  std::string open_date_;  // of its first row
   UniqueNames names_;
   Remarks remarks_;
   ImportedPaints result_;
@@ -486,27 +487,21 @@ bool looks_cgats(std::string_view head) {
 }
 
 Result<ImportedPaints> read_cgats(InputFile input, const ImportOptions& options) {
-  GONIO_ASSIGN(std::string text, input.rest(kLargestFile));
-  text = as_utf8(text);
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-  std::erase_if(text,
-                [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r'; });
-  const bool latin1 = !is_plain_utf8(text);
-  if (latin1) text = utf8_from_latin1(text);
-  // Spectra are judged together before they are read. What is wrong with a row is told when it is read.
-  ScaleJudge judge;
-  ImportOptions all = options;
-  all.keep_going = true;
-  CgatsParser survey(input.name(), text, all, &judge, 1);
-  const auto surveyed = survey.parse();
-  Remarks remarks;
-  const auto unit = judge.unit(survey.stated_scale(), options.scale, remarks);
-  if (surveyed.ok() && !unit.ok()) return input_error("{}: {}", input.name(), unit.error().message);
-  CgatsParser parser(input.name(), text, options, nullptr, unit.ok() ? *unit : 1);
-  GONIO_ASSIGN(ImportedPaints paints, parser.parse());
-  for (const std::string& remark : remarks.lines()) paints.warnings.push_back(remark);
-  if (latin1) paints.warnings.push_back("is not UTF-8: read as Latin-1");
-  return paints;
+  return import_text(std::move(input), [&](const std::string& name, std::string_view text) -> Result<ImportedPaints> {
+    // Spectra are judged together before they are read. What is wrong with a row is told when it is read.
+    ScaleJudge judge;
+    ImportOptions all = options;
+    all.keep_going = true;
+    CgatsParser survey(name, text, all, &judge, 1);
+    const auto surveyed = survey.parse();
+    Remarks remarks;
+    const auto unit = judge.unit(survey.stated_scale(), options.scale, remarks);
+    if (surveyed.ok() && !unit.ok()) return input_error("{}: {}", name, unit.error().message);
+    CgatsParser parser(name, text, options, nullptr, unit.ok() ? *unit : 1);
+    GONIO_ASSIGN(ImportedPaints paints, parser.parse());
+    for (const std::string& remark : remarks.lines()) paints.warnings.push_back(remark);
+    return Result(std::move(paints));
+  });
 }
 
 Result<CgatsWriter> CgatsWriter::begin(OutputFile file, const std::string& creator, const std::string& created) {

@@ -53,7 +53,7 @@ TEST_F(Cgats, ReadsTheTableOfAnotherProgram) {
   EXPECT_EQ(paints.paints[0].measurement->condition, (color::ViewingCondition{"D50", 2}));
   EXPECT_EQ(paints.paints[0].measurement->rows[0].geometry, geometry("45as45"));
   EXPECT_EQ(paints.paints[0].measurement->rows[0].lab, (color::Lab{95.1, -0.2, 1.5}));
-  EXPECT_THAT(paints.warnings, ElementsAre(HasSubstr("NUMBER_OF_SETS"), HasSubstr("Latin-1")));
+  EXPECT_THAT(paints.warnings, ElementsAre(HasSubstr("NUMBER_OF_SETS"), HasSubstr("Windows-1252")));
 }
 
 TEST_F(Cgats, ReadsDecimalCommasWideTablesAndGaps) {
@@ -82,6 +82,22 @@ TEST_F(Cgats, ReadsXyzAndAssumesUnstatedConditions) {
   EXPECT_EQ(good(text, {"D65", 10, false}).paints[0].measurement->condition, (color::ViewingCondition{"D65", 10}));
 }
 
+// Keywords that change what readings are were passed over in silence.
+TEST_F(Cgats, KeywordsThatChangeReadingsAreTold) {
+  const std::string rows = table("SAMPLE_NAME LAB_L LAB_A LAB_B", "p 1 2 3"),
+                    known = std::string(kHead) + "MEASUREMENT_GEOMETRY 45/0\n";
+  for (const char* line : {"FILTER \"UV cut\"", "POLARIZATION yes", "DEVICE_CLASS \"DISPLAY\"", "ILLUMINANT moonlight",
+                           "WEIGHTING_FUNCTION \"STATUS, T\"", "MEASUREMENT_SOURCE \"Filter=UVcut WhiteBase=Abs\"",
+                           "MEASUREMENT_SOURCE \"Filter=No WhiteBase=Paper\"", "COMPUTATIONAL_PARAMETER \"Lab 10\""}) {
+    const auto paints = good(known + line + "\n" + rows);
+    EXPECT_EQ(paints.paints.size(), 1u);
+    EXPECT_THAT(paints.warnings, ElementsAre(HasSubstr("may change what the readings are"))) << line;
+  }
+  for (const char* line : {"FILTER none", "POLARIZATION \"NA\"", "DEVICE_CLASS OUTPUT", "OPERATOR \"me\"",
+                           "MEASUREMENT_SOURCE \"Filter=No WhiteBase=Abs\""})
+    EXPECT_THAT(good(known + line + "\n" + rows).warnings, IsEmpty()) << line;
+}
+
 TEST_F(Cgats, OneConditionIsChosen) {
   const std::string text = table("SAMPLE_NAME GEOMETRY ILLUMINANT OBSERVER LAB_L LAB_A LAB_B",
                                  "p 45as15 D65 10 1 2 3\np 45as15 A 10 4 5 6\np 45as15 A 10 7 8 9");
@@ -104,6 +120,18 @@ TEST_F(Cgats, NumbersRepeatedNamesAndLeavesOutSpheres) {
       good(std::string(kHead) + "MEASUREMENT_GEOMETRY \"d/8\"\n" + table("SAMPLE_NAME LAB_L LAB_A LAB_B", "p 1 2 3"));
   EXPECT_THAT(sphere.paints, IsEmpty());
   EXPECT_THAT(sphere.warnings, Contains(HasSubstr("\"d/8\" has no aspecular angle")));
+}
+
+// Rows of one name are several paints where their codes differ, or their dates at one geometry.
+TEST_F(Cgats, CodesAndDatesTellPaintsOfOneNameApart) {
+  const auto paints = good(std::string(kHead) +
+                           table("SAMPLE_NAME PAINT_CODE DATE GEOMETRY LAB_L LAB_A LAB_B",
+                                 "p A 1 45as15 1 2 3\np A 2 45as25 2 2 3\np B 2 45as15 3 2 3\np B 3 45as15 4 2 3"));
+  ASSERT_EQ(paints.paints.size(), 3u);
+  EXPECT_EQ(paints.paints[0].measurement->rows.size(), 2u);
+  EXPECT_EQ(paints.paints[1].name, "p (2)");
+  EXPECT_EQ(paints.paints[1].code, "B");
+  EXPECT_EQ(paints.paints[2].measurement->rows[0].lab.L, 4);
 }
 
 TEST_F(Cgats, RefusalsNameLineAndCell) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "color/illuminant.h"
 #include "formats/imported.h"
 #include "formats/internal/csv_header.h"
 #include "formats/internal/csv_records.h"
@@ -231,15 +232,20 @@ Result<paint::LabReading> CsvPaintReader::State::reading(const paint::Geometry& 
 Result<color::ViewingCondition> CsvPaintReader::State::condition() const {
   color::ViewingCondition condition;
   if (continues_sample()) condition = open->measurement->condition;
-  if (header.column[kIlluminant] >= 0 && !(continues_sample() && text(header.column[kIlluminant]).empty()))
-    condition.illuminant = text(header.column[kIlluminant]);
-  if (condition.illuminant.empty()) return error("illuminant is empty: write D65, A or another one");
-  const bool same = continues_sample() && text(header.column[kObserver]).empty();
-  if (header.column[kObserver] < 0 || same) return condition;
-  const auto observer = observer_in(without_degree_sign(text(header.column[kObserver])));
-  if (!observer.ok()) return error("observer " + observer.error().message);
-  condition.observer_deg = *observer;
-  return condition;
+  const std::string_view illuminant = text(header.column[kIlluminant]), deg = text(header.column[kObserver]);
+  if (header.column[kIlluminant] >= 0 && illuminant.empty() && !continues_sample())
+    return error("illuminant is empty: write D65, A or another one");
+  const auto named = color::condition_in(illuminant);
+  const bool has_observer = named && named->observer_deg != 0;
+  int observer_deg = has_observer ? 0 : condition.observer_deg;
+  if (header.column[kObserver] >= 0 && !(deg.empty() && (continues_sample() || has_observer))) {
+    const auto observer = observer_in(without_degree_sign(deg));
+    if (!observer.ok()) return error("observer " + observer.error().message);
+    observer_deg = *observer;
+  }
+  const auto stated = stated_condition(illuminant.empty() ? condition.illuminant : illuminant, observer_deg);
+  if (!stated.ok()) return error(stated.error().message);
+  return *stated;
 }
 
 // Everything that a row says of its paint except the Lab values.
@@ -265,17 +271,18 @@ Result<paint::Paint> CsvPaintReader::State::described() const {
   return paint;
 }
 
-// Gives the paint of the first of its rows a name of its own. Where the table has dates, a paint that was measured on
-// several has a number behind its name.
+// Gives the paint of the first of its rows a name of its own. Paints of one name and several dates or codes have a number
+// behind it.
 Result<void> CsvPaintReader::State::take_name(paint::Paint& paint) {
   const std::string stated = paint.name, date(text(header.column[kDate]));
-  const auto before = names.note(date.empty() ? stated : stated + '\n' + date, records.line());
+  const bool is_told_apart = !date.empty() || !paint.code.empty();
+  const auto before = names.note(is_told_apart ? stated + '\n' + date + '\n' + paint.code : stated, records.line());
   if (before)
     return error(fmt::format("sample \"{}\" is already at line {}: {}", shown(stated), *before,
                              header.is_wide() ? "rename one of them" : "put its rows together, or rename it"));
-  if (date.empty()) return {};
+  if (!is_told_apart) return {};
   for (int k = 2; names.note(paint.name, records.line()); ++k) paint.name = fmt::format("{} ({})", stated, k);
-  if (paint.name != stated) remarks.note("samples with another date than before got a number", paint.name);
+  if (paint.name != stated) remarks.note("samples with another date or code than before got a number", paint.name);
   return {};
 }
 
@@ -377,8 +384,10 @@ Result<void> CsvPaintReader::State::add_row() {
   return {};
 }
 
-// True for a row of another date whose geometry the open sample already has.
+// True for a row of another code, or of another date whose geometry the open sample already has.
 bool CsvPaintReader::State::is_measured_again() const {
+  const std::string_view code = text(header.column[kCode]);
+  if (!code.empty() && code != open->code) return true;
   if (header.column[kDate] < 0 || text(header.column[kDate]) == open_date) return false;
   const auto geometry = paint::parse_geometry(without_degree_sign(text(header.column[kGeometry])));
   return geometry.ok() && std::ranges::find(open->measurement->rows, *geometry, &paint::LabReading::geometry) !=

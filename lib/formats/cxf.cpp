@@ -1,6 +1,7 @@
 #include "formats/cxf.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -10,6 +11,7 @@
 
 #include "base/angles.h"
 #include "base/text.h"
+#include "color/illuminant.h"
 #include "formats/internal/cxf_paints.h"
 #include "formats/internal/spectral_rows.h"
 #include "formats/internal/xml_stream.h"
@@ -18,7 +20,15 @@ namespace goniochrome::formats {
 
 namespace {
 
-constexpr std::string_view kNamespace = "http://colorexchangeformat.com/CxF3-core";
+constexpr std::string_view kNamespace = "http://colorexchangeformat.com/CxF3-core",
+                           kNamespace2 = "http://colorexchangeformat.com/v2";
+
+// The elements of CxF2 that say what those of CxF3 do. Colors stand in their object itself.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kNamesOfCxf2 = {
+    {{"ColorSet", "ObjectCollection"},
+     {"Color", "Object"},
+     {"ColorSpaceCIELab", "ColorCIELab"},
+     {"ColorSpaceCIEXYZ", "ColorCIEXYZ"}}};
 
 // The observer (deg) that a word of CxF3 means; 0 for none.
 int observer_of(std::string_view word) {
@@ -50,7 +60,7 @@ class CxfHandler final : public XmlHandler {
   Result<void> start(const XmlTag& tag) override {
     line_ = tag.line;
     if (path_.empty()) GONIO_TRY(check_root(tag));
-    path_.emplace_back(tag.space == kNamespace ? tag.name : "");
+    path_.emplace_back(local_name(tag));
     text_.clear();
     const auto attribute = [&](std::string_view name) -> std::string {
       for (const XmlAttribute& a : tag.attributes)
@@ -60,13 +70,13 @@ class CxfHandler final : public XmlHandler {
     if (in("ObjectCollection", "Object")) {
       ++objects_seen_;
       std::string& own_name = object_.emplace().paint.name;
-      const std::string name = attribute("Name");
+      const std::string name = attribute(is_cxf2_ ? "ColorName" : "Name");
       own_name = name.empty() ? attribute("Id") : name;
       if (own_name.empty()) {
         own_name = fmt::format("line {}", tag.line);
         remarks_.note("objects with neither Name nor Id are called by their line", own_name);
       }
-    } else if (path_.size() >= 2 && path_[path_.size() - 2] == "ColorValues" && object_) {
+    } else if (in("ColorValues", path_.back()) && object_) {
       const auto kind = kind_of(path_.back());
       if (!kind) {
         if (std::ranges::find(object_->unread, path_.back()) == object_->unread.end())
@@ -76,6 +86,9 @@ class CxfHandler final : public XmlHandler {
       color_ = {.kind = *kind, .specification = attribute("ColorSpecification")};
       if (const std::string first = attribute("StartWL"); !first.empty()) {
         GONIO_ASSIGN(color_.first_nm, number("StartWL", first));
+      }
+      if (const std::string step = attribute("Increment"); !step.empty()) {
+        GONIO_ASSIGN(color_.step_nm, number("Increment", step));
       }
     } else if (in("CustomSpectrum", "SpectralPoint")) {
       GONIO_ASSIGN(const double nm, number("WL", attribute("WL")));
@@ -147,11 +160,27 @@ class CxfHandler final : public XmlHandler {
   std::vector<std::string> take_skipped() { return std::exchange(skipped_, {}); }
   std::size_t objects_seen() const { return objects_seen_; }
   const std::map<std::string, CxfSpecification>& specifications() const { return specifications_; }
+  // Gives those without an aspecular angle the one that the options have for them; `remarks` hears of it.
+  void place_by(const ImportOptions& options, Remarks& remarks) {
+    for (auto& [id, specification] : specifications_) {
+      if (!specification.angles.empty() || options.viewings.empty()) continue;
+      const auto geometry = geometry_in_words(specification.other, options, remarks);
+      if (geometry) specification.angles.push_back(*geometry);
+    }
+  }
   Remarks& remarks() { return remarks_; }
 
  private:
   bool in(std::string_view parent, std::string_view name) const {
+    if (is_cxf2_ && parent == "ColorValues") parent = "Object";
     return path_.size() >= 2 && path_.back() == name && path_[path_.size() - 2] == parent;
+  }
+  // The name in CxF3 of an element; "" for one of another vocabulary.
+  std::string local_name(const XmlTag& tag) const {
+    if (tag.space != (is_cxf2_ ? kNamespace2 : kNamespace)) return "";
+    for (const auto& [old, name] : kNamesOfCxf2)
+      if (is_cxf2_ && tag.name == old) return std::string(name);
+    return std::string(tag.name);
   }
   bool inside(std::string_view name) const {
     for (const std::string& open : path_)
@@ -168,8 +197,14 @@ class CxfHandler final : public XmlHandler {
     return *value;
   }
 
-  Result<void> check_root(const XmlTag& tag) const {
+  // CxF2 has no specifications: nothing is stated.
+  Result<void> check_root(const XmlTag& tag) {
     if (tag.name == "CxF" && tag.space == kNamespace) return {};
+    if (tag.name == "CxF" && tag.space == kNamespace2) {
+      is_cxf2_ = true;
+      specifications_[""] = {};
+      return {};
+    }
     if (lower(tag.name) == "cxf")
       return error(tag.space.empty()
                        ? fmt::format("is CxF without a namespace, as versions before CxF3 are: export CxF3, "
@@ -275,7 +310,8 @@ class CxfHandler final : public XmlHandler {
     CxfSpecification& specification = *specification_;
     if (in("TristimulusSpec", "Illuminant"))
       specification.condition.illuminant =
-          content == "Custom" && !custom_illuminant_.empty() ? custom_illuminant_ : content;
+          color::condition_of(content == "Custom" && !custom_illuminant_.empty() ? custom_illuminant_ : content, 0)
+              .illuminant;
     if (in("TristimulusSpec", "Observer")) specification.condition.observer_deg = observer_of(content);
     if (in("BRDFAngle", "IlluminationAngle")) return take(angle_.incidence_deg, "IlluminationAngle", content);
     if (in("BRDFAngle", "Aspecular")) return take(angle_.aspecular_deg, "Aspecular", content);
@@ -333,7 +369,7 @@ class CxfHandler final : public XmlHandler {
   int line_ = 0;
   std::vector<std::string> path_;  // local names from the root; "" for elements of other vocabularies
   std::string text_;
-  bool own_tags_ = false;
+  bool own_tags_ = false, is_cxf2_ = false;
 
   CxfColor color_;
   double chroma_ = 0, hue_deg_ = 0, measurement_deg_ = 0;
@@ -412,9 +448,10 @@ Result<CxfReader> CxfReader::open(InputFile input, const ImportOptions& options)
   const std::string name = first.name();
   XmlStream stream(std::move(first), nullptr, state->specifications);
   GONIO_TRY(stream.finish());
+  state->specifications.place_by(state->options, state->objects.remarks());
   ScaleJudge judge;
   state->specifications.judge_spectra(judge);
-  const auto unit = judge.unit_of_factors("CxF3", options.scale, state->objects.remarks());
+  const auto unit = judge.unit_of_format("CxF3", Scale::kFactor, options.scale, state->objects.remarks());
   if (!unit.ok()) return input_error("{}: {}", name, unit.error().message);
   state->resolver.set_unit(*unit);
   return CxfReader(std::move(state));

@@ -1,6 +1,7 @@
-// Paints in CxF3 (ISO 17972-1). Such a file lists objects and their colors, and each color refers to a specification of
-// illuminant, observer and geometry. A paint is an object; each of its angles has a specification of its own, which is
-// a MultiAngle with one BRDFAngle. goniochrome-paint(5).
+// Paints in CxF3 (ISO 17972-1), and what CxF2 says of them, whose colors have no geometry. Such a file lists objects
+// and their colors, and each color refers to a specification of illuminant, observer and geometry. A paint is an
+// object; each of its angles has a specification of its own, which is a MultiAngle with one BRDFAngle.
+// goniochrome-paint(5).
 #pragma once
 
 #include <memory>

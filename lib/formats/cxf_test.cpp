@@ -366,10 +366,32 @@ TEST_F(Cxf, AnAngleWithoutNumbersIsItsNotationOrRefused) {
               HasSubstr("BRDFAngle has no Aspecular, and its Notation \"front\" names no geometry"));
 }
 
+// Colors of a palette have no geometry: the user says which they stand for.
+TEST_F(Cxf, ReadsTheColorsOfCxf2) {
+  std::string spectrum;
+  for (int i = 0; i < 31; ++i) spectrum += " .2";
+  const std::string text =
+      "<?xml version='1.0'?><CxF xmlns='http://colorexchangeformat.com/v2'><Palette PaletteName='p'><ColorSet>"
+      "<Color ColorName='r'><ColorSpaceCIELab><L>50</L><A>1</A><B>-2</B></ColorSpaceCIELab></Color>"
+      "<Color ColorName='s'><ReflectanceSpectrum StartWL='400' Increment='10'>" +
+      spectrum + "</ReflectanceSpectrum></Color></ColorSet></Palette></CxF>";
+  const auto none = good(text);
+  EXPECT_THAT(none.paints, IsEmpty());
+  EXPECT_THAT(none.warnings, Contains(HasSubstr("give --viewing GEOMETRY")));
+  ImportOptions options;
+  options.viewings = {{"", geometry("45as45")}};
+  const auto paints = good(text, options);
+  ASSERT_EQ(paints.paints.size(), 2u);
+  EXPECT_EQ(paints.paints[0].name, "r");
+  EXPECT_EQ(paints.paints[0].measurement->rows.at(0).lab, (color::Lab{50, 1, -2}));
+  EXPECT_EQ(paints.paints[1].measurement->spectra.at(0).factors.size(), 31u);
+  EXPECT_NEAR(paints.paints[1].measurement->rows.at(0).lab.L, 51.8372, 1e-4);  // 116 (.2)^(1/3) - 16
+}
+
 TEST_F(Cxf, RefusalsNameTheLine) {
   EXPECT_THAT(refusal(cxf("\n" + object("p", lab("a", "\n<L>12,5</L><A>1</A><B>2</B>")), "")),
               HasSubstr(":3: L is \"12,5\": write a number with a decimal point"));
-  EXPECT_THAT(refusal("<CxF xmlns=\"http://colorexchangeformat.com/v2\"/>"), HasSubstr("export CxF3"));
+  EXPECT_THAT(refusal("<CxF xmlns=\"http://colorexchangeformat.com/v1\"/>"), HasSubstr("export CxF3"));
   EXPECT_THAT(refusal("<html/>"), HasSubstr("no CxF file"));
   EXPECT_THAT(refusal(""), HasSubstr("is empty"));
   const auto kept = good(cxf(object("p", lab("a", "<L>x</L><A>1</A><B>2</B>")) + object("q", lab("a")),

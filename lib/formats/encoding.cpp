@@ -1,10 +1,19 @@
 #include "formats/encoding.h"
 
+#include <array>
 #include <cstdint>
+
+#include "base/text.h"
 
 namespace goniochrome::formats {
 
 namespace {
+
+// The characters 0x80 to 0x9F of Windows-1252; those that it leaves open are the replacement character.
+constexpr std::array<std::uint32_t, 32> kWindows1252 = {0x20ac, 0xfffd, 0x201a, 0x0192, 0x201e, 0x2026, 0x2020, 0x2021,
+                                                        0x02c6, 0x2030, 0x0160, 0x2039, 0x0152, 0xfffd, 0x017d, 0xfffd,
+                                                        0xfffd, 0x2018, 0x2019, 0x201c, 0x201d, 0x2022, 0x2013, 0x2014,
+                                                        0x02dc, 0x2122, 0x0161, 0x203a, 0x0153, 0xfffd, 0x017e, 0x0178};
 
 constexpr std::string_view kLittleEndianMark = "\xff\xfe", kBigEndianMark = "\xfe\xff";
 
@@ -67,6 +76,21 @@ std::string as_utf8(std::string_view bytes) {
   std::string text;
   Utf8Decoder().append(bytes, text);
   return text;
+}
+
+std::string decoded_text(std::string_view bytes, bool& is_windows_1252) {
+  std::string text = as_utf8(bytes);
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  std::erase_if(text,
+                [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r'; });
+  is_windows_1252 = !is_plain_utf8(text);
+  if (!is_windows_1252) return text;
+  std::string converted;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    append_utf8(byte >= 0x80 && byte < 0xa0 ? kWindows1252[byte - 0x80] : byte, converted);
+  }
+  return converted;
 }
 
 }  // namespace goniochrome::formats

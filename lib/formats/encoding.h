@@ -22,4 +22,8 @@ class Utf8Decoder {
 // A whole text, or its first bytes.
 std::string as_utf8(std::string_view bytes);
 
+// A whole text in UTF-8, UTF-16 or, where it is neither, Windows-1252, without the mark at its beginning and without
+// control characters but tabs and ends of lines. `is_windows_1252` hears of the last.
+std::string decoded_text(std::string_view bytes, bool& is_windows_1252);
+
 }  // namespace goniochrome::formats

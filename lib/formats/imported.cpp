@@ -5,6 +5,7 @@
 #include <initializer_list>
 
 #include "base/text.h"
+#include "color/illuminant.h"
 
 namespace goniochrome::formats {
 
@@ -122,6 +123,14 @@ std::optional<std::string> with_decimal_point(std::string_view text) {
   return pointed;
 }
 
+Result<color::ViewingCondition> stated_condition(std::string_view illuminant, int observer_deg) {
+  const color::ViewingCondition condition = color::condition_of(illuminant, observer_deg);
+  if (observer_deg != 0 && condition.observer_deg != observer_deg)
+    return input_error("illuminant is \"{}\" beside the observer {}: write one observer", shown(illuminant),
+                       observer_deg);
+  return condition;
+}
+
 color::ViewingCondition completed(color::ViewingCondition stated, const ImportOptions& options,
                                   const color::ViewingCondition& assumed) {
   if (stated.illuminant.empty())
@@ -144,10 +153,66 @@ std::vector<std::string> Remarks::lines() const {
   std::vector<std::string> result;
   for (const Kind& kind : kinds_) {
     const std::string more = kind.count > 1 ? fmt::format(" and {} more", kind.count - 1) : "";
-    result.push_back(kind.example.empty() && more.empty() ? kind.what
-                                                          : fmt::format("{} ({}{})", kind.what, kind.example, more));
+    if (!kind.example.empty())
+      result.push_back(fmt::format("{} ({}{})", kind.what, kind.example, more));
+    else
+      result.push_back(kind.count > 1 ? fmt::format("{} ({} times)", kind.what, kind.count) : kind.what);
   }
   return result;
+}
+
+namespace {
+
+// Whether the words stand in the text, letters of either case, and not as a part of other words.
+bool has_words(std::string_view text, std::string_view words) {
+  const std::string whole = lower(text), part = lower(words);
+  const auto is_letter = [&](std::size_t at) {
+    return at < whole.size() && ((whole[at] >= 'a' && whole[at] <= 'z') || (whole[at] >= '0' && whole[at] <= '9'));
+  };
+  for (std::size_t at = whole.find(part); at != std::string::npos; at = whole.find(part, at + 1))
+    if ((at == 0 || !is_letter(at - 1)) && !is_letter(at + part.size())) return true;
+  return false;
+}
+
+// 45/0 and 0/45, which read what 45as45 reads.
+bool is_45_0(std::string_view words) {
+  const auto mark = words.find_first_of("/:");
+  if (mark == std::string_view::npos) return false;
+  const auto leading = [](std::string_view text) {
+    text = trimmed(text);
+    return text.substr(0, text.find_first_not_of("0123456789"));
+  };
+  const std::string_view from = leading(words), to = leading(words.substr(mark + 1));
+  return (from == "45" && to == "0") || (from == "0" && to == "45");
+}
+
+}  // namespace
+
+std::optional<paint::Geometry> geometry_in_words(std::string_view words, const ImportOptions& options,
+                                                 Remarks& remarks) {
+  constexpr std::string_view kDegreeSign = "\xc2\xb0";
+  std::string text(trimmed(words));
+  for (auto at = text.find(kDegreeSign); at != std::string::npos; at = text.find(kDegreeSign)) text.erase(at, 2);
+  if (is_45_0(text)) return paint::Geometry{45, 45};
+  if (const auto named = paint::parse_geometry(trimmed(text)); named.ok()) return *named;
+  for (const Viewing& viewing : options.viewings)
+    if (viewing.words.empty() || has_words(text, viewing.words)) {
+      remarks.note(text.empty() ? fmt::format("no viewing geometry is stated: taken as {}, as --viewing says",
+                                              paint::geometry_name(viewing.geometry))
+                                : fmt::format("the viewing \"{}\" was taken as {}, as --viewing says", shown(text),
+                                              paint::geometry_name(viewing.geometry)),
+                   "");
+      return viewing.geometry;
+    }
+  const std::string typical = has_words(text, "SCE") ? "SCE" : has_words(text, "SCI") ? "SCI" : shown(text);
+  remarks.note(text.empty()
+                   ? "no viewing geometry is stated, and readings without one are left out: give --viewing "
+                     "GEOMETRY, such as 45as45, to take them as that"
+                   : fmt::format("the viewing \"{}\" has no aspecular angle, and its readings are left out: "
+                                 "give --viewing \"WORDS=GEOMETRY\", such as \"{}=45as45\", to take them as that",
+                                 shown(text), typical),
+               "");
+  return std::nullopt;
 }
 
 bool OpenPaint::complete(const ImportOptions& options, Remarks& remarks) {

@@ -12,6 +12,7 @@
 
 #include "base/result.h"
 #include "color/color.h"
+#include "paint/geometry.h"
 #include "paint/paint.h"
 
 namespace goniochrome::formats {
@@ -41,12 +42,24 @@ std::optional<std::string> with_decimal_point(std::string_view text);
 // The unit of reflectances in a file: factors, where 1 is the perfect diffuser, or percent.
 enum class Scale { kUnstated, kFactor, kPercent };
 
+// A geometry that stands for readings of which a file names none that has an aspecular angle, such as a sphere: of all,
+// or of those whose viewing has these words.
+struct Viewing {
+  std::string words;
+  paint::Geometry geometry;
+};
+
 struct ImportOptions {
   std::string illuminant;          // of the readings to take, and of files that do not state it; empty: the file's own
   int observer_deg = 0;            // likewise; 0: the file's own
   bool keep_going = false;         // leave out samples that cannot be read and say so, instead of stopping at the first
   Scale scale = Scale::kUnstated;  // of the reflectances of files that do not state it
+  std::vector<Viewing> viewings = {};
 };
+
+// The condition of an illuminant in any name and of an observer, 0 where none is stated beside it. An illuminant that
+// is not known keeps its name. Error, without the place: both name an observer, and not the same.
+Result<color::ViewingCondition> stated_condition(std::string_view illuminant, int observer_deg);
 
 // `stated` completed by the options where it is silent, and by `assumed` where they are silent too.
 color::ViewingCondition completed(color::ViewingCondition stated, const ImportOptions& options,
@@ -66,6 +79,11 @@ class Remarks {
   };
   std::vector<Kind> kinds_;
 };
+
+// The geometry that a file's words on light and detector name (`45/0`, `15`, `45as15`), or that an option has for them;
+// nothing for any other, such as a sphere, which is remarked.
+std::optional<paint::Geometry> geometry_in_words(std::string_view words, const ImportOptions& options,
+                                                 Remarks& remarks);
 
 struct ImportedPaints {
   std::vector<paint::Paint> paints;

@@ -5,12 +5,23 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "formats/encoding.h"
+#include "formats/internal/spectral_rows.h"
 
 namespace goniochrome::formats {
 
 namespace {
 
 constexpr std::size_t kMostNames = 40;  // in a message
+// A surface or filter passes no more than all light, but for fluorescence, and twice that in no case.
+constexpr double kMostFactor = 2;
+
+// A name without a unit behind it: `cyan [%]` is cyan.
+std::string without_unit(std::string_view name) {
+  const auto bracket = name.find_last_of("[(");
+  const bool has_unit =
+      bracket != std::string_view::npos && bracket > 0 && scale_in(name.substr(bracket)) != Scale::kUnstated;
+  return std::string(trimmed(has_unit ? name.substr(0, bracket) : name));
+}
 
 std::string_view without_return(std::string_view line) {
   return line.ends_with('\r') ? line.substr(0, line.size() - 1) : line;
@@ -27,6 +38,18 @@ Result<std::vector<double>> SpectrumTable::column(const std::string& name) const
                      names.size() > kMostNames ? ", ..." : "");
 }
 
+Result<std::vector<double>> SpectrumTable::factors(const std::string& name) const {
+  GONIO_ASSIGN(std::vector<double> values, column(name));
+  const Scale scale = scales[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (scale == Scale::kPercent) values[i] /= 100;
+    if (!(values[i] <= kMostFactor))
+      return input_error("\"{}\" is {} at {} nm, which no filter is as a factor: head it \"{} [%]\" if it is percent",
+                         shown(name), shortest(values[i]), shortest(wavelengths_nm[i]), shown(name));
+  }
+  return values;
+}
+
 Result<SpectrumTable> read_spectrum_table(const std::string& path) {
   GONIO_ASSIGN(const std::string bytes, file_content(path));
   const std::string text = as_utf8(bytes);
@@ -40,7 +63,10 @@ Result<SpectrumTable> read_spectrum_table(const std::string& path) {
     if (trimmed(row).empty()) continue;
     const auto words = split(row, ',');
     if (table.names.empty()) {
-      for (std::size_t i = 1; i < words.size(); ++i) table.names.emplace_back(trimmed(words[i]));
+      for (std::size_t i = 1; i < words.size(); ++i) {
+        table.names.push_back(without_unit(words[i]));
+        table.scales.push_back(scale_in(words[i]));
+      }
       if (table.names.empty())
         return input_error("{}:{}: a table of spectra has the names of its columns here, separated by commas", path,
                            line);
@@ -48,7 +74,11 @@ Result<SpectrumTable> read_spectrum_table(const std::string& path) {
       continue;
     }
     const auto nm = parse_number(trimmed(words.front()));
-    if (!nm && table.wavelengths_nm.empty()) continue;
+    if (!nm && table.wavelengths_nm.empty()) {
+      for (std::size_t i = 1; i < std::min(words.size(), table.scales.size() + 1); ++i)
+        if (const Scale stated = scale_in(words[i]); stated != Scale::kUnstated) table.scales[i - 1] = stated;
+      continue;
+    }
     if (words.size() != table.names.size() + 1)
       return input_error("{}:{}: {} cells where the first row has {}", path, line, words.size(),
                          table.names.size() + 1);

@@ -32,6 +32,22 @@ TEST(SpectrumTable, ReadsNamesWithBlanksAndLinesOfOtherSystems) {
   EXPECT_EQ(table->column("a red").value(), (std::vector<double>{1, 3}));
 }
 
+// A filter in percent was taken for one that passes fifty times the light.
+TEST(SpectrumTable, FactorsAreOfTheScaleThatTheTableStates) {
+  for (const char* text : {"nm,a [%],b\n400,50,.25\n410,60,.5\n", "nm,a,b\n[nm],%,-\n400,50,.25\n410,60,.5\n"}) {
+    const auto table = read_spectrum_table(written(text));
+    ASSERT_TRUE(table.ok()) << table.error().message;
+    EXPECT_EQ(table->factors("a").value(), (std::vector<double>{.5, .6}));
+    EXPECT_EQ(table->factors("b").value(), (std::vector<double>{.25, .5}));
+  }
+  const auto unstated = read_spectrum_table(written("nm,a,b\n400,.5,3\n410,60,4\n"));
+  ASSERT_TRUE(unstated.ok());
+  EXPECT_EQ(unstated->factors("a").error().message,
+            "\"a\" is 60 at 410 nm, which no filter is as a factor: head it \"a [%]\" if it is percent");
+  EXPECT_EQ(unstated->column("a").value(), (std::vector<double>{.5, 60}));
+  EXPECT_FALSE(unstated->factors("c").ok());
+}
+
 TEST(SpectrumTable, NamesTheLineOfWhatIsWrong) {
   const std::pair<const char*, const char*> cases[] = {
       {"nm\n400\n410\n", ":1:"},     {"nm,a\n400,1\n", "two wavelengths"}, {"nm,a\n400,1\n390,2\n", ":3:"},

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "color/illuminant.h"
 #include "formats/internal/spectral_rows.h"
 #include "formats/internal/spreadsheet.h"
 
@@ -65,17 +66,14 @@ constexpr std::array<std::string_view, 6> kGeometryHeadings = {"geometry", "geom
 
 // `D65/10` or `D65 10°` in a text; parts that are not there stay empty and 0.
 color::ViewingCondition condition_in(std::string_view text) {
-  static constexpr std::array<std::string_view, 12> kIlluminants = {"D50",  "D55", "D65", "D75", "F11", "F12",
-                                                                    "TL84", "F2",  "F7",  "A",   "C",   "E"};
-  color::ViewingCondition condition{"", 0};
+  color::ViewingCondition condition = color::condition_among(text);
   std::string word;
-  for (const char c : upper(text) + " ") {
-    if ((c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9')) {
+  for (const char c : std::string(text) + " ") {
+    if ((c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) {
       word += c;
       continue;
     }
-    if (condition.illuminant.empty() && is_one_of(word, kIlluminants)) condition.illuminant = word;
-    if (word == "2" || word == "10") condition.observer_deg = word == "2" ? 2 : 10;
+    if (condition.observer_deg == 0 && (word == "2" || word == "10")) condition.observer_deg = word == "2" ? 2 : 10;
     word.clear();
   }
   return condition;

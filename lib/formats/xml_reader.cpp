@@ -238,8 +238,13 @@ Result<void> PaintHandler::begin_paint(const XmlValues& values) {
 Result<void> PaintHandler::begin_measurement(const XmlValues& values) {
   GONIO_TRY(once(paint_.measurement.has_value(), values));
   paint::Measurement& measurement = paint_.measurement.emplace();
-  GONIO_TRY(values.name("illuminant", measurement.condition.illuminant));
-  GONIO_TRY(values.word("observer", measurement.condition.observer_deg, observer_in));
+  std::string illuminant;
+  int observer_deg = 0;
+  GONIO_TRY(values.name("illuminant", illuminant));
+  GONIO_TRY(values.word("observer", observer_deg, observer_in));
+  const auto condition = stated_condition(illuminant, observer_deg);
+  if (!condition.ok()) return values.error(condition.error().message);
+  measurement.condition = *condition;
   measurement.instrument = values.text("instrument");
   return {};
 }

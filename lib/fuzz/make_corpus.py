@@ -82,6 +82,36 @@ def workbooks():
         put("workbook", name, archive.getvalue())
 
 
+def instruments():
+    """The text formats of instruments' programs: a standard and a batch of 31 values."""
+    values = [f"{5 + .5 * k:.3f}" for k in range(31)]
+    put("qtx", "two.qtx", "".join(
+        f"[{section} 0]\r\n{key}_NAME=r\xe9d {i}\r\n{key}_DATETIME=1029098162,\r\n{key}_REFLPOINTS=31,\r\n{key}_REFLINTERVAL=10,\r\n"
+        f"{key}_REFLLOW=400\r\n{key}_VIEWING={viewing}\r\n{key}_R={', '.join(values)},\r\n{key}_CORD_ILLUM=D65/10 deg\r\n"
+        f"{key}_X=9.9\r\n{key}_Y=6.9\r\n{key}_Z=5.5\r\n\r\n"
+        for i, (section, key, viewing) in enumerate((("STANDARD_DATA", "STD", "45/0"), ("BATCH_DATA", "BAT", "%R SAV SCE UV Inc")))
+    ).encode("cp1252"))
+    info = "[FILE INFO]\nVERSION=2000\n%s\n[CUSTOMER]\nCUST=E\n[STANDARD]\n"
+    put("mif", "two.mif", info % "ANGLE=MA" + "NAME=Silver\nDESC=d\n[MEASUREMENT]\nTIME=1\nINST=MA68\n"
+        + "".join(f"ANGL={angle} {' '.join(values)}\n" for angle in (15, 45, 110, "Ex")) + "TAGS=x\n")
+    put("xtf", "three.xtf", info % "ANGLES=3" + "STD=Gold`Original`731320`5`\nMEAS=8`0`1`\n"
+        + "".join(f"REFL={k}`{'`'.join(values)}`\n" for k in range(3)) + "[SAMPLE]\nSMP=b`\nREFL=0`" + "`".join(values) + "`\n")
+    columns = "    nm     0     10     20     30    40     50    60     70     80    90\r\n"
+    rows = [values[k:k + 10] for k in range(0, 31, 10)]
+    table = columns + "    300                                           0.000  0.000  0.000 0.000\r\n" + "".join(
+        f"    {400 + 100 * i}    " + "".join(f"{v:<{6 + k % 2}}" for k, v in enumerate(row)) + "\r\n" for i, row in enumerate(rows))
+    put("mtf", "two.mtf", "          TREEPOINT QTEX Statistics\r\n    Reference : ID          :S\r\n                Name        :r\r\n"
+        f"                Status      :CM/Reflexion/SCI/N:1\r\n{table}    1/1   T-1 RED   0.30  0.68  -0.18  0.29  0.27  0.21\r\n{table}")
+    head = ("##TITLE=r\n##JCAMP-DX=4.24\n##XUNITS=NANOMETERS\n##YUNITS=% REFLECTANCE\n##$GEOMETRY=45as15\n##FIRSTX=400\n##LASTX=700\n"
+            "##NPOINTS=31\n##XFACTOR=1\n##YFACTOR=1\n##XYDATA=")
+    put("jcamp", "plain.jdx", f"{head}(X++(Y..Y))\n400 {' '.join(values[:16])}\n560 {' '.join(values[16:])}\n##END=\n")
+    put("jcamp", "packed.jdx", f"{head}(X++(Y..Y))\n400A0JY\n470A7JZ\n550B5JZ\n630C3JY\n##END=\n")
+    put("jcamp", "pairs.jdx", f"{head}(XY..XY)\n" + "; ".join(f"{400 + 10 * k},{v}" for k, v in enumerate(values)) + "\n##END=\n")
+    put("cxf", "two.cxf", '<CxF xmlns="http://colorexchangeformat.com/v2"><Palette PaletteName="p"><ColorSet><Color ColorName="r">'
+        "<ColorSpaceCIELab><L>50</L><A>1</A><B>-2</B></ColorSpaceCIELab></Color><Color ColorName=\"s\">"
+        f'<ReflectanceSpectrum StartWL="400" Increment="10">{" ".join(values)}</ReflectanceSpectrum></Color></ColorSet></Palette></CxF>')
+
+
 def bases():
     put("basis-xml", "b5.xml", (TESTDATA / "b5.basis.xml").read_bytes())
     put("basis-xml", "small.xml", '<basis xmlns="urn:goniochrome:basis:1" name="b"><exponent>0.3</exponent>'
@@ -91,6 +121,8 @@ def bases():
 def measured():
     rows = "".join(f"{i} 0 {o} {p} 0.3 0.2 0.1\n" for i in (0.2, 0.7) for o in (0.1, 0.6, 1.1) for p in (0, 1.5, 3.1))
     put("measured", "cornell.brdf", "# made\n# num wls\n3\n# wls\n400 550 700\n" + rows)
+    table = [[nm * 1e-9, i, o, p, .1] for nm in (400, 550, 700) for i in (.2, .7) for o in (.1, .6) for p in (0, 1.5, 3.1)]
+    put("measured", "table.xompt", json.dumps({"$schema": "x/OpenMATERIAL-3D", "metadata": {"name": "t"}, "brdf": {"lookupTable": table}}))
     grid = b"".join(struct.pack("<fff", 0.3, 0.2, 0.1 * k) for k in range(3 * 3 * 4))
     put("measured", "grid.mbsdf", b"NVIDIA ARC MBSDF V1\nMBSDF_DATA_REFLECTION=\n" + struct.pack("<III", 1, 3, 4) + grid)
     put("measured", "head.binary", struct.pack("<iii", 90, 90, 180) + struct.pack("<d", 0.5) * 16)
@@ -183,5 +215,5 @@ def operators():
     put("operator-json", "plain.json", json.dumps({"name": "plain", "k": plain}))
 
 
-paints(), workbooks(), bases(), measured(), environments(), buffers(), meshes(), pictures(), operators()
+paints(), workbooks(), instruments(), bases(), measured(), environments(), buffers(), meshes(), pictures(), operators()
 print(sum(f.stat().st_size for f in HERE.glob("corpus/*/*")), "bytes", file=sys.stderr)

@@ -13,10 +13,9 @@
 #include "color/reflection_file.h"
 #include "envmap/prefiltered.h"
 #include "formats/basis.h"
-#include "formats/cgats.h"
 #include "formats/csv.h"
 #include "formats/cxf.h"
-#include "formats/workbook.h"
+#include "formats/importers.h"
 #include "formats/xml.h"
 #include "image/aov_file.h"
 #include "image/hdr.h"
@@ -87,7 +86,9 @@ template <Result<formats::ImportedPaints> (*import)(InputFile, const formats::Im
 void read_imported(const std::string& path) {
   auto input = InputFile::open(path);
   if (!input.ok()) return demand_message(input.error());
-  const auto imported = import(std::move(*input), {});
+  formats::ImportOptions options;
+  options.viewings = {{"", {}}};  // so that files without a geometry are read to their end
+  const auto imported = import(std::move(*input), options);
   if (!imported.ok()) return demand_message(imported.error());
   for (const paint::Paint& paint : imported->paints) demand_paint(paint);
 }
@@ -157,6 +158,11 @@ const std::vector<FuzzTarget>& fuzz_targets() {
       {"cxf", "a.cxf", read_imported<formats::read_cxf>},
       {"cgats", "a.txt", read_imported<formats::read_cgats>},
       {"workbook", "a.xlsx", read_imported<formats::read_workbook>},
+      {"qtx", "a.qtx", read_imported<formats::read_qtx>},
+      {"mif", "a.mif", read_imported<formats::read_mif>},
+      {"xtf", "a.xtf", read_imported<formats::read_xtf>},
+      {"mtf", "a.mtf", read_imported<formats::read_mtf>},
+      {"jcamp", "a.jdx", read_imported<formats::read_jcamp>},
       {"measured", "a.brdf", read_measured_file},
       {"env-exr", "a.env.exr", read_env_file},
       {"obj", "a.obj", read_mesh},

@@ -106,13 +106,19 @@ Result<ImagePart> decoded_by_oiiotool(const std::string& content, const std::str
   const std::string in = scratch.file("in." + (format == "targa" ? "tga" : format)), out = scratch.file("out.exr"),
                     words = scratch.file("words");
   GONIO_TRY(write_file(in, content));
-  const auto status = run({program_path(), "--threads", "1", "--nosoftwareattrib", "--autoorient", "--info", "-v", in, "-d", "float",
-                           "--compression", "none", "-o", out},
-                          words, 60 + static_cast<int>(content.size() >> 20));
+  std::vector<std::string> command = {program_path(), "--threads", "1", "--nosoftwareattrib"};
+  // Some versions hear the EXIF of a WebP file and others do not: exif_orientation() does in all of them.
+  if (format != "webp") command.emplace_back("--autoorient");
+  for (const char* word : {"--info", "-v"}) command.emplace_back(word);
+  command.push_back(in);
+  for (const char* word : {"-d", "float", "--compression", "none", "-o"}) command.emplace_back(word);
+  command.push_back(out);
+  const auto status = run(std::move(command), words, 60 + static_cast<int>(content.size() >> 20));
   // A shell says by 127 that it found no program, and so does posix_spawn() in some C libraries.
   if (!status || (WIFEXITED(*status) && WEXITSTATUS(*status) == 127))
     return input_error(
-        "{}: is a picture of the format {}, which OpenImageIO reads, and its program oiiotool is not installed: install "
+        "{}: is a picture of the format {}, which OpenImageIO reads, and its program oiiotool is not installed: "
+        "install "
         "openimageio-tools, or OpenImageIO by pip, or convert the image to EXR, PNG or TIFF",
         name, upper(format));
   const auto said = file_content(words);

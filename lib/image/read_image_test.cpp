@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <vector>
 // libjpeg's headers want <cstdio> before them.
 #include <jpeglib.h>
@@ -29,8 +30,12 @@ int ink(int x, int y, int c) {
   return values[c];
 }
 
-// As Adobe's programs store inks, paper being 255, where `adobe`; else as they are. `space` is JCS_CMYK or JCS_YCCK.
-std::string cmyk_jpeg(bool adobe, J_COLOR_SPACE space) {
+// A JPEG of quality 100 and of that many samples a pixel. `set_up` chooses what follows from the defaults, `start` may
+// write markers, and `row` gives the samples of a row.
+std::string jpeg(int width, int height, int samples, J_COLOR_SPACE space,
+                 const std::function<void(jpeg_compress_struct&)>& set_up,
+                 const std::function<void(jpeg_compress_struct&)>& start,
+                 const std::function<std::vector<JSAMPLE>(int)>& row) {
   jpeg_compress_struct info{};
   jpeg_error_mgr errors{};
   info.err = jpeg_std_error(&errors);
@@ -38,18 +43,16 @@ std::string cmyk_jpeg(bool adobe, J_COLOR_SPACE space) {
   unsigned char* bytes = nullptr;
   unsigned long size = 0;
   jpeg_mem_dest(&info, &bytes, &size);
-  info.image_width = kWidth, info.image_height = kHeight, info.input_components = 4, info.in_color_space = JCS_CMYK;
+  info.image_width = static_cast<JDIMENSION>(width), info.image_height = static_cast<JDIMENSION>(height);
+  info.input_components = samples, info.in_color_space = space;
   jpeg_set_defaults(&info);
-  jpeg_set_colorspace(&info, space);
-  for (int c = 0; c < 4; ++c) info.comp_info[c].h_samp_factor = info.comp_info[c].v_samp_factor = 1;
+  set_up(info);
   jpeg_set_quality(&info, 100, TRUE);
-  info.write_Adobe_marker = adobe ? TRUE : FALSE;
   jpeg_start_compress(&info, TRUE);
-  for (int y = 0; y < kHeight; ++y) {
-    std::vector<JSAMPLE> row;
-    for (int x = 0; x < kWidth; ++x)
-      for (int c = 0; c < 4; ++c) row.push_back(static_cast<JSAMPLE>(adobe ? 255 - ink(x, y, c) : ink(x, y, c)));
-    JSAMPLE* pointer = row.data();
+  start(info);
+  for (int y = 0; y < height; ++y) {
+    std::vector<JSAMPLE> values = row(y);
+    JSAMPLE* pointer = values.data();
     jpeg_write_scanlines(&info, &pointer, 1);
   }
   jpeg_finish_compress(&info);
@@ -57,6 +60,23 @@ std::string cmyk_jpeg(bool adobe, J_COLOR_SPACE space) {
   jpeg_destroy_compress(&info);
   std::free(bytes);
   return content;
+}
+
+// As Adobe's programs store inks, paper being 255, where `adobe`; else as they are. `space` is JCS_CMYK or JCS_YCCK.
+std::string cmyk_jpeg(bool adobe, J_COLOR_SPACE space) {
+  const auto set_up = [&](jpeg_compress_struct& info) {
+    jpeg_set_colorspace(&info, space);
+    for (int c = 0; c < 4; ++c) info.comp_info[c].h_samp_factor = info.comp_info[c].v_samp_factor = 1;
+    info.write_Adobe_marker = adobe ? TRUE : FALSE;
+  };
+  return jpeg(
+      kWidth, kHeight, 4, JCS_CMYK, set_up, [](jpeg_compress_struct&) {},
+      [&](int y) {
+        std::vector<JSAMPLE> row;
+        for (int x = 0; x < kWidth; ++x)
+          for (int c = 0; c < 4; ++c) row.push_back(static_cast<JSAMPLE>(adobe ? 255 - ink(x, y, c) : ink(x, y, c)));
+        return row;
+      });
 }
 
 class CmykJpeg : public testing::Test {
@@ -103,33 +123,20 @@ TEST_F(CmykJpeg, ACutFileIsAnError) {
 
 // A gray JPEG of 32 x 16 pixels, white in its upper left quarter, that says how it is turned.
 std::string turned_jpeg(int orientation) {
-  jpeg_compress_struct info{};
-  jpeg_error_mgr errors{};
-  info.err = jpeg_std_error(&errors);
-  jpeg_create_compress(&info);
-  unsigned char* bytes = nullptr;
-  unsigned long size = 0;
-  jpeg_mem_dest(&info, &bytes, &size);
-  info.image_width = 32, info.image_height = 16, info.input_components = 1, info.in_color_space = JCS_GRAYSCALE;
-  jpeg_set_defaults(&info);
-  jpeg_set_quality(&info, 100, TRUE);
-  jpeg_start_compress(&info, TRUE);
   // Exif: a TIFF header and a directory of one entry, the tag 0x112, of one short number.
   std::string exif("Exif\0\0MM\0\x2a\0\0\0\x08\0\1\x01\x12\0\3\0\0\0\1\0\0\0\0\0\0\0\0", 32);
   exif[25] = static_cast<char>(orientation);
-  jpeg_write_marker(&info, JPEG_APP0 + 1, reinterpret_cast<const JOCTET*>(exif.data()),
-                    static_cast<unsigned>(exif.size()));
-  for (int y = 0; y < 16; ++y) {
-    std::vector<JSAMPLE> row(32, 0);
-    if (y < 8) std::fill_n(row.begin(), 16, JSAMPLE{255});
-    JSAMPLE* pointer = row.data();
-    jpeg_write_scanlines(&info, &pointer, 1);
-  }
-  jpeg_finish_compress(&info);
-  std::string content(reinterpret_cast<char*>(bytes), size);
-  jpeg_destroy_compress(&info);
-  std::free(bytes);
-  return content;
+  const auto write_exif = [&](jpeg_compress_struct& info) {
+    jpeg_write_marker(&info, JPEG_APP0 + 1, reinterpret_cast<const JOCTET*>(exif.data()),
+                      static_cast<unsigned>(exif.size()));
+  };
+  return jpeg(
+      32, 16, 1, JCS_GRAYSCALE, [](jpeg_compress_struct&) {}, write_exif,
+      [](int y) {
+        std::vector<JSAMPLE> row(32, 0);
+        if (y < 8) std::fill_n(row.begin(), 16, JSAMPLE{255});
+        return row;
+      });
 }
 
 // The white quarter is where viewers show it. Without regard to the tag it was in the upper left of all eight.

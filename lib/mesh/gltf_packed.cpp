@@ -34,8 +34,6 @@ bool is_fallback(const Json& buffer) {
   return false;
 }
 
-constexpr const char* kDraco = "KHR_draco_mesh_compression";
-
 // Gives the indices of primitives that Draco packs a view, which the library wants to see and nothing reads. Returns
 // true where one had none.
 bool gave_views_to_packed_indices(Json& document) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "color/illuminant.h"
 #include "color/spectrum.h"
 #include "paint/curve.h"
 
@@ -74,7 +75,8 @@ Result<color::Lab> lab_of(const SpectrumReading& spectrum, const color::ViewingC
   return color::lab_from_xyz(xyz, meter.white());
 }
 
-Result<Measurement> under_light(const Measurement& measurement, const color::ViewingCondition& condition) {
+Result<Measurement> under_light(const Measurement& measurement, const color::ViewingCondition& stated) {
+  const color::ViewingCondition condition = color::condition_of(stated.illuminant, stated.observer_deg);
   GONIO_TRY(check_spectra(measurement, condition));
   Measurement result{condition, measurement.instrument, {}, measurement.spectra, measurement.textures};
   Meter meter(condition);
@@ -85,7 +87,8 @@ Result<Measurement> under_light(const Measurement& measurement, const color::Vie
   return Result(std::move(result));
 }
 
-Result<Paint> in_light(Paint paint, const color::ViewingCondition& condition) {
+Result<Paint> in_light(Paint paint, const color::ViewingCondition& stated) {
+  const color::ViewingCondition condition = color::condition_of(stated.illuminant, stated.observer_deg);
   if (!paint.measurement) return input_error("it has no readings, and so nothing tells its color in other light");
   if (paint.measurement->condition == condition) return Result(std::move(paint));
   GONIO_ASSIGN(paint.measurement, under_light(*paint.measurement, condition));

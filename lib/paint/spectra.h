@@ -13,14 +13,14 @@ namespace goniochrome::paint {
 // known.
 Result<color::Lab> lab_of(const SpectrumReading& spectrum, const color::ViewingCondition& condition);
 
-// The measurement with the rows of its spectra under `condition`; rows without a spectrum are left out. Error: it has
-// no spectra, or the illuminant or observer is not known.
-Result<Measurement> under_light(const Measurement& measurement, const color::ViewingCondition& condition);
+// The measurement with the rows of its spectra under a condition, in any of the names of color/illuminant.h; rows
+// without a spectrum are left out. Error: it has no spectra, or the illuminant or observer is not known.
+Result<Measurement> under_light(const Measurement& measurement, const color::ViewingCondition& stated);
 
-// The paint under `condition`: rows from its spectra, and an appearance from these rows if it has one. Lobes and color
-// map, which show the light before, are left out. A paint whose readings are for `condition` stays as it is. Error: as
+// The paint under such a condition: rows from its spectra, and an appearance from these rows if it has one. Lobes and
+// color map, which show the light before, are left out. A paint whose readings are for it stays as it is. Error: as
 // under_light().
-Result<Paint> in_light(Paint paint, const color::ViewingCondition& condition);
+Result<Paint> in_light(Paint paint, const color::ViewingCondition& stated);
 
 // A color difference at a geometry.
 struct DifferenceAt {

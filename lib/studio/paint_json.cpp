@@ -1,5 +1,6 @@
 #include "studio/paint_json.h"
 
+#include "color/illuminant.h"
 #include "studio/internal/json_reader.h"
 
 namespace goniochrome::studio {
@@ -30,7 +31,7 @@ Result<paint::Measurement> measurement_of(const Json& json) {
   paint::Measurement measurement;
   const double observer_deg = reader.number("observer", 10);
   if (observer_deg != 2 && observer_deg != 10) reader.fail("2 or 10", "observer");
-  measurement.condition = {reader.text("illuminant", "D65"), observer_deg == 2 ? 2 : 10};
+  measurement.condition = color::condition_of(reader.text("illuminant", "D65"), observer_deg == 2 ? 2 : 10);
   measurement.instrument = reader.text("instrument", "");
   for (const Json& element : reader.list("rows")) {
     JsonReader row(element);

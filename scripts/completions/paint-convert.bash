@@ -1,10 +1,11 @@
 _paint_convert() {
   local word=${COMP_WORDS[COMP_CWORD]}
   case ${COMP_WORDS[COMP_CWORD-1]} in
-    --from) COMPREPLY=($(compgen -W "auto measured workbook cxf xml cgats csv" -- "$word")); return ;;
+    --from) COMPREPLY=($(compgen -W "auto measured workbook cxf xml jcamp cgats xtf mif qtx mtf csv" -- "$word")); return ;;
     --illuminant) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --observer) COMPREPLY=($(compgen -W "auto 2 10" -- "$word")); return ;;
     --scale) COMPREPLY=($(compgen -W "auto percent factor" -- "$word")); return ;;
+    --viewing) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --aperture) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --geometry) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -15,7 +16,7 @@ _paint_convert() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--from --illuminant --observer --scale --aperture --keep-going --geometry --fit-appearance --output --to --columns --cxf-compat --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--from --illuminant --observer --scale --viewing --aperture --keep-going --geometry --fit-appearance --output --to --columns --cxf-compat --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

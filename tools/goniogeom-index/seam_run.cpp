@@ -78,6 +78,7 @@ class SeamRun {
  private:
   Result<void> prepare() {
     GONIO_ASSIGN(stage_, panels::seam_stage(options_.seam, request_.world, request_.geometries, options_.seam_deg));
+    tell_remarks(stage_.mesh, session_);
     traced_ = traced_seam(options_.seam, stage_, session_);
     const mesh::Seam& seam = stage_.seam;
     session_.say(seam_line(request_, seam));

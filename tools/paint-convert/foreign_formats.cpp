@@ -5,7 +5,6 @@
 #include "brdf/measured.h"
 #include "formats/cgats.h"
 #include "formats/cxf.h"
-#include "formats/workbook.h"
 #include "paint/curve.h"
 #include "paint/spectra.h"
 
@@ -19,22 +18,21 @@ using SinkPointer = std::unique_ptr<PaintSink>;
 // A format that is read as a whole at the first call of next(). It gives paints, and tells what was left out.
 class ImportedSource : public PaintSource {
  public:
-  using Read = Result<formats::ImportedPaints> (*)(InputFile input, const formats::ImportOptions& options);
-  ImportedSource(InputFile input, const formats::ImportOptions& options, Read read, std::string format)
-      : name_(input.name()), format_(std::move(format)), options_(options), read_(read), input_(std::move(input)) {}
+  ImportedSource(InputFile input, const formats::ImportOptions& options, const formats::Importer& importer)
+      : name_(input.name()), importer_(importer), options_(options), input_(std::move(input)) {}
 
   Result<std::optional<paint::Paint>> next() override {
     if (input_) {
       InputFile input = std::move(*input_);
       input_.reset();
-      GONIO_ASSIGN(imported_, read_(std::move(input), options_));
+      GONIO_ASSIGN(imported_, importer_.read(std::move(input), options_));
     }
     if (skipped_ < imported_.skipped.size()) return input_error("{}", imported_.skipped[skipped_++]);
     if (given_ == imported_.paints.size()) return std::optional<paint::Paint>();
     return std::optional(std::move(imported_.paints[given_++]));
   }
   std::string place() const override { return name_; }
-  std::string format() const override { return format_; }
+  std::string format() const override { return importer_.title; }
   std::vector<std::string> closing_warnings() const override {
     std::vector<std::string> lines;
     for (const std::string& warning : imported_.warnings) lines.push_back(fmt::format("{}: {}", name_, warning));
@@ -43,9 +41,9 @@ class ImportedSource : public PaintSource {
   bool takes_condition() const override { return true; }
 
  private:
-  std::string name_, format_;
+  std::string name_;
+  const formats::Importer& importer_;
   formats::ImportOptions options_;
-  Read read_;
   std::optional<InputFile> input_;
   formats::ImportedPaints imported_;
   std::size_t skipped_ = 0, given_ = 0;
@@ -194,14 +192,8 @@ Result<SourcePointer> open_cxf(InputFile input, const SourceSetup& setup) {
   return SourcePointer(std::make_unique<CxfSource>(std::move(input), setup.import));
 }
 
-Result<SourcePointer> open_workbook(InputFile input, const SourceSetup& setup) {
-  return SourcePointer(
-      std::make_unique<ImportedSource>(std::move(input), setup.import, formats::read_workbook, "workbook"));
-}
-
-Result<SourcePointer> open_cgats(InputFile input, const SourceSetup& setup) {
-  return SourcePointer(
-      std::make_unique<ImportedSource>(std::move(input), setup.import, formats::read_cgats, "CGATS text"));
+Result<SourcePointer> open_imported(InputFile input, const SourceSetup& setup, const formats::Importer& importer) {
+  return SourcePointer(std::make_unique<ImportedSource>(std::move(input), setup.import, importer));
 }
 
 Result<SourcePointer> open_measured(InputFile input, const SourceSetup& setup) {

@@ -7,11 +7,10 @@
 #include "base/text.h"
 #include "brdf/measured.h"
 #include "foreign_formats.h"
-#include "formats/cgats.h"
 #include "formats/cxf.h"
 #include "formats/encoding.h"
+#include "formats/importers.h"
 #include "formats/reference.h"
-#include "formats/workbook.h"
 
 namespace goniochrome::tool {
 
@@ -91,14 +90,6 @@ bool looks_cxf_document(std::string_view, std::string_view head) {
   return formats::looks_cxf(head);
 }
 
-bool looks_cgats_text(std::string_view, std::string_view head) {
-  return formats::looks_cgats(head);
-}
-
-bool looks_workbook_file(std::string_view, std::string_view head) {
-  return formats::looks_workbook(head);
-}
-
 bool looks_table(std::string_view, std::string_view head) {
   const std::string_view line = head.substr(0, head.find_first_of("\r\n", head.find_first_not_of("\r\n \t")));
   return line.find_first_of(",;\t") != std::string_view::npos;
@@ -130,13 +121,24 @@ struct InputFormat {
   bool (*looks)(std::string_view path, std::string_view head);
   Result<SourcePointer> (*open)(InputFile input, const SourceSetup& setup);
 };
+template <const formats::Importer& importer>
+constexpr InputFormat imported() {
+  return {importer.name, [](std::string_view, std::string_view head) { return importer.looks(head); },
+          [](InputFile input, const SourceSetup& setup) { return open_imported(std::move(input), setup, importer); }};
+}
+
 // In the order in which they are tried.
 constexpr std::array kInputs = {
     InputFormat{"measured", brdf::looks_measured, open_measured},
-    InputFormat{"workbook", looks_workbook_file, open_workbook},
+    imported<formats::kWorkbook>(),
     InputFormat{"cxf", looks_cxf_document, open_cxf},
     InputFormat{"xml", looks_xml, open_xml},
-    InputFormat{"cgats", looks_cgats_text, open_cgats},
+    imported<formats::kJcamp>(),
+    imported<formats::kCgats>(),
+    imported<formats::kXtf>(),
+    imported<formats::kMif>(),
+    imported<formats::kQtx>(),
+    imported<formats::kMtf>(),
     InputFormat{"csv", looks_table, open_csv},
 };
 
@@ -174,8 +176,8 @@ Result<SourcePointer> open_source(const std::string& reference, const std::strin
   });
   if (known == kInputs.end())
     return input_error(
-        "{}: is neither paint XML nor a table, CxF, CGATS, workbook or measured BRDF: name its format by --from if it "
-        "is one",
+        "{}: is neither paint XML nor a table, CxF, CGATS, workbook, file of an instrument or measured BRDF: name its "
+        "format by --from if it is one",
         input.name());
   GONIO_ASSIGN(SourcePointer source, known->open(std::move(input), setup));
   if (!names) return source;

@@ -27,6 +27,11 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "all "
           "spectra of a file together, tells what it took them for, and refuses what may be either; see REFLECTANCES "
           "in goniochrome-paint(5).");
+  spec.option("viewing", "WORDS=GEOMETRY", "SCE=45as45", &o.viewings, "geometry of readings whose file names none")
+      .more(
+          "Instruments with a sphere, and files that do not say how they were measured, have no aspecular angle, and "
+          "their readings are left out. This option takes those whose viewing has the words as of that geometry; "
+          "--viewing 45as45 takes all. It may be given several times.");
   spec.option("aperture", "DEG", "2", &o.aperture_deg, "angle over which a measured BRDF is averaged")
       .from(0, 20)
       .more("It is the full angle of a detector; 0 is a single direction.");
@@ -71,7 +76,7 @@ void add_report(cli::ToolSpec& spec) {
       {"written", "number of paints written"},
       {"skipped", "number of rows or paints that --keep-going left out"},
       {"measured[].name", "name of the paint that a measured BRDF became"},
-      {"measured[].format", "one of merl, cornell, mbsdf and rgl; description holds the file's own words"},
+      {"measured[].format", "one of merl, cornell, mbsdf, rgl and openmaterial; description holds the file's own words"},
       {"measured[].illuminant", "illuminant that the Lab values are relative to; observer stands beside it"},
       {"measured[].samples", "how many numbers the file has; negative_share and zero_share are parts of them"},
       {"measured[].reciprocity_error", "median difference with light and viewer swapped, relative to the mean"},
@@ -92,7 +97,8 @@ void add_report(cli::ToolSpec& spec) {
 cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec{
       .name = "paint-convert",
-      .summary = "convert paints between paint XML, tables, CxF and CGATS, and read workbooks and measured BRDFs"};
+      .summary =
+          "convert paints between paint XML, tables, CxF and CGATS, and read files of instruments and measured BRDFs"};
   spec.description = {
       "paint-convert reads paints from any number of inputs and writes them to one output, each as soon as it is read, "
       "so that a library of any size passes in constant memory. The format of an input is found from its first bytes, "
@@ -110,6 +116,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "CxF is written with one color specification for each angle, and with the spectra that its schema allows: "
       "factors "
       "from -0.1 to 3, in steps of 1, 2, 5, 10 or 20 nm from 360 to 400 nm on.",
+      "QTX, MIF, XTF, MTF and JCAMP-DX, the texts of instruments and their programs, are read with their spectra. Readings "
+      "of a sphere, and those whose file does not say how they were measured, are left out unless --viewing says what "
+      "geometry they stand for. See goniochrome-paint(5), FILES OF INSTRUMENTS.",
       "A workbook (XLSX) of a multi-angle instrument is read on all its sheets. A table is found by its headings: L*, "
       "a* and "
       "b*, or wavelengths, beside a column of geometries and one of names. The condition may stand in the headings, as "
@@ -139,8 +148,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "A wrong value stops the conversion, and the output file stays as it was."};
   spec.inputs = {
       "INPUT",
-      "paint XML, tables, CxF, CGATS, workbooks or measured BRDFs, or FILE#NAMES for some paints of one; - or none is "
-      "standard input",
+      "paint XML, tables, CxF, CGATS, files of instruments or measured BRDFs, or FILE#NAMES for some paints of one; - or "
+      "none is standard input",
       &o.inputs};
   add_options(spec, o);
   add_report(spec);

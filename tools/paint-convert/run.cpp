@@ -41,16 +41,35 @@ Result<std::vector<Input>> surveyed(const Options& options, const SourceSetup& s
   return inputs;
 }
 
-SourceSetup source_setup_of(const Options& options, const Selection& selection) {
+// `45as45`, or `WORDS=45as45`.
+Result<formats::Viewing> viewing_of(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  const std::string words = equals == std::string::npos ? "" : text.substr(0, equals);
+  const auto geometry = paint::parse_geometry(equals == std::string::npos ? text : text.substr(equals + 1));
+  if (!geometry.ok()) return usage_error("--viewing {}: {}", text, geometry.error().message);
+  if (equals != std::string::npos && trimmed(words).empty())
+    return usage_error("--viewing {}: the words before = are missing", text);
+  return formats::Viewing{std::string(trimmed(words)), *geometry};
+}
+
+Result<SourceSetup> source_setup_of(const Options& options, const Selection& selection) {
   SourceSetup setup;
-  if (options.illuminant != "auto") setup.import.illuminant = options.illuminant;
   if (options.observer != "auto") setup.import.observer_deg = options.observer == "2" ? 2 : 10;
+  if (options.illuminant != "auto") {
+    const auto condition = formats::stated_condition(options.illuminant, setup.import.observer_deg);
+    if (!condition.ok()) return usage_error("{}", condition.error().message);
+    setup.import.illuminant = condition->illuminant, setup.import.observer_deg = condition->observer_deg;
+  }
+  for (const std::string& text : options.viewings) {
+    GONIO_ASSIGN(formats::Viewing viewing, viewing_of(text));
+    setup.import.viewings.push_back(std::move(viewing));
+  }
   setup.import.keep_going = options.keep_going;
   if (options.scale != "auto")
     setup.import.scale = options.scale == "percent" ? formats::Scale::kPercent : formats::Scale::kFactor;
   setup.geometries = selection.requested();
   setup.aperture_deg = options.aperture_deg;
-  return setup;
+  return Result(std::move(setup));
 }
 
 // The time as 2026-11-21T10:00:00Z. As usual, SOURCE_DATE_EPOCH sets the clock, so that files can be made again byte by
@@ -183,7 +202,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (session.common().report == "-" && options.output == "-")
     return usage_error("--report - needs standard output for itself: give -o FILE");
 
-  const SourceSetup source_setup = source_setup_of(options, selection);
+  GONIO_ASSIGN(const SourceSetup source_setup, source_setup_of(options, selection));
   SinkSetup setup{.prolog = {},
                   .layout = selection.layout(),
                   .creator = fmt::format("goniochrome {} {}", session.tool(), cli::Session::version()),

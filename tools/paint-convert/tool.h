@@ -16,6 +16,7 @@ struct Options {
   std::vector<std::string> geometry;
   std::string illuminant = "auto", observer = "auto";
   std::string scale = "auto";
+  std::vector<std::string> viewings;
   double aperture_deg = 0;
   bool cxf_compat = false;
   std::string columns = "core";

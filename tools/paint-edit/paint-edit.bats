@@ -1,5 +1,6 @@
 #!/usr/bin/env bats
 # paint-edit from outside: every option, right and wrong.
+bats_require_minimum_version 1.5.0
 
 setup() {
   cd "$BATS_TEST_TMPDIR"
@@ -360,4 +361,11 @@ usage_error() { # TEXT ARGUMENTS...
   [ "$status" -eq 3 ]
   [[ $output == *cut.paints.xml:* ]]
   [ ! -e out.paints.xml ]
+}
+
+@test "an input without paints is told, and is no success" {
+  echo '<paints xmlns="urn:goniochrome:paint:1" version="1"/>' >none.xml
+  run --separate-stderr paint-edit none.xml --lighter 2 -o out.paints.xml
+  [ "$status" -eq 1 ]
+  [[ $stderr == *"the input holds no paints: nothing was edited"* ]]
 }

@@ -189,6 +189,10 @@ class Run {
       session_.warn(fmt::format("{} paint was read: a gradient takes two or more", read_));
       negative = true;
     }
+    if (read_ == 0 && options_.new_name.empty() && options_.gradient == 0) {
+      session_.warn("the input holds no paints: nothing was edited");
+      negative = true;
+    }
     Json& results = session_.results();
     results["read"] = read_;
     results["written"] = written_;

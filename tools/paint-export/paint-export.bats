@@ -389,3 +389,10 @@ for path in sys.argv[1:]:
 assert any(name.startswith('Blau/Grün "é"') for name in names), names
 PY
 }
+
+@test "an input without paints is told, and is no success" {
+  echo '<paints xmlns="urn:goniochrome:paint:1" version="1"/>' >none.xml
+  run --separate-stderr paint-export none.xml --to usda
+  [ "$status" -eq 1 ]
+  [[ $stderr == *"the input holds no paints: nothing was exported"* ]]
+}

@@ -152,7 +152,8 @@ class Run {
       line += fmt::format(", dE00 mean {:.2f}, worst {:.2f}", sum_ / static_cast<double>(written_), worst_);
     if (left_out_ > 0) line += fmt::format(", {} left out", left_out_);
     session_.say(line);
-    return left_out_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
+    if (written_ + left_out_ == 0) session_.warn("the input holds no paints: nothing was exported");
+    return left_out_ > 0 || written_ == 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
 
   const Options& options_;

@@ -68,12 +68,13 @@ std::string PaintDrawing::described() const {
   return state_->description;
 }
 
-Result<PaintDrawing> PaintDrawing::make(const Options& options) {
+Result<PaintDrawing> PaintDrawing::make(const Options& options, cli::Session& session) {
   auto state = std::make_unique<State>();
   formats::Basis basis = sketch::sketch_basis();
   state->mesh = ball();
   if (!options.mesh.empty()) {
     GONIO_ASSIGN(state->mesh, mesh::read_mesh(options.mesh));
+    for (const std::string& remark : state->mesh.remarks) session.warn(remark);
   }
   if (!options.env.empty()) {
     GONIO_ASSIGN(state->env, envmap::read_env(options.env));

@@ -13,7 +13,8 @@ namespace goniochrome::tool {
 // Draws one paint after another on the mesh and under the light of the options.
 class PaintDrawing {
  public:
-  static Result<PaintDrawing> make(const Options& options);
+  // `session` hears what the file of the mesh says that is not understood.
+  static Result<PaintDrawing> make(const Options& options, cli::Session& session);
   PaintDrawing(PaintDrawing&&) noexcept;
   ~PaintDrawing();
 

@@ -1,4 +1,5 @@
 # paint-pick: droppers, palettes and boards.
+bats_require_minimum_version 1.5.0
 
 setup() {
   cd "$BATS_TEST_TMPDIR" || exit 1
@@ -324,4 +325,12 @@ OBJ
   [ "$status" -eq 3 ]
   [[ $output == *"plain.exr: holds no light that was traced: make it by render-osmesa --aov transport"* ]]
   [ ! -e none.xml ]
+}
+
+@test "what the mesh of a page says that is not understood is told" {
+  write_board
+  sed 's/"mesh": *0/"mesh": 0, "extensions": {"ACME_bend": {}}/' "$BATS_TEST_DIRNAME/../../lib/fuzz/corpus/gltf/triangle.gltf" >bent.gltf
+  run --separate-stderr paint-pick --board board.txt --mesh bent.gltf -o board.html
+  [ "$status" -eq 0 ]
+  [[ $stderr == *"node 0 has the extension ACME_bend, which is not known here: what it changes is not drawn"* ]]
 }

@@ -138,7 +138,7 @@ Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Sessio
     GONIO_TRY(write(options.output, paints, session));
     return cli::Verdict::kDone;
   }
-  GONIO_ASSIGN(PaintDrawing drawing, PaintDrawing::make(options));
+  GONIO_ASSIGN(PaintDrawing drawing, PaintDrawing::make(options, session));
   for (PageOfPaint& paint : paints) {
     GONIO_ASSIGN(paint.picture, drawing.png(paint.picked.paint));
   }

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "color/illuminant.h"
 #include "color/reflection_file.h"
 #include "color/spectrum.h"
 #include "image/color_space.h"
@@ -19,7 +20,7 @@ Result<color::Rgb> illuminant(const std::string& option, const std::string& text
   if (text.empty()) return usage_error("--{} is missing: give R,G,B, {}", option, color::spectral_illuminants());
   const auto words = split(text, ',');
   if (words.size() == 1 && !parse_number(text)) {
-    const auto white = color::white_point({text, 2});
+    const auto white = color::white_point(color::condition_of(text, 2));
     if (!white.ok()) return usage_error("--{} {}: give R,G,B, {}", option, text, color::spectral_illuminants());
     return color::rgb_from_xyz_d65(*white);
   }

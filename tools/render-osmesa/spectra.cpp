@@ -17,18 +17,20 @@ struct TableColumn {
   std::vector<double> nm, values;
 };
 
-// FILE#COLUMN, or nothing where there is no #.
-Result<std::optional<TableColumn>> table_column(const std::string& term) {
+using ColumnOf = Result<std::vector<double>> (formats::SpectrumTable::*)(const std::string& name) const;
+
+// FILE#COLUMN as `values_of` gives it, or nothing where there is no #.
+Result<std::optional<TableColumn>> table_column(const std::string& term, ColumnOf values_of) {
   const auto hash = term.rfind('#');
   if (hash == std::string::npos) return std::optional<TableColumn>();
   GONIO_ASSIGN(formats::SpectrumTable table, formats::read_spectrum_table(term.substr(0, hash)));
-  auto values = table.column(term.substr(hash + 1));
+  auto values = (table.*values_of)(term.substr(hash + 1));
   if (!values.ok()) return input_error("{}: {}", term.substr(0, hash), values.error().message);
   return std::optional<TableColumn>({std::move(table.wavelengths_nm), *std::move(values)});
 }
 
 Result<color::Bands> light_of_term(const std::string& term) {
-  GONIO_ASSIGN(const std::optional<TableColumn> column, table_column(term));
+  GONIO_ASSIGN(const std::optional<TableColumn> column, table_column(term, &formats::SpectrumTable::column));
   const auto light = column ? color::light_bands(column->nm, column->values) : color::illuminant_bands(term);
   if (light.ok()) return light;
   if (column) return input_error("{}: {}", term, light.error().message);
@@ -41,7 +43,7 @@ Result<color::Bands> filter_of_term(const std::string& term) {
     if (*factor >= 0) return color::even_bands(*factor);
     return usage_error("light cannot be negative");
   }
-  GONIO_ASSIGN(const std::optional<TableColumn> column, table_column(term));
+  GONIO_ASSIGN(const std::optional<TableColumn> column, table_column(term, &formats::SpectrumTable::factors));
   if (!column) return usage_error("\"{}\" is no filter: write a number or FILE.csv#COLUMN", term);
   return color::reflectance_bands(column->nm, column->values);
 }

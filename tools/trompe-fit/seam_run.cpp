@@ -46,6 +46,7 @@ class SeamRun {
  private:
   Result<void> prepare() {
     GONIO_ASSIGN(stage_, panels::seam_stage(options_.seam, request_.world, request_.geometries, options_.seam_deg));
+    tell_remarks(stage_.mesh, session_);
     traced_ = traced_seam(options_.seam, stage_, session_);
     for (const std::size_t i : panels::spread_places(stage_.views.size(), kMostFitted))
       fitted_.push_back(stage_.views[i]);

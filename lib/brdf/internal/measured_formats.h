@@ -25,11 +25,12 @@ struct MeasuredFormat {
   Result<MeasuredPointer> (*read)(const std::string& path, std::string_view bytes);
   const char* name;  // for people, with the ending of its files
 };
-extern const MeasuredFormat kMerl, kMbsdf, kRgl, kCornell;
+extern const MeasuredFormat kMerl, kMbsdf, kRgl, kOpenMaterial, kCornell;
 
 // The first that recognizes a file reads it. Cornell's text has no mark but the name of its file, so it comes last, and
 // is tried where no format recognizes the file.
-inline constexpr std::array<const MeasuredFormat*, 4> kMeasuredFormats = {&kMerl, &kMbsdf, &kRgl, &kCornell};
+inline constexpr std::array<const MeasuredFormat*, 5> kMeasuredFormats = {&kMerl, &kMbsdf, &kRgl, &kOpenMaterial,
+                                                                          &kCornell};
 
 // Little-endian numbers out of bytes, in order; nothing past the end.
 class ByteReader {

@@ -15,7 +15,7 @@ struct CieRow {
 };
 
 constexpr int kCieRows = 85;
-constexpr double kCieStart_nm = 360, kCieStep_nm = 5;  // to 780 nm
+constexpr double kCieStart_nm = 360, kCieEnd_nm = 780, kCieStep_nm = 5;
 extern const std::array<CieRow, kCieRows> kCieTable;
 
 struct CieObserver {
@@ -26,8 +26,13 @@ struct CieObserver {
 constexpr int kCieObserverRows = 421;
 extern const std::array<CieObserver, kCieObserverRows> kCieObservers;
 
-// Further illuminants at the same wavelengths: C, D55, D75, F2, F7 and F11, relative.
-constexpr std::size_t kMoreIlluminants = 6;
+// The illuminants of the table above and of the one below, side by side.
+constexpr std::array kIlluminantNames = {"D65",    "D50",     "A",        "C",      "D55",    "D75",    "F2",
+                                         "F7",     "F11",     "F12",      "LED-B1", "LED-B2", "LED-B3", "LED-B4",
+                                         "LED-B5", "LED-BH1", "LED-RGB1", "LED-V1", "LED-V2", "ID50",   "ID65"};
+
+// Further illuminants at the same wavelengths, relative.
+constexpr std::size_t kMoreIlluminants = kIlluminantNames.size() - 3;
 extern const std::array<std::array<double, kMoreIlluminants>, kCieRows> kMoreIlluminantTable;
 
 }  // namespace goniochrome::color

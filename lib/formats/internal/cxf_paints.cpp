@@ -17,11 +17,11 @@ constexpr double kSmallestStep_nm = 1, kLargestStep_nm = 20;  // of the schema
 // The wavelengths of a spectrum; none where it does not say them.
 std::vector<double> wavelengths_of(const CxfColor& color, const CxfSpecification& specification) {
   if (!color.nm.empty()) return color.nm;
-  const double first_nm = color.first_nm > 0 ? color.first_nm : specification.first_nm;
+  const double first_nm = color.first_nm > 0 ? color.first_nm : specification.first_nm,
+               step_nm = color.step_nm > 0 ? color.step_nm : specification.step_nm;
   std::vector<double> nm;
-  if (first_nm > 0 && specification.step_nm > 0)
-    for (std::size_t i = 0; i < color.spectrum.size(); ++i)
-      nm.push_back(first_nm + specification.step_nm * static_cast<double>(i));
+  if (first_nm > 0 && step_nm > 0)
+    for (std::size_t i = 0; i < color.spectrum.size(); ++i) nm.push_back(first_nm + step_nm * static_cast<double>(i));
   return nm;
 }
 
@@ -77,16 +77,17 @@ bool CxfResolver::is_sound(CxfColor& color) {
   const CxfSpecification& specification = found->second;
   for (double& value : color.spectrum) value *= unit_;
   const std::vector<double> nm = wavelengths_of(color, specification);
+  const double step_nm = color.step_nm > 0 ? color.step_nm : specification.step_nm;
   std::string fault;
-  if (color.nm.empty() && specification.step_nm < 0)
+  if (color.nm.empty() && step_nm < 0)
     fault = "spectra in a WavelengthRange of a negative Increment were left out";
   else if (nm.empty())
     fault = "spectra without a WavelengthRange were left out";
   else if (color.spectrum.size() < 2)
     fault = "spectra of a single wavelength were left out";
-  else if (color.nm.empty() && (specification.step_nm < kSmallestStep_nm || specification.step_nm > kLargestStep_nm))
+  else if (color.nm.empty() && (step_nm < kSmallestStep_nm || step_nm > kLargestStep_nm))
     fault = fmt::format("spectra in steps of {} nm were left out: CxF3 has steps of 1, 2, 5, 10 or 20 nm",
-                        shortest(specification.step_nm));
+                        shortest(step_nm));
   else if (std::ranges::any_of(color.spectrum, [](double factor) { return factor > kLargestReflectance; }))
     fault = fmt::format("spectra with factors beyond {} were left out: 1 is the perfect diffuser", kLargestReflectance);
   else if (std::ranges::any_of(color.spectrum, [](double factor) { return factor <= kSmallestFactor; }))
@@ -130,9 +131,11 @@ void CxfResolver::place(const CxfColor& color, std::size_t n, std::size_t k) {
     return;
   }
   if (angles.empty()) {
-    remarks_.note(fmt::format("values of {} geometry have no aspecular angle and were left out",
-                              specification.other.empty() ? "unstated" : specification.other),
-                  open_->paint.name);
+    remarks_.note(
+        fmt::format("values of {} geometry have no aspecular angle and were left out: give --viewing GEOMETRY, "
+                    "such as 45as45, to take them as that",
+                    specification.other.empty() ? "unstated" : specification.other),
+        open_->paint.name);
     return;
   }
   if (n != 1 && n != angles.size()) {

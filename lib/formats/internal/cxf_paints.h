@@ -20,8 +20,8 @@ struct CxfColor {
   color::Lab lab = {};
   color::Xyz xyz = {};  // Y = 100 of the perfect diffuser
   std::vector<double> spectrum = {};
-  double first_nm = 0;          // of the spectrum, where it says so itself
-  std::vector<double> nm = {};  // of a spectrum with points of its own
+  double first_nm = 0, step_nm = 0;  // of the spectrum, where it says so itself
+  std::vector<double> nm = {};       // of a spectrum with points of its own
 };
 
 struct CxfObject {

@@ -14,12 +14,12 @@ namespace goniochrome::formats {
 
 namespace {
 
-constexpr double kFirst_nm = 300, kLast_nm = 1100;
-
 // From this angle to specular on, no paint is brighter than a perfect white but for fluorescence and noise.
 constexpr double kFar_deg = 45 - 1e-6, kBrightestFar = 1.25;
 // A paint that is this bright near to specular has metal or pearl in it, and is then darker than white far from it.
 constexpr double kBrightNear = 1.5, kFarOfBright = 0.95;
+// A file in percent whose brightest spectrum is this dark may be one of factors.
+constexpr double kDarkest = 1.25;
 
 // The largest factor of light that is reflected about specular and becomes no brighter away from it: all of the light
 // within the cone of that angle. Nearer than 10 deg, gloss has no bound of use.
@@ -57,7 +57,7 @@ std::optional<double> wavelength_in(std::string_view heading) {
     }
   if (text.ends_with("nm")) text.erase(text.size() - 2);
   const auto nm = parse_number(text);
-  return nm && *nm >= kFirst_nm && *nm <= kLast_nm ? nm : std::nullopt;
+  return nm && *nm >= kFirstSpectral_nm && *nm <= kLastSpectral_nm ? nm : std::nullopt;
 }
 
 Result<void> check_not_negative(const std::vector<double>& factors) {
@@ -96,6 +96,7 @@ void ScaleJudge::add(std::string_view paint, const paint::Geometry& geometry, co
   const double angle = paint::aspecular_angle_deg(geometry);
   const std::string at = fmt::format("{} at {}", reflectance(mean), paint::geometry_name(geometry));
   if (mean > brightest_at(angle) && !open_.beyond) open_.beyond = true, open_.beyond_at = at;
+  brightest_ = std::max(brightest_, mean);
   double& brightest = angle >= kFar_deg ? open_.far : open_.near;
   if (mean > brightest) brightest = mean, (angle >= kFar_deg ? open_.far_at : open_.near_at) = at;
   constexpr double kTells = 1e-4;  // of Y: darker readings are noise
@@ -134,11 +135,22 @@ Result<double> ScaleJudge::checked(Scale scale, const std::string& whose, const 
   return percent ? 0.01 : 1;
 }
 
-Result<double> ScaleJudge::unit_of_factors(const std::string& format, Scale option, Remarks& remarks) {
+Result<double> ScaleJudge::unit_of_format(const std::string& format, Scale defined, Scale option, Remarks& remarks) {
   close_paint();
   if (option != Scale::kUnstated) return checked(option, "--scale", kOtherScale);
-  if (is_told_by_lab() && as_percent_ < as_factor_) return unit(Scale::kUnstated, option, remarks);
-  return checked(Scale::kFactor, format, kRemedy);
+  const bool percent = defined == Scale::kPercent;
+  if (is_told_by_lab() && (as_percent_ < as_factor_) != percent) {
+    remarks.note(
+        fmt::format("reflectances were read as {}, as the L* beside them says", percent ? "factors" : "percent"), "");
+    return percent ? 1 : 0.01;
+  }
+  if (percent && !is_told_by_lab() && paints_ > 0 && brightest_ <= kDarkest)
+    remarks.note(
+        fmt::format("{} has reflectances in percent, of which none is above {}: give --scale factor if they are "
+                    "factors",
+                    format, reflectance(brightest_)),
+        "");
+  return checked(defined, format, kRemedy);
 }
 
 Result<double> ScaleJudge::unit_of_norm() {

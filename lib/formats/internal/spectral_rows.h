@@ -19,6 +19,9 @@ struct WavelengthColumn {
   int at = 0;  // the column
 };
 
+// The wavelengths that spectra of a surface's color have.
+constexpr double kFirstSpectral_nm = 300, kLastSpectral_nm = 1100;
+
 // A table of reflectances has this many columns of wavelengths, or more.
 constexpr std::size_t kFewestWavelengths = 5;
 
@@ -49,8 +52,8 @@ class ScaleJudge {
   // was assumed. Error: the values make no sense on the scale that holds, or on neither scale, or on both.
   Result<double> unit(Scale stated, Scale option, Remarks& remarks);
 
-  // The same where `format` defines values as factors, which holds as long as they can be.
-  Result<double> unit_of_factors(const std::string& format, Scale option, Remarks& remarks);
+  // The same where `format` defines the scale, which holds as long as the values can be of it.
+  Result<double> unit_of_format(const std::string& format, Scale defined, Scale option, Remarks& remarks);
 
   // Error: factors that a file states by the value of white cannot be.
   Result<double> unit_of_norm();
@@ -70,6 +73,7 @@ class ScaleJudge {
   std::string paint_;
   Brightest open_;
   std::size_t paints_ = 0, impossible_ = 0;  // as factors
+  double brightest_ = 0;                     // mean of a spectrum
   std::string first_impossible_;             // paint, geometry and value
   std::string first_bright_;                 // likewise, of a paint that may be either
   double as_factor_ = 0, as_percent_ = 0;    // how far the values lie from the L* beside them

@@ -2,6 +2,7 @@
 // process.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -9,6 +10,9 @@
 #include <vector>
 
 namespace goniochrome::mesh {
+
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+constexpr std::array kMeshopt = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
 // A glTF text or GLB file in which each buffer without bytes of its own, which stands for what meshoptimizer packed, is
 // a buffer of one byte, and in which indices that Draco packs have a view: tinygltf refuses others. Nothing where there

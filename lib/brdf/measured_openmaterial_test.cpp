@@ -1,0 +1,71 @@
+// Tables of OpenMATERIAL 3D, made here.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/angles.h"
+#include "brdf/measured.h"
+
+namespace goniochrome::brdf::measured_openmaterial_test {
+namespace {
+
+using testing::HasSubstr;
+
+std::string refusal(std::string_view bytes) {
+  const auto brdf = read_measured("a.xompt", bytes);
+  EXPECT_FALSE(brdf.ok());
+  return brdf.ok() ? "" : brdf.error().message;
+}
+
+// A flake-like lobe, twice as strong at 400 as at 550 nm, as a table, wavelength by wavelength.
+double lobe(const Vec3& light, const Vec3& view, int channel) {
+  return (0.02 + 0.3 * std::exp(-3 * paint::aspecular_angle_rad(light, view, {0, 0, 1}))) / (1 << channel);
+}
+
+std::string openmaterial_text() {
+  std::string rows;
+  for (const int channel : {0, 1, 2})
+    for (double in = .2; in < 1; in += .2)
+      for (double out = 0; out < 1.2; out += .1)
+        for (const double azimuth : {0.0, kPi / 2, kPi}) {
+          const Vec3 light = {std::sin(in), 0, std::cos(in)};
+          const Vec3 view = {std::sin(out) * std::cos(azimuth), std::sin(out) * std::sin(azimuth), std::cos(out)};
+          rows += fmt::format("{}[{},{},{},{},{}]", rows.empty() ? "" : ",", (400 + 150 * channel) * 1e-9, in, out,
+                              azimuth, lobe(light, view, channel));
+        }
+  return R"({"$schema":"https://x/OpenMATERIAL-3D/s.json","metadata":{"name":"lab"},"brdf":{"wavelengths":[],"lookupTable":[)" +
+         rows + "]}}";
+}
+
+TEST(OpenMaterial, GivesItsOwnSamplesBack) {
+  const auto brdf = read_measured("a.xompt", openmaterial_text());
+  ASSERT_TRUE(brdf.ok()) << brdf.error().message;
+  EXPECT_EQ((*brdf)->traits().format, "openmaterial");
+  EXPECT_EQ((*brdf)->traits().description, "lab");
+  EXPECT_EQ((*brdf)->traits().wavelengths_nm, (std::vector<double>{400, 550, 700}));
+  for (const paint::DirectionPair& pair : (*brdf)->samples()) {
+    const MeasuredValue value = (*brdf)->value(pair.light, pair.view);
+    for (const int k : {0, 1, 2})
+      EXPECT_NEAR(value.f[static_cast<std::size_t>(k)], lobe(pair.light, pair.view, k), 1e-5);
+    EXPECT_EQ(value.outside_deg, 0);
+  }
+}
+
+TEST(OpenMaterial, RefusalsNameTheRow) {
+  const std::string whole = openmaterial_text();
+  const auto with = [&](const std::string& row) {
+    return R"({"$schema":"OpenMATERIAL","brdf":{"lookupTable":[)" + row + "]}}";
+  };
+  EXPECT_THAT(refusal(whole.substr(0, whole.size() / 2)), HasSubstr("is no whole JSON: it breaks off at byte"));
+  EXPECT_THAT(refusal(with("[4e-7,0,0,0]")), HasSubstr("row 1 of lookupTable has 4 numbers, and 5 make a row"));
+  EXPECT_THAT(refusal(with("[4e-7,0,0,0,1],[4e-7,2,0,0,1]")),
+              HasSubstr("row 2 of lookupTable has the incidence 2: give radians from the normal"));
+  EXPECT_THAT(refusal(with("[4e-7,0,0,0,\"1\"]")), HasSubstr("holds a text where a number stands"));
+  EXPECT_THAT(refusal(with("[400,0,0,0,1]")), HasSubstr("has the wavelength 400: give meters"));
+  EXPECT_THAT(refusal(with("[4e-7,0,0,0,1]")), HasSubstr("has 1 wavelength"));
+  EXPECT_THAT(refusal(with("")), HasSubstr("has no brdf with a lookupTable"));
+}
+
+}  // namespace
+}  // namespace goniochrome::brdf::measured_openmaterial_test
