@@ -10,6 +10,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 ln -s "$(realpath "$TESTDATA")" testdata
+export XDG_CACHE_HOME=$folder/caches
 
 wrong=0
 executed=0

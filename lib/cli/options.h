@@ -20,10 +20,11 @@ struct Option {
   std::string value = {};             // what stands for the value in the help: "FILE"; empty for a flag
   std::string example = {};           // a value that a reader may try
   Target target = {};
-  std::string help = {};                  // one line: lower case, no full stop
-  std::string category = {};              // the heading under which help and man page show the option
-  std::string unit = {};                  // "degrees"; empty where the value's name tells it, as DEG does
-  std::string details = {};               // whole sentences for the man page, where the help line is not enough
+  std::string help = {};      // one line: lower case, no full stop
+  std::string category = {};  // the heading under which help and man page show the option
+  std::string unit = {};      // "degrees"; empty where the value's name tells it, as DEG does
+  // Whole sentences for the man page, where the help line is not enough. Lines that begin with "- " make a list.
+  std::string details = {};
   std::vector<std::string> choices = {};  // the words that the option takes, if it is a choice
   double low = -1e300, high = 1e300;      // the domain of a number; both ends belong to it
   bool required = false;

@@ -163,6 +163,15 @@ TEST(Texts, TheManPageTellsUnitDomainDefaultAndExample) {
             std::string::npos);
 }
 
+TEST(Texts, LinesWithHyphensAreAList) {
+  Values v;
+  ToolSpec spec = table(v);
+  std::ranges::find(spec.options, "tolerance", &Option::name)->details = "It is:\n- small.\n- relative.";
+  EXPECT_NE(man_page(spec).find("Error. It is:\n.RS\n.IP \\(bu 2\nsmall.\n.IP \\(bu\nrelative.\n.RE\n.IP\n"
+                                "The value is in units, from 0 to 1."),
+            std::string::npos);
+}
+
 // The controls: a table without a fault, and one fault at a time.
 TEST(Texts, WhatATableLacksIsTold) {
   Values v;

@@ -87,15 +87,20 @@ std::string paragraph(const Option& option) {
   std::string text = sentence(option.help);
   if (!option.choices.empty()) text += fmt::format(" The value is one of {}.", joined(option.choices, ", "));
   if (!option.details.empty()) text += " " + option.details;
-  if (option.choices.empty()) text += domain_sentences(option);
+  std::string rest;
+  if (option.choices.empty()) rest = domain_sentences(option);
   const std::string value = default_of(option);
   if (option.required)
-    text += " The option is required.";
+    rest += " The option is required.";
   else if (!value.empty())
-    text += fmt::format(" The default is {}.", value);
-  if (!option.alias.empty()) text += fmt::format(" The option may also be written --{}.", option.alias);
-  if (!option.example.empty()) text += fmt::format(" Example: --{} {}", option.name, option.example);
-  return text;
+    rest += fmt::format(" The default is {}.", value);
+  if (!option.alias.empty()) rest += fmt::format(" The option may also be written --{}.", option.alias);
+  if (!option.example.empty()) rest += fmt::format(" Example: --{} {}", option.name, option.example);
+  // Behind a list they are a paragraph of their own.
+  const std::size_t last_line = option.details.rfind('\n');
+  const bool ends_in_list = last_line != std::string::npos && option.details.compare(last_line + 1, 2, "- ") == 0;
+  if (ends_in_list && !rest.empty()) rest[0] = '\n';
+  return text + rest;
 }
 
 std::string usage(const ToolSpec& spec) {
@@ -139,6 +144,20 @@ std::string roff(std::string_view text) {
   }
   if (!result.empty() && (result[0] == '.' || result[0] == '\'')) result.insert(0, "\\&");
   return result;
+}
+
+// A paragraph below a .TP, in which lines that begin with "- " are items of a list.
+std::string roff_paragraph(const std::string& text) {
+  std::string result;
+  bool in_list = false;
+  for (const std::string_view line : split(text, '\n')) {
+    const bool item = line.starts_with("- ");
+    if (item) result += in_list ? ".IP \\(bu\n" : ".RS\n.IP \\(bu 2\n";
+    if (!item && in_list) result += ".RE\n.IP\n";
+    in_list = item;
+    result += roff(item ? line.substr(2) : line) + "\n";
+  }
+  return in_list ? result + ".RE\n" : result;
 }
 
 // A category as the heading of a section.
@@ -188,7 +207,8 @@ std::string man_page(const ToolSpec& spec) {
     if (option.category != category) text += fmt::format(".SS {}\n", roff(heading(category = option.category)));
     const std::string letter = option.letter ? fmt::format("\\fB\\-{}\\fR, ", option.letter) : "";
     const std::string value = option.value.empty() ? "" : " \\fI" + roff(option.value) + "\\fR";
-    text += fmt::format(".TP\n{}\\fB\\-\\-{}\\fR{}\n{}\n", letter, roff(option.name), value, roff(paragraph(option)));
+    text += fmt::format(".TP\n{}\\fB\\-\\-{}\\fR{}\n{}", letter, roff(option.name), value,
+                        roff_paragraph(paragraph(option)));
   }
   if (!spec.report.empty()) {
     text += ".SH REPORT\nThe object\n.I results\nof\n.B \\-\\-report\nholds these keys:\n";

@@ -36,8 +36,9 @@ Result<Counts> checked(image::Image& image, BadPixels bad_pixels, const std::str
       bad = true;
       if (bad_pixels == BadPixels::kError)
         return input_error(
-            "{}: texel {},{} channel {} is {}: repair the image, or zero such texels with --bad-pixels zero", name,
-            i % image.width, i / image.width, "RGB"[c], value);
+            "{}: texel {},{} channel {} is {}: repair the image, or zero such texels with prefilter-envmap "
+            "--bad-pixels zero",
+            name, i % image.width, i / image.width, "RGB"[c], value);
       ++(std::isnan(value) ? counts.nan : std::isinf(value) ? counts.infinite : counts.negative);
     }
     if (bad) std::fill(texel, texel + channels, 0.0F);

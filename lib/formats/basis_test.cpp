@@ -7,6 +7,7 @@
 
 #include "base/scratch_for_test.h"
 #include "base/testdata_for_test.h"
+#include "formats/default_basis.h"
 
 namespace goniochrome::formats::basis_test {
 namespace {
@@ -30,6 +31,16 @@ TEST(BasisXml, SurvivesWithItsErrorTable) {
   ASSERT_TRUE(sample.ok());
   EXPECT_EQ(sample->exponents, (std::vector<double>{1.3, 6, 20, 70, 250, 900, 3000}));
   EXPECT_TRUE(sample->mirror);
+}
+
+TEST(BasisXml, DefaultIsThatOfTheExamples) {
+  const auto sample = read_basis(testdata("b7.basis.xml"));
+  const auto stand_in = basis_or_default("");
+  ASSERT_TRUE(sample.ok() && stand_in.ok());
+  EXPECT_EQ(stand_in->name, sample->name);
+  EXPECT_EQ(stand_in->exponents, sample->exponents);
+  EXPECT_EQ(stand_in->mirror, sample->mirror);
+  EXPECT_FALSE(basis_or_default("missing.xml").ok());
 }
 
 TEST(BasisXml, WhatIsNotFiniteIsNotWritten) {

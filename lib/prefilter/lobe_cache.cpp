@@ -1,44 +1,15 @@
 #include "prefilter/lobe_cache.h"
 
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 
+#include "base/digest.h"
 #include "base/paths.h"
 #include "base/text.h"
 
 namespace goniochrome::prefilter {
 
 namespace {
-
-// 128 bits that stand for a stream of words: two multiplicative hashes with different odd factors. They tell maps apart
-// that differ by accident, not those that somebody made alike on purpose.
-class Digest {
- public:
-  void add(std::uint64_t word) {
-    a_ = (std::rotl(a_, 23) ^ word) * 0x9e3779b97f4a7c15U;
-    b_ = (std::rotl(b_, 41) ^ word) * 0xc2b2ae3d27d4eb4fU;
-  }
-  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
-  void add(const std::vector<float>& values) {
-    add(values.size());
-    for (std::size_t i = 0; i + 1 < values.size(); i += 2) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, &values[i], sizeof word);
-      add(word);
-    }
-    if (values.size() % 2 == 1) add(static_cast<double>(values.back()));
-  }
-  void add(const std::string& text) {
-    add(text.size());
-    for (const char c : text) add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
-  }
-  std::string hex() const { return fmt::format("{:016x}{:016x}", a_ ^ (a_ >> 29), b_ ^ (b_ >> 29)); }
-
- private:
-  std::uint64_t a_ = 0x243f6a8885a308d3U, b_ = 0x13198a2e03707344U;
-};
 
 template <class T>
 const T* attribute(const image::ImagePart& part, const std::string& name) {
@@ -53,7 +24,7 @@ Result<LobeCache> LobeCache::open(const std::string& folder, const envmap::Envir
   GONIO_TRY(make_folder(folder));
   GONIO_TRY(can_be_written((std::filesystem::path(folder) / "lobe.exr").string()));
   Digest digest;
-  digest.add(version);
+  digest.add(std::string_view(version));
   digest.add(static_cast<std::uint64_t>(env.layout()));
   digest.add(static_cast<std::uint64_t>(env.width()));
   digest.add(env.values());

@@ -445,6 +445,13 @@ std::vector<float> lobe_by_plan(const LobePlan& plan, double tolerance, Workshop
 
 }  // namespace
 
+std::vector<double> filter_exponents(std::vector<double> exponents, bool diffuse) {
+  std::ranges::sort(exponents);
+  exponents.erase(std::unique(exponents.begin(), exponents.end()), exponents.end());
+  if (diffuse) std::erase(exponents, 1.0);
+  return exponents;
+}
+
 const char* method_name(Method method) {
   switch (method) {
     case Method::kHarmonics:

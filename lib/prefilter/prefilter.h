@@ -31,6 +31,10 @@ struct PrefilterRequest {
   std::vector<KernelPointer> kernels = {};  // more lobes, which follow those of the exponents
 };
 
+// Exponents as a request has them: ascending, each once, and without 1 where the diffuse lobe, which has it, comes by
+// itself.
+std::vector<double> filter_exponents(std::vector<double> exponents, bool diffuse = true);
+
 // How a lobe will be computed.
 struct LobePlan {
   enum class Method {

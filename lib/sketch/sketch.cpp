@@ -324,12 +324,6 @@ bool is_paint_color(const color::Rgb& rgb, double within_de76) {
   return color::delta_e_76(paint_lab(rgb), paint_lab(nearest)) <= within_de76;
 }
 
-formats::Basis sketch_basis() {
-  formats::Basis basis;
-  basis.name = "sketch", basis.exponents = {1.3, 6, 20, 70, 250, 900, 3000}, basis.mirror = true;
-  return basis;
-}
-
 namespace {
 
 std::vector<SketchSample> seen_samples(const Seen& seen, const SketchPixels& pixels) {

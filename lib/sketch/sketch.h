@@ -70,9 +70,6 @@ struct SketchFit {
 SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, const formats::Basis& basis,
                        const SketchLimits& limits, bool with_differences);
 
-// The basis for one directional light where the user names none: seven lobes and the mirror.
-formats::Basis sketch_basis();
-
 // A light of any kind, by what the renderer's equations make of it.
 struct SketchLight {
   formats::Basis basis;

@@ -73,7 +73,7 @@ class View:
 
     def checked(self, effects):
         checks = 40 if self.run.quick else 150
-        return self.drawn(effects, "--samples", 1, "--check", checks, "--check-against", "model")[0]
+        return self.drawn(effects, "--samples", 1, "--check", f"{checks},model")[0]
 
     def seconds(self, effects):
         """The processor time of a picture with one sample of each pixel, and with SAMPLES more."""
@@ -88,7 +88,7 @@ def frame_s(pairs):
 
 def only_to(level, sets):
     """The effects with the first `level` sets of so many."""
-    return ",".join(("all", "-rays", *(f"-tilts-{k + 1}" for k in range(level, sets))))
+    return ",".join(("all", "-rays", *(f"-travel-{k + 1}" for k in range(level, sets))))
 
 
 def reading(name, results, pairs, numbers):

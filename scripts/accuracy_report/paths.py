@@ -103,7 +103,7 @@ def growth(run):
     paint = ("--paint", f"{fitted}#{run.named([PAINT])[0]}", *COMMON, "--engine", "path", "--bounces", 2, "--tolerance", 2,
              "-o", run.work / "growth.exr")
     mesh = run.work / "wavy.obj"
-    view = ("--orbit", "30,20", "--env", run.work / "paths.env.exr", "--check-source", run.probe)
+    view = ("--camera", "30,20", "--env", run.work / "paths.env.exr", "--check-source", run.probe)
 
     def timed(*words):
         _, best, raw = run.repeated("render-osmesa", "--mesh", mesh, *paint, *words)
@@ -116,7 +116,7 @@ def growth(run):
         yield "pixels", width * width * 9 // 16, *timed(*view, "--size", f"{width}x{width * 9 // 16}")
     for lights in (1, 8) if run.quick else (1, 4, 16, 64):
         words = [word for i in range(lights) for word in ("--light", f"{360 * i / lights - 180:.1f},40")]
-        yield "lights", lights, *timed("--orbit", "30,20", "--size", "160x90", *words)
+        yield "lights", lights, *timed("--camera", "30,20", "--size", "160x90", *words)
 
 
 def study(run):

@@ -10,7 +10,7 @@ from shared.tools import Failed
 # views takes up what the fit then lacks.
 STEEP = {"steep": (4, 15, 60, 300, 1500)}
 
-CAMERA = ("--size", "320x180", "--samples", "1", "--camera", "3.6,1.75,4.6,0,0.5,0.1", "--fov", "25")
+CAMERA = ("--size", "320x180", "--samples", "1", "--camera", "3.6,1.75,4.6,0,0.5,0.1,25")
 
 
 @dataclasses.dataclass(frozen=True)

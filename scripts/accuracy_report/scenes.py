@@ -26,6 +26,7 @@ LEAST = 0.01  # the least difference of the plot; nobody sees a smaller one
 # Each effect, and the scene of the list above in which it matters.
 MATTERS = {"diffuse": 0, "lobes": 3, "gloss": 3, "mirror": 2, "fresnel": 2, "coat": 2, "horizon": 3, "travel": 7, "operator": 4,
            "anisotropy": 8, "lights": 8}
+WORDS = {"anisotropy": "brushed"}  # of --effects, where the plan has another
 MEASURED = {"overcast": "uffizi.hdr", "studio": "studio_small_03_1k.hdr", "sunset": "venice_sunset_1k.hdr"}
 
 
@@ -122,7 +123,7 @@ def scene_readings(stage, scene):
 
 
 def effect_row(stage, effect, scene):
-    without = stage.picture(scene, f"all,-{effect}", "--explain")
+    without = stage.picture(scene, f"all,-{WORDS.get(effect, effect)}", "--explain")
     truth = [row["truth_de00_p95"] for row in without["plan"]
              if row["effect"] == effect and row.get("truth_de00_p95") is not None]
     return (effect, named(scene), without["plan_de00_p95"], without["left_out"]["de00_p95"], without["error"]["de00_p95"],

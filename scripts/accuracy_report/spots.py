@@ -24,7 +24,7 @@ def study(run):
             made, filter_s = run.tool("prefilter-envmap", image, "--basis", basis, "--spots", count, "-o", env)
             words = ("--mesh", run.mesh, "--paint", paint, "--env", env, *SIZE, *CAMERA[2:], "--effects", "all,-rays",
                      "-o", run.work / "spots.exr")
-            checked, _ = run.tool("render-osmesa", *words, "--check", 400, "--check-against", "model")
+            checked, _ = run.tool("render-osmesa", *words, "--check", "400,model")
             timed = run.timed(functools.partial(run.shading, *words))
             error, kept = checked["error"], len(made.get("spots", ()))
             setting = f"{light}, --spots {count}"

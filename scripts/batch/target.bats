@@ -80,7 +80,7 @@ cells() {
   settings=$(jq -r '.target.render | join(" ")' other/plan.json)
   look() {
     render-osmesa -q --mesh "$TESTDATA/box.obj" --paint "other/fitted.paints.xml#silver_coarse" --env other/environments/*.env.exr \
-      --orbit 38,15,0.9 --size 64x48 --check 50 --seed 77 --report look.json "$@" -o look.png
+      --camera 38,15,0.9 --size 64x48 --check 50 --seed 77 --report look.json "$@" -o look.png
     jq -e --argjson fit "$(cells other de00_mean | sed -n 2p)" '.results.error.de00_mean + $fit <= 3' look.json
   }
   look $settings

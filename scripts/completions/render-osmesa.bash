@@ -14,24 +14,20 @@ _render_osmesa() {
     --emit) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --spectral) COMPREPLY=($(compgen -W "auto on off" -- "$word")); return ;;
     --floor) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --eye-height) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --operator) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --critical-angle) COMPREPLY=($(compgen -W "clip slide slide-map index" -- "$word")); return ;;
     --exposure) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --background) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --orbit) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --camera) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --fov) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --size|-s) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --samples) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --turntable) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --light-sweep) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --effects) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --tolerance) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --engine) COMPREPLY=($(compgen -W "auto cpu gl integral path" -- "$word")); return ;;
     --bounces) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --engine) COMPREPLY=($(compgen -W "auto cpu gl integral path gpu" -- "$word")); return ;;
     --check) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --check-against) COMPREPLY=($(compgen -W "auto truth model" -- "$word")); return ;;
     --check-source) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --sheet) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -45,7 +41,7 @@ _render_osmesa() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --paint --basis --part --trim --split --texture --texture-maps --env --light --emit --spectral --floor --eye-height --operator --critical-angle --exposure --background --orbit --camera --fov --size --samples --turntable --light-sweep --effects --tolerance --engine --gpu --bounces --print-shader --check --check-against --check-source --output --sheet --to --view --aov --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --paint --basis --part --trim --split --texture --texture-maps --env --no-cache --light --emit --spectral --floor --operator --critical-angle --exposure --background --camera --size --samples --turntable --light-sweep --effects --tolerance --bounces --engine --print-shader --check --check-source --output --sheet --to --view --aov --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

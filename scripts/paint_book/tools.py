@@ -51,14 +51,14 @@ class Tools:
         program = self.program("render-osmesa")
         # A book shows all of its paints, so that a paint that cannot be drawn, exit status 1, is an error here.
         run_tool(program, "--mesh", mesh, "--paint", paints, "--trim", "--env", env, "--size", f"{size[0]}x{size[1]}",
-                 "--orbit", orbit, "--samples", 4, "--background", BACKGROUND, "--effects", "auto,-rays", "-o",
+                 "--camera", orbit, "--samples", 4, "--background", BACKGROUND, "--effects", "auto,-rays", "-o",
                  folder / "{index}.png", done=(0,))
 
     def sheets(self, paints, mesh, env, size, orbit, cells, pattern):
         """Draws the same pictures as tiles of sheets of that many columns and rows. Returns the messages of the paints that
         could not be drawn, whose tiles are empty."""
         report = run_tool(self.program("render-osmesa"), "--mesh", mesh, "--paint", paints, "--trim", "--env", env,
-                          "--size", f"{size[0]}x{size[1]}", "--orbit", orbit, "--samples", 4, "--background", BACKGROUND,
+                          "--size", f"{size[0]}x{size[1]}", "--camera", orbit, "--samples", 4, "--background", BACKGROUND,
                           "--effects", "auto,-rays", "--sheet", f"{cells[0]}x{cells[1]}", "-o", pattern, "--quiet",
                           "--report", "-")
         return [one["message"] for one in json.loads(report)["results"]["pictures"] if one["status"] == "failed"]

@@ -145,10 +145,10 @@ number() { grep -m1 "\"$1\"" r.json | sed -E 's/.*: ([-0-9.e+]+),?$/\1/'; }
   grep -q '"status": "failed"' r.json
 }
 
-@test "a missing --basis is a usage error, and a file that is not there is bad input" {
-  run fit-paint "$paints"
-  [ "$status" -eq 2 ]
-  [[ "$output" =~ "--basis" ]]
+@test "without --basis there is one that is built in, and a file that is not there is bad input" {
+  fit-paint -q "$paints" -o built-in.xml
+  fit-paint -q --basis "$basis" "$paints" -o named.xml
+  diff <(grep -v '<processing' built-in.xml) <(grep -v '<processing' named.xml)
   run fit-paint --basis absent.basis.xml "$paints"
   [ "$status" -eq 3 ]
   [[ "$output" =~ "absent.basis.xml" ]]

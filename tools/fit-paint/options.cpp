@@ -9,7 +9,8 @@ namespace {
 
 void add_options(cli::ToolSpec& spec, Options& o) {
   spec.heading = "what is fitted";
-  spec.option("basis,b", "FILE", "testdata/b7.basis.xml", &o.basis, "basis of exponents to fit to").needed();
+  spec.option("basis,b", "FILE", "testdata/b7.basis.xml", &o.basis, "basis of exponents to fit to")
+      .more("Without it there are seven, from 1.3 to 3000, and the mirror.");
   add_target_options(spec, o.target, o.weights);
   spec.option("illuminant", "NAME", "A", &o.illuminant, "fit the colors under this illuminant, from spectra")
       .more(

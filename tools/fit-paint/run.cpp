@@ -11,6 +11,7 @@
 #include "fit/brdf_target.h"
 #include "fit/paint_fit.h"
 #include "fitting.h"
+#include "formats/default_basis.h"
 #include "formats/imported.h"
 #include "illuminants.h"
 #include "paint/spectra.h"
@@ -175,7 +176,7 @@ class Run {
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(fit::FitOptions fit, fit_options(options));
   fit.by_incidence = !options.common.report.empty();
-  GONIO_ASSIGN(formats::Basis basis, formats::read_basis(options.basis));
+  GONIO_ASSIGN(formats::Basis basis, formats::basis_or_default(options.basis));
   if (!options.illuminant.empty()) {
     GONIO_ASSIGN(const std::vector<std::string> illuminants, illuminants_of({options.illuminant}));
     if (illuminants != std::vector{options.illuminant})

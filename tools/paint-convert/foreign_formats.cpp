@@ -12,74 +12,7 @@ namespace goniochrome::tool {
 
 namespace {
 
-using SourcePointer = std::unique_ptr<PaintSource>;
 using SinkPointer = std::unique_ptr<PaintSink>;
-
-// A format that is read as a whole at the first call of next(). It gives paints, and tells what was left out.
-class ImportedSource : public PaintSource {
- public:
-  ImportedSource(InputFile input, const formats::ImportOptions& options, const formats::Importer& importer)
-      : name_(input.name()), importer_(importer), options_(options), input_(std::move(input)) {}
-
-  Result<std::optional<paint::Paint>> next() override {
-    if (input_) {
-      InputFile input = std::move(*input_);
-      input_.reset();
-      GONIO_ASSIGN(imported_, importer_.read(std::move(input), options_));
-    }
-    if (skipped_ < imported_.skipped.size()) return input_error("{}", imported_.skipped[skipped_++]);
-    if (given_ == imported_.paints.size()) return std::optional<paint::Paint>();
-    return std::optional(std::move(imported_.paints[given_++]));
-  }
-  std::string place() const override { return name_; }
-  std::string format() const override { return importer_.title; }
-  std::vector<std::string> closing_warnings() const override {
-    std::vector<std::string> lines;
-    for (const std::string& warning : imported_.warnings) lines.push_back(fmt::format("{}: {}", name_, warning));
-    return lines;
-  }
-  bool takes_condition() const override { return true; }
-
- private:
-  std::string name_;
-  const formats::Importer& importer_;
-  formats::ImportOptions options_;
-  std::optional<InputFile> input_;
-  formats::ImportedPaints imported_;
-  std::size_t skipped_ = 0, given_ = 0;
-};
-
-// CxF is read for its specifications at the first call of next(), and then paint by paint.
-class CxfSource : public PaintSource {
- public:
-  CxfSource(InputFile input, const formats::ImportOptions& options)
-      : name_(input.name()), options_(options), input_(std::move(input)) {}
-
-  Result<std::optional<paint::Paint>> next() override {
-    if (input_) {
-      InputFile input = std::move(*input_);
-      input_.reset();
-      GONIO_ASSIGN(formats::CxfReader reader, formats::CxfReader::open(std::move(input), options_));
-      reader_.emplace(std::move(reader));
-    }
-    return reader_ ? reader_->next() : std::optional<paint::Paint>();
-  }
-  std::string place() const override { return name_; }
-  std::string format() const override { return "CxF3"; }
-  std::vector<std::string> closing_warnings() const override {
-    std::vector<std::string> lines;
-    if (reader_)
-      for (const std::string& warning : reader_->warnings()) lines.push_back(fmt::format("{}: {}", name_, warning));
-    return lines;
-  }
-  bool takes_condition() const override { return true; }
-
- private:
-  std::string name_;
-  formats::ImportOptions options_;
-  std::optional<InputFile> input_;
-  std::optional<formats::CxfReader> reader_;
-};
 
 Json as_json(const std::string& name, const brdf::MeasuredTraits& traits, const brdf::MeasuredChecks& told,
              const brdf::MeasuredColor& color) {
@@ -132,7 +65,7 @@ std::vector<std::string> cautions(const brdf::MeasuredColor& color) {
 }
 
 // A measured BRDF is one paint, which has the name of its file.
-class MeasuredSource : public PaintSource {
+class MeasuredSource : public formats::PaintSource {
  public:
   MeasuredSource(InputFile input, const SourceSetup& setup)
       : name_(input.name()), setup_(setup), input_(std::move(input)) {}
@@ -174,7 +107,6 @@ class MeasuredSource : public PaintSource {
   std::string format() const override { return "measured BRDF"; }
   std::vector<std::string> closing_warnings() const override { return warnings_; }
   Json figures() const override { return figures_; }
-  bool takes_condition() const override { return true; }
 
  private:
   void tell(const std::string& what) { warnings_.push_back(fmt::format("{}: {}", name_, what)); }
@@ -188,16 +120,8 @@ class MeasuredSource : public PaintSource {
 
 }  // namespace
 
-Result<SourcePointer> open_cxf(InputFile input, const SourceSetup& setup) {
-  return SourcePointer(std::make_unique<CxfSource>(std::move(input), setup.import));
-}
-
-Result<SourcePointer> open_imported(InputFile input, const SourceSetup& setup, const formats::Importer& importer) {
-  return SourcePointer(std::make_unique<ImportedSource>(std::move(input), setup.import, importer));
-}
-
-Result<SourcePointer> open_measured(InputFile input, const SourceSetup& setup) {
-  return SourcePointer(std::make_unique<MeasuredSource>(std::move(input), setup));
+Result<formats::PaintSourcePointer> open_measured(InputFile input, const SourceSetup& setup) {
+  return formats::PaintSourcePointer(std::make_unique<MeasuredSource>(std::move(input), setup));
 }
 
 Result<SinkPointer> begin_cxf(OutputFile file, const SinkSetup& setup) {

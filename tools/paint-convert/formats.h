@@ -1,5 +1,5 @@
-// The formats of paint-convert: each input format is a source of paints, each output format a sink. A new format is one
-// more row in a table of formats.cpp.
+// The formats of paint-convert: those that the library reads and measured BRDFs as sources, and a table of sinks in
+// formats.cpp.
 #pragma once
 
 #include <memory>
@@ -12,30 +12,10 @@
 #include "base/result.h"
 #include "formats/csv.h"
 #include "formats/imported.h"
+#include "formats/paint_source.h"
 #include "paint_stream.h"
 
 namespace goniochrome::tool {
-
-class PaintSource {
- public:
-  virtual ~PaintSource() = default;
-  // The next paint, or nothing at the end. After an error next() goes on with what can still be read.
-  virtual Result<std::optional<paint::Paint>> next() = 0;
-  // Where the paint last returned began: `file:line`.
-  virtual std::string place() const = 0;
-  // "paint XML", "long table", ...
-  virtual std::string format() const = 0;
-  // Whether its paints may have a face and a flop, and not rows alone.
-  virtual bool holds_designs() const { return false; }
-  virtual Prolog prolog() { return {}; }
-  virtual std::vector<std::string> warnings() const { return {}; }
-  // What is known after the last paint only.
-  virtual std::vector<std::string> closing_warnings() const { return {}; }
-  // What the report says of a measured BRDF; null for other formats.
-  virtual Json figures() const { return {}; }
-  // Whether an illuminant or observer can be chosen.
-  virtual bool takes_condition() const { return false; }
-};
 
 // What a source may need to know.
 struct SourceSetup {
@@ -102,8 +82,8 @@ std::vector<std::string> output_format_names();
 
 // Opens FILE, or FILE#NAMES for some of its paints; "auto" finds the format from the first bytes. Error: the file, and
 // the formats there are.
-Result<std::unique_ptr<PaintSource>> open_source(const std::string& reference, const std::string& format,
-                                                 const SourceSetup& setup);
+Result<formats::PaintSourcePointer> open_source(const std::string& reference, const std::string& format,
+                                                const SourceSetup& setup);
 
 // The output format of that name; "auto" goes by the ending of `path`, and is paint XML for standard output. Error: the
 // path and what to do.

@@ -18,7 +18,7 @@ namespace {
 // An input, open or still to be opened.
 struct Input {
   std::string path;
-  std::unique_ptr<PaintSource> source;
+  formats::PaintSourcePointer source;
 };
 
 // Opens each input once, to make sure that it is there and to read what stands before its first paint. Files are closed
@@ -31,7 +31,7 @@ Result<std::vector<Input>> surveyed(const Options& options, const SourceSetup& s
   for (const std::string& path : paths) {
     GONIO_ASSIGN(auto source, open_source(path, options.from, source_setup));
     session.explain(fmt::format("{}: {}\n", path == "-" ? "standard input" : path, source->format()));
-    const Prolog prolog = source->prolog();
+    const Prolog prolog{source->processing(), source->foreign()};
     setup.layout.origin = setup.layout.origin || source->holds_designs();
     setup.prolog.processing.insert(setup.prolog.processing.end(), prolog.processing.begin(), prolog.processing.end());
     setup.prolog.foreign.insert(setup.prolog.foreign.end(), prolog.foreign.begin(), prolog.foreign.end());
@@ -97,7 +97,7 @@ class Conversion {
   int read = 0, written = 0, skipped = 0;
 
  private:
-  Result<void> pass(paint::Paint paint, const PaintSource& source);
+  Result<void> pass(paint::Paint paint, const formats::PaintSource& source);
   Result<void> skip(const Error& error);
   Result<void> bring_to_light(paint::Paint& paint);
 
@@ -143,7 +143,7 @@ Result<void> Conversion::bring_to_light(paint::Paint& paint) {
   return {};
 }
 
-Result<void> Conversion::pass(paint::Paint paint, const PaintSource& source) {
+Result<void> Conversion::pass(paint::Paint paint, const formats::PaintSource& source) {
   ++read;
   if (const auto other = names_.note(paint.name, static_cast<int>(inputs_.size())))
     if (*other != static_cast<int>(inputs_.size()))

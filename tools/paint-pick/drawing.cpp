@@ -8,6 +8,7 @@
 #include "display/display.h"
 #include "envmap/prefiltered.h"
 #include "fit/paint_fit.h"
+#include "formats/default_basis.h"
 #include "render/renderer.h"
 #include "render/trim.h"
 #include "sketch/sketch.h"
@@ -70,7 +71,7 @@ std::string PaintDrawing::described() const {
 
 Result<PaintDrawing> PaintDrawing::make(const Options& options, cli::Session& session) {
   auto state = std::make_unique<State>();
-  formats::Basis basis = sketch::sketch_basis();
+  GONIO_ASSIGN(formats::Basis basis, formats::basis_or_default(options.basis));
   state->mesh = ball();
   if (!options.mesh.empty()) {
     GONIO_ASSIGN(state->mesh, mesh::read_mesh(options.mesh));
@@ -81,9 +82,6 @@ Result<PaintDrawing> PaintDrawing::make(const Options& options, cli::Session& se
     basis = basis_of(state->env);
     state->scene.env = &state->env;
   } else {
-    if (!options.basis.empty()) {
-      GONIO_ASSIGN(basis, formats::read_basis(options.basis));
-    }
     // As wide as a lamp of half a meter five meters away, so that gloss shows in a small picture.
     constexpr double kRadius_rad = 0.05;
     state->scene.lights = {{render::orbit_direction(25, 45), {1, 1, 1}, kRadius_rad},

@@ -58,7 +58,8 @@ cli::ToolSpec tool_spec(Options& o) {
           "says where a paint is so far from the one that was traced that this is doubtful. A view stays as it is, and "
           "neither its camera nor its light can be moved. The file needs the lobes of the basis and the parts of the "
           "mesh. Its light is packed in some 30 bytes a point, and what that changes is told.");
-  spec.option("basis,b", "FILE", "testdata/b7.basis.xml", &o.basis, "basis that the page fits paints to").needed();
+  spec.option("basis,b", "FILE", "testdata/b7.basis.xml", &o.basis, "basis that the page fits paints to")
+      .more("Without it there are seven lobes, with exponents from 1.3 to 3000, and the mirror.");
   spec.option("title", "TEXT", "Spring", &o.title, "title of the page; the name of the mesh by default");
   spec.heading = "output";
   spec.option("output,o", "FILE", "studio.html", &o.output, "page to write; - is standard output");

@@ -115,7 +115,7 @@ needs_browser() {
   traced() { render-osmesa -q --trim --mesh "$TESTDATA/speed-shape.obj" -p fitted.xml#silver_fine --size 320x180 --samples 1 \
     --engine path --aov transport --tolerance 6 "$@"; }
   traced --env studio.env.exr --floor shadow --background env -o studio-view.exr
-  traced --env outdoor.env.exr --floor fitted.xml#signal_white --orbit -40,20 -o outdoor-view.exr
+  traced --env outdoor.env.exr --floor fitted.xml#signal_white --camera -40,20 -o outdoor-view.exr
   paint-studio -q --mesh "$TESTDATA/speed-shape.obj" --env studio.env.exr --basis "$TESTDATA/b5.basis.xml" \
     --transport studio-view.exr --transport outdoor-view.exr "$TESTDATA/paints.paints.xml" -o views.html --report views.json
   [ "$(jq '.results.transports | length' views.json)" -eq 2 ]
@@ -207,7 +207,7 @@ needs_browser() {
     render-osmesa -q --trim --mesh "$TESTDATA/speed-shape.obj" --paint "fitted.xml#candy_red" --env "$light.env.exr" --engine gl \
       --light "-25,40,$half,$half,$half@4" --effects all,-rays --size 640x360 --samples 1 -o "lamp-$light.exr"
     render-osmesa -q --trim --mesh turned.obj --paint "fitted.xml#candy_red" --env "$light.env.exr" --engine gl \
-      --orbit -55,12 --effects all,-rays --size 640x360 --samples 1 -o "turned-$light.exr"
+      --camera -55,12 --effects all,-rays --size 640x360 --samples 1 -o "turned-$light.exr"
     for what in lamp turned; do
       run /usr/bin/python3 "$code/compare.py" "candy_red-$light-$what.f32" "$what-$light.exr" "$white"
       echo "$what $light: mean p95 largest pixels: $output"

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/paths.h"
 #include "base/text.h"
+#include "formats/default_basis.h"
 #include "formats/reference.h"
 #include "formats/xml.h"
 #include "pack.h"
@@ -100,7 +101,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(std::string page, page_part("studio.html"));
   GONIO_ASSIGN(const std::string module, page_part("studio.wasm"));
   session.explain(plan_text(options));
-  GONIO_ASSIGN(const formats::Basis basis, formats::read_basis(options.basis));
+  GONIO_ASSIGN(const formats::Basis basis, formats::basis_or_default(options.basis));
   GONIO_ASSIGN(const mesh::Mesh mesh, mesh::read_mesh(options.mesh));
   for (const std::string& remark : mesh.remarks) session.warn(remark);
   GONIO_ASSIGN(const PackedLibrary paints, packed_paints(options, session));

@@ -23,7 +23,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .one_of({"error", "zero"})
       .more("error refuses the image. zero sets them to zero and counts them.");
   spec.heading = "lobes";
-  spec.option("basis,b", "FILE", "testdata/b7.basis.xml", &o.basis, "basis whose exponents to filter by");
+  spec.option("basis,b", "FILE", "testdata/b7.basis.xml", &o.basis, "basis whose exponents to filter by")
+      .more("Without it, --exponents and --for, there are seven, from 1.3 to 3000.");
   spec.option("exponents,e", "N,...", "6,70,900", &o.exponents, "exponents to filter by, in place of a basis")
       .from(0, 1e6);
   spec.option("for,p", "PAINTS", "fitted.paints.xml", &o.paints, "paints whose lobes to filter by, in place of a basis")
@@ -158,7 +159,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "Before "
       "a black ground the two cannot be told apart. Faces are those of OpenGL; an EXR whose envmap "
       "attribute says cube is read by OpenEXR's own convention. EXR, Radiance HDR, PNG, JPEG, TIFF and PNM are read "
-      "directly; DPX, WebP, BMP and TGA through oiiotool, where OpenImageIO is installed. Values are linear Rec.709 unless the file says otherwise, and are "
+      "directly; DPX, WebP, BMP and TGA through oiiotool, where OpenImageIO is installed. Values are linear Rec.709 "
+      "unless the file says otherwise, and are "
       "converted to linear Rec.2020.",
       "An EXR is read in its display window: black where it has no pixels, and without overscan. Its colors are the "
       "channels R, G and B, or Y, in any case; those without a layer, or else of the only layer that has them. "

@@ -13,6 +13,7 @@
 #include "envmap/engine_cube.h"
 #include "envmap/mip.h"
 #include "envmap/open_maps.h"
+#include "envmap/remarks.h"
 #include "output_names.h"
 #include "prefilter/exact_lobe.h"
 #include "prefilter/lobe_cache.h"
@@ -78,16 +79,7 @@ void tell_source(const envmap::Environment& env, cli::Session& session) {
       {"nan", n.nan},         {"infinite", n.infinite},     {"negative", n.negative}, {"out_of_gamut", n.out_of_gamut}};
   if (env.ball())
     session.results()["source"]["ball"] = {{"x", env.ball()->x}, {"y", env.ball()->y}, {"radius", env.ball()->radius}};
-  if (env.lit_corners())
-    session.warn(fmt::format(
-        "{}: is square and has light in its corners, where an angular probe has none: it was read as an angular probe; "
-        "if it is the photograph of a mirror ball, give --ball auto",
-        env.source()));
-  if (n.total() > 0)
-    session.warn(fmt::format("{}: {} texels set to zero ({} not a number, {} infinite, {} negative)", env.source(),
-                             n.total(), n.nan, n.infinite, n.negative));
-  if (n.out_of_gamut > 0)
-    session.warn(fmt::format("{}: {} texels beyond Rec.2020 clipped to it", env.source(), n.out_of_gamut));
+  for (const std::string& remark : envmap::remarks(env)) session.warn(remark);
 }
 
 // The text of --explain.

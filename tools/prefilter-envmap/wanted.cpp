@@ -7,7 +7,7 @@
 #include "base/angles.h"
 #include "base/text.h"
 #include "envmap/mip.h"
-#include "formats/basis.h"
+#include "formats/default_basis.h"
 #include "formats/xml.h"
 
 namespace goniochrome::tool {
@@ -109,8 +109,8 @@ bool has_levels(const Options& options) {
 }
 
 Result<Wanted> wanted_lobes(const Options& options) {
-  if (int(options.basis.empty()) + int(options.exponents.empty()) + int(options.paints.empty()) != 2)
-    return usage_error("give one of --basis FILE, --exponents LIST and --for PAINTS");
+  if (int(!options.basis.empty()) + int(!options.exponents.empty()) + int(!options.paints.empty()) > 1)
+    return usage_error("--basis, --exponents and --for exclude each other: give one of them");
   Wanted wanted;
   prefilter::PrefilterRequest& request = wanted.request;
   request.tolerance = options.common.tolerance;
@@ -119,22 +119,16 @@ Result<Wanted> wanted_lobes(const Options& options) {
                        shortest(kLeastTolerance));
   GONIO_TRY(set_geometry(options, request));
   request.exponents = options.exponents;
-  if (!options.basis.empty()) {
-    GONIO_ASSIGN(const formats::Basis basis, formats::read_basis(options.basis));
-    request.exponents = basis.exponents;
-  } else if (!options.paints.empty()) {
+  if (!options.paints.empty()) {
     GONIO_TRY(want_those_of_paints(options, wanted));
+  } else if (options.exponents.empty()) {
+    GONIO_ASSIGN(const formats::Basis basis, formats::basis_or_default(options.basis));
+    request.exponents = basis.exponents;
   }
-  // The exponents ascend, and each is there once. Exponent 1 is dropped, because the diffuse lobe has it.
-  std::vector<double>& e = request.exponents;
-  std::sort(e.begin(), e.end());
-  e.erase(std::unique(e.begin(), e.end()), e.end());
   if (options.no_mirror) request.mirror = false;
-  if (has_levels(options)) {
-    GONIO_TRY(set_levels(options, request));
-  } else {
-    std::erase(e, 1.0);
-  }
+  const bool levels = has_levels(options);
+  request.exponents = prefilter::filter_exponents(std::move(request.exponents), !levels);
+  if (levels) GONIO_TRY(set_levels(options, request));
   return wanted;
 }
 

@@ -2,23 +2,23 @@
 
 #include <utility>
 
-#include "paints.h"
-
 namespace goniochrome::tool {
 
 Result<PaintSource> PaintSource::open(const Options& options) {
-  GONIO_ASSIGN(auto fitter, fitter_of(options));
-  GONIO_ASSIGN(formats::PaintReader reader, formats::PaintReader::open(options.paint));
-  return PaintSource(std::move(reader), std::move(fitter), formats::paint_reference(options.paint).file);
+  GONIO_ASSIGN(Fitting fitting, Fitting::of(options));
+  formats::ImportOptions import;
+  import.keep_going = true;  // a paint that fails is told, and the others are drawn
+  GONIO_ASSIGN(formats::PaintSourcePointer reader, formats::open_paints(options.paint, import));
+  return PaintSource(std::move(reader), std::move(fitting), formats::paint_reference(options.paint).file);
 }
 
 bool PaintSource::next(bool look_ahead, SourcePaint& result) {
-  Read read = ahead_ ? *std::exchange(ahead_, std::nullopt) : reader_.next();
+  Read read = ahead_ ? *std::exchange(ahead_, std::nullopt) : reader_->next();
   if (read.ok() && !read->has_value()) return false;
   result = {};
   result.number = ++count_;
   if (look_ahead) {
-    ahead_ = reader_.next();
+    ahead_ = reader_->next();
     if (ahead_->ok() && ahead_->value()) result.follower = (*ahead_)->value().name;
   }
   if (!read.ok()) {
@@ -27,7 +27,7 @@ bool PaintSource::next(bool look_ahead, SourcePaint& result) {
   }
   result.paint = **std::move(read);
   const std::string name = result.paint.name;
-  auto fitted = with_lobes(result.paint, fitter_ ? &*fitter_ : nullptr, file_ == "-" ? "standard input" : file_);
+  auto fitted = with_lobes(result.paint, fitting_, file_ == "-" ? "standard input" : file_);
   if (fitted.ok()) {
     result.paint = *std::move(fitted);
     auto map = color_map_of(result.paint, file_);
@@ -37,6 +37,13 @@ bool PaintSource::next(bool look_ahead, SourcePaint& result) {
     result.failure = fitted.error();
   }
   return true;
+}
+
+std::vector<std::string> PaintSource::remarks() const {
+  std::vector<std::string> lines = reader_->warnings();
+  const std::vector<std::string> closing = reader_->closing_warnings();
+  lines.insert(lines.end(), closing.begin(), closing.end());
+  return lines;
 }
 
 }  // namespace goniochrome::tool

@@ -5,10 +5,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "brdf/color_map.h"
-#include "fit/paint_fit.h"
-#include "formats/xml.h"
+#include "formats/paint_source.h"
+#include "paints.h"
 #include "tool.h"
 
 namespace goniochrome::tool {
@@ -24,20 +25,24 @@ struct SourcePaint {
 
 class PaintSource {
  public:
-  // Opens --paint, which may be "-", FILE or FILE#NAMES, and reads --basis. Error: either cannot be read.
+  // Opens --paint, which may be "-", FILE or FILE#NAMES, in any format of paints, and reads --basis. Error: either
+  // cannot be read.
   static Result<PaintSource> open(const Options& options);
 
   // The next paint; false at the end. With `look_ahead`, its follower is told, for which it waits. A paint that cannot
   // be read, that has no lobes and cannot be fitted, or whose color map cannot be read has a failure.
   bool next(bool look_ahead, SourcePaint& paint);
 
+  // Remarks about the file, complete at its end.
+  std::vector<std::string> remarks() const;
+
  private:
-  PaintSource(formats::PaintReader reader, std::optional<fit::PaintFitter> fitter, std::string file)
-      : reader_(std::move(reader)), fitter_(std::move(fitter)), file_(std::move(file)) {}
+  PaintSource(formats::PaintSourcePointer reader, Fitting fitting, std::string file)
+      : reader_(std::move(reader)), fitting_(std::move(fitting)), file_(std::move(file)) {}
   using Read = Result<std::optional<paint::Paint>>;
 
-  formats::PaintReader reader_;
-  std::optional<fit::PaintFitter> fitter_;
+  formats::PaintSourcePointer reader_;
+  Fitting fitting_;
   std::string file_;
   std::optional<Read> ahead_;
   std::size_t count_ = 0;

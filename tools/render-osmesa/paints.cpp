@@ -7,9 +7,9 @@
 #include "base/angles.h"
 #include "base/paths.h"
 #include "base/text.h"
-#include "formats/basis.h"
+#include "formats/default_basis.h"
+#include "formats/paint_source.h"
 #include "formats/reference.h"
-#include "formats/xml.h"
 #include "image/surface_file.h"
 #include "render/panes.h"
 #include "render/trim.h"
@@ -79,8 +79,7 @@ void put_glass_on(std::size_t part, DressedMesh& dress) {
 // The paints of all files named, each file read once.
 class PaintShelf {
  public:
-  // With a fitter, paints without lobes are fitted.
-  explicit PaintShelf(std::optional<fit::PaintFitter> fitter) : fitter_(std::move(fitter)) {}
+  explicit PaintShelf(Fitting fitting) : fitting_(std::move(fitting)) {}
 
   // `reference` is FILE or FILE#NAME.
   Result<paint::Paint> paint(const std::string& reference) {
@@ -88,20 +87,20 @@ class PaintShelf {
     if (!files_.contains(file)) {
       if (!name && is_like_glass(file))
         return usage_error("there is no file \"{}\": for glass that is seen through write PART={}", file, kGlass);
-      GONIO_ASSIGN(files_[file], formats::read_paints(file));
+      GONIO_ASSIGN(files_[file], read(file));
     }
     const std::vector<paint::Paint>& paints = files_[file];
     std::vector<std::string> names;
     for (const paint::Paint& paint : paints) names.push_back(paint.name);
     if (!name) {
-      if (paints.size() == 1) return with_lobes(paints.front(), fitter(), file);
+      if (paints.size() == 1) return fitted(paints.front(), file);
       return usage_error(
           "{} holds {} paints: write {}#NAME for one of them, braces in --output for a picture of each, as in "
           "-o '{{name}}.png', or --sheet 3x3: it holds {}",
           file, paints.size(), file, listed(names));
     }
     GONIO_ASSIGN(const std::size_t place, place_of(file, *name, names));
-    return with_lobes(paints[place], fitter(), file);
+    return fitted(paints[place], file);
   }
 
   // The color map that the paint of a reference names, relative to its file; null where it names none.
@@ -114,6 +113,8 @@ class PaintShelf {
     }
     return map.get();
   }
+  const std::vector<std::string>& remarks() const { return remarks_; }
+  const std::vector<std::string>& fits() const { return fitted_; }
   std::vector<std::shared_ptr<const brdf::ColorMap>> color_maps() const {
     std::vector<std::shared_ptr<const brdf::ColorMap>> all;
     for (const auto& [path, map] : maps_) all.push_back(map);
@@ -121,9 +122,35 @@ class PaintShelf {
   }
 
  private:
-  const fit::PaintFitter* fitter() const { return fitter_ ? &*fitter_ : nullptr; }
+  Result<std::vector<paint::Paint>> read(const std::string& file) {
+    GONIO_ASSIGN(const formats::PaintSourcePointer source, formats::open_paints(file));
+    std::vector<paint::Paint> paints;
+    for (;;) {
+      GONIO_ASSIGN(std::optional<paint::Paint> paint, source->next());
+      if (!paint) break;
+      paints.push_back(*std::move(paint));
+    }
+    for (const auto& lines : {source->warnings(), source->closing_warnings()})
+      remarks_.insert(remarks_.end(), lines.begin(), lines.end());
+    if (paints.empty()) return input_error("{}: holds no paint", file);
+    return paints;
+  }
 
-  std::optional<fit::PaintFitter> fitter_;
+  // Each paint is fitted once, however many parts wear it.
+  Result<paint::Paint> fitted(const paint::Paint& paint, const std::string& file) {
+    if (paint.lobes) return paint;
+    const std::string key = file + "#" + paint.name;
+    if (const auto known = ready_.find(key); known != ready_.end()) return known->second;
+    GONIO_ASSIGN(paint::Paint ready, with_lobes(paint, fitting_, file));
+    fitted_.push_back(fmt::format("{} of {}: fitted to {}, dE00 {:.2f} in the mean and {:.2f} at most at its readings",
+                                  shown(paint.name), file, ready.lobes->basis, ready.lobes->mean_de00,
+                                  ready.lobes->max_de00));
+    return ready_[key] = std::move(ready);
+  }
+
+  Fitting fitting_;
+  std::map<std::string, paint::Paint> ready_;
+  std::vector<std::string> remarks_, fitted_;
   std::map<std::string, std::vector<paint::Paint>> files_;
   std::map<std::string, std::shared_ptr<const brdf::ColorMap>> maps_;
 };
@@ -168,10 +195,14 @@ Result<std::vector<std::size_t>> parts_of(const mesh::Mesh& mesh, const std::str
                      listed(parts), materials.empty() ? "" : "; its materials are " + listed(materials, 30));
 }
 
-Result<std::optional<fit::PaintFitter>> fitter_of(const Options& options) {
-  if (options.basis.empty()) return std::optional<fit::PaintFitter>();
-  GONIO_ASSIGN(formats::Basis basis, formats::read_basis(options.basis));
-  return std::optional<fit::PaintFitter>(std::in_place, std::move(basis), fit::FitOptions{});
+Result<Fitting> Fitting::of(const Options& options) {
+  GONIO_ASSIGN(formats::Basis basis, formats::basis_or_default(options.basis));
+  return Fitting(std::move(basis));
+}
+
+const fit::PaintFitter& Fitting::fitter() {
+  if (!fitter_) fitter_.emplace(basis_, fit::FitOptions{});
+  return *fitter_;
 }
 
 Error about_paint(const Error& error, const std::string& name) {
@@ -183,15 +214,9 @@ Error about_paint(const Error& error, const std::string& name) {
   return {error.kind, fmt::format("the paint {}: {}", quoted, error.message.substr(begin))};
 }
 
-Result<paint::Paint> with_lobes(paint::Paint paint, const fit::PaintFitter* fitter, const std::string& file) {
+Result<paint::Paint> with_lobes(paint::Paint paint, Fitting& fitting, const std::string& file) {
   if (paint.lobes) return paint;
-  if (fitter == nullptr)
-    return input_error(
-        "{}: the paint \"{}\" has no lobes: give --basis BASIS.xml to fit it here, or fit it first, as in `fit-paint "
-        "{} "
-        "--basis BASIS.xml -o FITTED.xml`",
-        file, paint.name, file);
-  auto fit = fitter->fit(paint);
+  auto fit = fitting.fitter().fit(paint);
   if (!fit.ok()) {
     const Error error = about_paint(fit.error(), paint.name);
     return Error{error.kind, fmt::format("{}: {}", file, error.message)};
@@ -218,8 +243,8 @@ void put_on(std::size_t part, const paint::Paint& paint, const brdf::ColorMap* m
 }
 
 Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool with_mirrors) {
-  GONIO_ASSIGN(auto fitter, fitter_of(options));
-  PaintShelf shelf(std::move(fitter));
+  GONIO_ASSIGN(Fitting fitting, Fitting::of(options));
+  PaintShelf shelf(std::move(fitting));
   paint::LobeFit gray;
   gray.diffuse = (kUnpaintedReflectance / kPi) * color::Rgb{1, 1, 1};
   const std::size_t parts_there = mesh.parts.size();
@@ -265,6 +290,7 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool
     }
   }
   result.color_maps = shelf.color_maps();
+  result.remarks = shelf.remarks(), result.fitted = shelf.fits();
   GONIO_TRY(lay_textures(mesh, options, result));
   for (std::size_t part = 0; part < mesh.parts.size(); ++part) {
     if (result.names[part].empty()) result.unpainted.push_back(mesh.parts[part].name);
@@ -272,10 +298,13 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool
   return result;
 }
 
-Result<paint::Paint> paint_named(const std::string& reference, const Options& options) {
-  GONIO_ASSIGN(auto fitter, fitter_of(options));
-  PaintShelf shelf(std::move(fitter));
-  return shelf.paint(reference);
+Result<paint::Paint> paint_named(const std::string& reference, const Options& options, cli::Session& session) {
+  GONIO_ASSIGN(Fitting fitting, Fitting::of(options));
+  PaintShelf shelf(std::move(fitting));
+  GONIO_ASSIGN(paint::Paint paint, shelf.paint(reference));
+  for (const std::string& remark : shelf.remarks()) session.warn(remark);
+  for (const std::string& line : shelf.fits()) session.say(line);
+  return paint;
 }
 
 Result<std::vector<color::Rgb>> emission_of(const mesh::Mesh& mesh, const std::vector<Emission>& emissions) {

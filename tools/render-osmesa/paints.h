@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "fit/paint_fit.h"
+#include "formats/basis.h"
 #include "mesh/mesh.h"
 #include "paint/paint.h"
 #include "render/surface_layer.h"
@@ -34,6 +35,8 @@ struct DressedMesh {
   std::vector<bool> panes;             // for each part, whether it is clear glass that is seen through
   std::vector<std::string> unplaced;   // parts of --texture without texture coordinates, of which nothing was said
   std::vector<std::size_t> trim;       // the parts that --trim recognized
+  std::vector<std::string> remarks;    // about the files of paints
+  std::vector<std::string> fitted;     // a line about each paint that was fitted
   std::vector<std::string> unpainted;  // names of the parts that wear the gray of unpainted parts
 };
 
@@ -41,15 +44,25 @@ struct DressedMesh {
 // or a paint without lobes, with what there is.
 Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool with_mirrors);
 
-// Fits paints as fit-paint(1) does without further options; none without --basis.
-Result<std::optional<fit::PaintFitter>> fitter_of(const Options& options);
+// Fits paints as fit-paint(1) does without further options, to --basis or the default basis.
+class Fitting {
+ public:
+  // Error: the file of --basis cannot be read.
+  static Result<Fitting> of(const Options& options);
+  // The fitter, which is made when the first paint needs it.
+  const fit::PaintFitter& fitter();
+
+ private:
+  explicit Fitting(formats::Basis basis) : basis_(std::move(basis)) {}
+  formats::Basis basis_;
+  std::optional<fit::PaintFitter> fitter_;
+};
 
 // The error with the name of the paint in front, unless it is told with its name already.
 Error about_paint(const Error& error, const std::string& name);
 
-// The paint with its lobes, which are fitted where it has none and there is a fitter. Error: it has none; `file` is
-// where it comes from.
-Result<paint::Paint> with_lobes(paint::Paint paint, const fit::PaintFitter* fitter, const std::string& file);
+// The paint with its lobes, which are fitted where it has none. Error: nothing to fit; `file` is where it comes from.
+Result<paint::Paint> with_lobes(paint::Paint paint, Fitting& fitting, const std::string& file);
 
 // The color map that a paint of `file` names, or null.
 Result<std::shared_ptr<const brdf::ColorMap>> color_map_of(const paint::Paint& paint, const std::string& file);
@@ -57,8 +70,8 @@ Result<std::shared_ptr<const brdf::ColorMap>> color_map_of(const paint::Paint& p
 // Puts the paint on a part. A map must outlive the mesh.
 void put_on(std::size_t part, const paint::Paint& paint, const brdf::ColorMap* map, DressedMesh& dress);
 
-// FILE#NAME, which has lobes or can be fitted.
-Result<paint::Paint> paint_named(const std::string& reference, const Options& options);
+// FILE#NAME, which has lobes or can be fitted. The session tells remarks about the file.
+Result<paint::Paint> paint_named(const std::string& reference, const Options& options, cli::Session& session);
 
 // The parts that a word means: the part of that name, or all of that material. Error (usage): what there is.
 Result<std::vector<std::size_t>> parts_of(const mesh::Mesh& mesh, const std::string& word);

@@ -106,7 +106,7 @@ refused() { # STATUS TEXT ARGUMENTS...
   render-osmesa -q $scene --background env -o shadow.exr
   render-osmesa -q $scene --background env --floor none -o none.exr
   render-osmesa -q $scene --floor paints.xml#black -o black.exr
-  render-osmesa -q $scene --floor shadow,-3 --eye-height 4 -o deep.exr
+  render-osmesa -q $scene --floor shadow,-3,eye=4 -o deep.exr
   read -r far _ <<<"$(pixel shadow.exr 5 40)"
   read -r near _ <<<"$(pixel shadow.exr 33 29)"
   holds "$far > 0.97 && $far < 1.01 && $near < 0.95"

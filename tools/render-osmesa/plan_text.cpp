@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "effect_words.h"
+
 namespace goniochrome::tool {
 
 namespace {
@@ -11,18 +13,24 @@ std::string known(double value) {
   return std::isnan(value) ? "-" : fmt::format("{:.2f}", value);
 }
 
+// An effect, and the word of --effects that switches it where that is another.
+std::string label_of(const std::string& effect) {
+  const std::string word = word_of_effect(effect);
+  return word == effect ? effect : fmt::format("{} ({})", effect, word);
+}
+
 }  // namespace
 
 std::string plan_table(const render::Plan& plan) {
   bool truth = false;
   for (const render::PlanItem& item : plan.items) truth |= item.truth_de00_p95.has_value();
-  std::string text = fmt::format("{:<13} {:<6} {:>7} {} {:<16} {}\n", "effect", "needed", "dE00",
+  std::string text = fmt::format("{:<20} {:<6} {:>7} {} {:<16} {}\n", "effect", "needed", "dE00",
                                  truth ? "  truth " : "", "decision", "why");
   for (const render::PlanItem& item : plan.items) {
     const std::string exact = item.truth_de00_p95 ? fmt::format("{:7.2f} ", *item.truth_de00_p95)
                               : truth             ? "        "
                                                   : "";
-    text += fmt::format("{:<13} {:<6} {:>7} {} {:<16} {}\n", item.effect, item.needed ? "yes" : "no",
+    text += fmt::format("{:<20} {:<6} {:>7} {} {:<16} {}\n", label_of(item.effect), item.needed ? "yes" : "no",
                         item.needed ? known(item.de00_p95) : "-", exact, spelled(item.decision), item.reason);
   }
   if (plan.effects.most_samples_in_all > 0)
@@ -38,8 +46,8 @@ std::string findings_text(const render::Plan& before, const render::Plan& after)
   for (std::size_t i = 0; i < after.items.size(); ++i) {
     const render::PlanItem& item = after.items[i];
     if (!std::isnan(before.items[i].de00_p95) || std::isnan(item.de00_p95)) continue;
-    text +=
-        fmt::format("{:<13} {:>14} {}  {}\n", item.effect, known(item.de00_p95), spelled(item.decision), item.reason);
+    text += fmt::format("{:<20} {:>14} {}  {}\n", label_of(item.effect), known(item.de00_p95), spelled(item.decision),
+                        item.reason);
   }
   return text.empty() ? "" : "the first pass found\n" + text;
 }

@@ -216,7 +216,7 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   [ "$(jq -r "$satin | .decision" r.json)" = dropped ]
   jq -e "$satin | .de00_p95 == null and .truth_de00_p95 > 1" r.json
   jq -e '.results.error.prefilter < 0.5' r.json
-  run render-osmesa -q $scene --effects auto,-stretch -o round.exr --report round.json
+  run render-osmesa -q $scene --effects auto,-satin -o round.exr --report round.json
   [ "$status" -le 1 ]
   jq -e '.results.error.prefilter > 1' round.json
   render-osmesa -q $scene --effects auto,-rays --engine integral -o facets.exr --report i.json

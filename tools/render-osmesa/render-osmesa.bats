@@ -118,7 +118,7 @@ near() {
   [ -e sweep-0002.exr ]
   rm -f out.exr
   refused 2 'there is nothing to draw: give --mesh, or --gbuffer' $light
-  for both in "--mesh panels.obj" "--size 32x32" "--camera 0,0,4,0,0,0" "--orbit 0,0" "--fov 20" "--turntable 2" "--texture a=b.exr"; do
+  for both in "--mesh panels.obj" "--size 32x32" "--camera 0,0,4,0,0,0" "--camera 0,0" "--turntable 2" "--texture a=b.exr"; do
     run render-osmesa --gbuffer direct.exr $light $both -o out.exr
     [ "$status" -eq 2 ]
     [[ "$output" =~ "--gbuffer and ${both%% *} exclude each other" ]]
@@ -175,7 +175,7 @@ near() {
 }
 
 @test "a camera inside the mesh, or looking elsewhere, is told" {
-  run render-osmesa --mesh "$shape" $light $small --orbit 0,0,0.01 -o out.exr
+  run render-osmesa --mesh "$shape" $light $small --camera 0,0,0.01 -o out.exr
   [ "$status" -eq 0 ]
   [[ "$output" =~ "the camera is inside the mesh" ]]
   run render-osmesa --mesh panels.obj $light $small --camera 0,0,4,0,0,9 -o out.exr
@@ -202,7 +202,6 @@ refused() {
   render-osmesa -q --size 32x32 --mesh panels.obj $light -p paints.xml#red --part 'middle=paints.xml#gr*' -o one.exr
   refused 2 'holds 4 paints: write paints.xml#NAME' --mesh panels.obj $light -p paints.xml
   refused 2 'write PART=FILE.xml#PAINT' --mesh panels.obj $light --part paints.xml
-  refused 3 '"bare" has no lobes: give --basis BASIS.xml to fit it here, or fit it first, as in `fit-paint paints.xml' --mesh panels.obj $light -p paints.xml#bare
   refused 3 'nowhere.xml' --mesh panels.obj $light -p nowhere.xml#red
 }
 
@@ -219,7 +218,7 @@ refused() {
   refused 2 '--light is "0,0,0": the vector to the light has no length' --mesh panels.obj --light 0,0,0
   refused 2 '--light is "0,0,1,-1,1,1": light cannot be negative' --mesh panels.obj --light 0,0,1,-1,1,1
   refused 2 '--samples is 8: give 1, 4 or 16' --mesh panels.obj $light --samples 8
-  refused 2 '--orbit has the elevation 95' --mesh panels.obj $light --orbit 0,95
+  refused 2 '--camera has the elevation 95' --mesh panels.obj $light --camera 0,95
   refused 2 '--camera has 5 numbers' --mesh panels.obj $light --camera 1,2,3,4,5
   refused 2 "eye and target are the same point" --mesh panels.obj $light --camera 1,2,3,1,2,3
   refused 2 '--background is "blue": write none, env or R,G,B' --mesh panels.obj $light --background blue
@@ -292,8 +291,13 @@ XML
   oiiotool --stats all.exr | awk '/Stats Max/ { exit !($3 > 1e-4) }'
 }
 
-@test "--budget is gone, and names what to use instead" {
+@test "options that are gone name what to use instead" {
   refused 2 '--budget is gone: what lobes and look-ups may leave out is said by --tolerance' --mesh "$shape" $light --budget 5
+  refused 2 '--orbit is gone: give the same numbers to --camera' --mesh "$shape" $light --orbit 30,20
+  refused 2 '--fov is gone: write it behind the camera' --mesh "$shape" $light --fov 20
+  refused 2 '--eye-height is gone: write it behind the floor' --mesh "$shape" $light --eye-height 1.5
+  refused 2 '--gpu is gone: give --engine gpu' --mesh "$shape" $light --gpu
+  refused 2 '--check-against is gone: write it behind the number of pixels' --mesh "$shape" $light --check-against truth
   refused 2 '--budget is gone' --mesh "$shape" $light --budget=5
   refused 2 '--budget is gone' --mesh "$shape" $light --budget
 }
@@ -399,4 +403,26 @@ XML
   run --separate-stderr render-osmesa $view --paint paints.xml#red --light place:0,1,1@0 --engine integral -o none.exr
   [ "$status" -eq 2 ]
   [[ "$stderr" == *"take cpu, gl or path"* ]]
+}
+
+@test "words of effects that are gone name what to write instead" {
+  for word in spots:horizon anisotropy:brushed stretch:satin tilts-2:travel texture-lobes:texture self:rays bounce:--bounces \
+    floor:'--floor none' panes:PART=glass extent:@0; do
+    refused 2 "--effects names \"${word%%:*}\", which is gone" --mesh "$shape" $light --effects "auto,-${word%%:*}"
+    [[ "$output" == *"${word#*:}"* ]]
+  done
+}
+
+@test "cameras and checks that cannot be are refused, and numbers of a camera say which it is" {
+  refused 2 'field of view 151' --mesh "$shape" $light --camera 35,12,1,151
+  refused 2 '--camera has 1 numbers' --mesh "$shape" $light --camera 35
+  refused 2 '--check is "ten"' --mesh "$shape" $light --check ten
+  refused 2 '--check is "10,truths"' --mesh "$shape" $light --check 10,truths
+  refused 2 'eye= goes behind shadow' --mesh "$shape" $light --floor none,eye=2
+  # 30 degrees are the field of view where none is said.
+  render-osmesa -q --mesh "$shape" $light $small --camera 40,15 -o usual.exr
+  render-osmesa -q --mesh "$shape" $light $small --camera 40,15,1,30 -o told.exr
+  render-osmesa -q --mesh "$shape" $light $small --camera 40,15,1,60 -o wide.exr
+  oiiotool usual.exr told.exr --diff
+  ! oiiotool usual.exr wide.exr --diff
 }

@@ -28,17 +28,6 @@ Result<void> take_transport(const Options& options, Request& request) {
 
 }  // namespace
 
-Result<Options> with_engine_of_gpu(const Options& options) {
-  if (!options.gpu) return options;
-  const auto able = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->needs_opengl; });
-  Options with = options;
-  with.engine = (*able)->name;
-  if (options.engine != "auto" && options.engine != with.engine)
-    return usage_error("--engine {} draws on the processor: leave out --gpu, or take --engine {}", options.engine,
-                       with.engine);
-  return with;
-}
-
 Result<Request> request_of(const Options& options) {
   Request request;
   GONIO_TRY(check_surfaces(options));
@@ -69,13 +58,7 @@ Result<Request> request_of(const Options& options) {
   request.plan.effects = options.effects;
   request.samples = options.samples > 0 ? options.samples : options.gbuffer.empty() ? 4 : 1;
   request.plan.samples = request.samples;
-  const std::optional<bool> floor_forced = render::floor_forced(options.effects);
-  const std::string floor = options.floor != "auto" || !floor_forced ? options.floor
-                            : *floor_forced                          ? "shadow"
-                                                                     : "none";
-  if (floor_forced && *floor_forced == (floor == "none"))
-    return usage_error("--effects and --floor {} exclude each other: leave one of them out", options.floor);
-  GONIO_ASSIGN(const FloorRequest named, parse_floor(floor, false));
+  GONIO_ASSIGN(const FloorRequest named, parse_floor(options.floor, false));
   const bool has_floor = named.kind != FloorRequest::Kind::kNone;
   const bool places = std::ranges::any_of(request.lights, [](const render::Light& l) { return l.place.has_value(); });
   // Only one engine has parts that shine, floors that wear a paint, and floors where no effects of rays are drawn. It
@@ -94,7 +77,8 @@ Result<Request> request_of(const Options& options) {
     request.plan.engine = engine;
   }
   const bool traces = request.engine != nullptr && request.engine->traces_rays;
-  GONIO_ASSIGN(request.floor, parse_floor(floor, options.background == "env" && (traces || !options.env.empty())));
+  GONIO_ASSIGN(request.floor,
+               parse_floor(options.floor, options.background == "env" && (traces || !options.env.empty())));
   request.floor_named = has_floor;
   if (wants_rays && !traces)
     return usage_error("--engine {} draws neither parts that shine nor {}: leave out --{}, or take --engine path",

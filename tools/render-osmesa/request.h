@@ -34,9 +34,6 @@ struct Request {
   std::vector<Emission> emissions;
 };
 
-// The options with the engine that --gpu calls for. Error (usage): another one is asked for by name.
-Result<Options> with_engine_of_gpu(const Options& options);
-
 // Error (usage): values and combinations of options that cannot be.
 Result<Request> request_of(const Options& options);
 

@@ -15,6 +15,7 @@
 #include "plan_text.h"
 #include "render/aov.h"
 #include "render/left_out.h"
+#include "settled.h"
 #include "sight.h"
 #include "stage.h"
 #include "stream.h"
@@ -409,7 +410,7 @@ Result<cli::Verdict> Shooting::check_picture() {
 
 Result<cli::Verdict> run(const Options& asked, cli::Session& session) {
   GONIO_TRY(FileNames::check(asked.output, {"name", "code", "index"}, "--output"));
-  GONIO_ASSIGN(const Options drawn, with_engine_of_gpu(asked));
+  GONIO_ASSIGN(const Options drawn, settled(asked));
   GONIO_ASSIGN(const Options options, is_stream(drawn) ? stream_options(drawn) : Result<Options>(drawn));
   GONIO_ASSIGN(Request request, request_of(options));
   std::optional<display::Display> display;

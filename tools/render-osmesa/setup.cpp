@@ -35,9 +35,10 @@ Result<void> check_surfaces(const Options& options) {
   if (options.gbuffer.empty()) return {};
   const Options usual;
   const std::pair<const char*, bool> given[] = {
-      {"mesh", !options.mesh.empty()},           {"size", options.size != usual.size},
-      {"orbit", options.orbit != usual.orbit},   {"camera", !options.camera.empty()},
-      {"fov", options.fov_deg != usual.fov_deg}, {"turntable", options.turntable > 0},
+      {"mesh", !options.mesh.empty()},
+      {"size", options.size != usual.size},
+      {"camera", !options.camera.empty() || options.orbit != usual.camera || options.fov_deg != usual.fov_deg},
+      {"turntable", options.turntable > 0},
       {"texture", !options.textures.empty()}};
   for (const auto& [name, is_given] : given) {
     if (is_given)
@@ -129,24 +130,17 @@ Result<void> stand_lamps(const mesh::Mesh& mesh, std::vector<render::Light>& lig
 Result<render::Camera> camera_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size) {
   const std::vector<double>& c = options.camera;
   if (!c.empty()) {
-    if (c.size() != 6 && c.size() != 7) {
-      return usage_error("--camera has {} numbers: write EX,EY,EZ,TX,TY,TZ and, if wanted, the field of view",
-                         c.size());
-    }
     render::Camera camera;
     camera.eye = {c[0], c[1], c[2]};
     camera.target = {c[3], c[4], c[5]};
-    camera.fov_deg = c.size() == 7 ? c[6] : options.fov_deg;
+    camera.fov_deg = options.fov_deg;
     return camera;
   }
   const std::vector<double>& o = options.orbit;
   const double distance = o.size() == 3 ? o[2] : 1;
-  if (o.size() != 2 && o.size() != 3) {
-    return usage_error("--orbit has {} numbers: write AZIMUTH,ELEVATION and, if wanted, the distance", o.size());
-  }
   if (std::abs(o[1]) > 90)
-    return usage_error("--orbit has the elevation {}: it goes from -90 to 90 degrees", shortest(o[1]));
-  if (!(distance > 0)) return usage_error("--orbit has the distance {}: it must be above 0", shortest(distance));
+    return usage_error("--camera has the elevation {}: it goes from -90 to 90 degrees", shortest(o[1]));
+  if (!(distance > 0)) return usage_error("--camera has the distance {}: it must be above 0", shortest(distance));
   return render::Camera::orbit(mesh, o[0], o[1], distance, options.fov_deg,
                                static_cast<double>(size.width) / size.height);
 }
@@ -154,11 +148,22 @@ Result<render::Camera> camera_of(const Options& options, const mesh::Mesh& mesh,
 Result<FloorRequest> parse_floor(const std::string& text, bool usual) {
   FloorRequest request;
   std::string what = text;
-  if (const auto comma = text.rfind(','); comma != std::string::npos) {
-    request.height = parse_number(trimmed(text.substr(comma + 1)));
+  constexpr std::string_view kEye = ",eye=";
+  if (const auto at = what.rfind(kEye); at != std::string::npos) {
+    const auto eye = parse_number(trimmed(what.substr(at + kEye.size())));
+    what.resize(at);
+    if (!eye || !(*eye > 0) || what.substr(0, what.find(',')) != "shadow")
+      return usage_error(
+          "--floor is \"{}\": eye= goes behind shadow, with the height above the floor that the environment was seen "
+          "from, as in shadow,eye=1.5",
+          text);
+    request.eye = *eye;
+  }
+  if (const auto comma = what.rfind(','); comma != std::string::npos) {
+    request.height = parse_number(trimmed(what.substr(comma + 1)));
     if (!request.height)
       return usage_error("--floor is \"{}\": after the comma write the height of the floor, a number", text);
-    what = text.substr(0, comma);
+    what.resize(comma);
   }
   if (what == "auto" && !request.height) {
     request.kind = usual ? FloorRequest::Kind::kShadow : FloorRequest::Kind::kNone;
@@ -198,7 +203,7 @@ Result<std::vector<Emission>> parse_emissions(const std::vector<std::string>& te
   return all;
 }
 
-Result<void> set_ground(const FloorRequest& request, const Options& options, render::Scene& scene) {
+Result<void> set_ground(const FloorRequest& request, const std::optional<paint::Paint>& paint, render::Scene& scene) {
   if (request.kind == FloorRequest::Kind::kNone) return {};
   const mesh::Box box = mesh::bounding_box(*scene.mesh);
   const Vec3 size = box.high - box.low, middle = 0.5 * (box.low + box.high);
@@ -206,11 +211,10 @@ Result<void> set_ground(const FloorRequest& request, const Options& options, ren
   ground.height = request.height.value_or(box.low.y);
   if (request.kind == FloorRequest::Kind::kPaint) {
     ground.kind = render::Ground::Kind::kPaint;
-    GONIO_ASSIGN(const paint::Paint paint, paint_named(request.paint, options));
-    ground.paint = *paint.lobes;
+    ground.paint = *paint->lobes;
   } else {
     if (scene.env == nullptr) return usage_error("--floor shadow shows the ground of an environment: give --env");
-    const double eye = options.eye_height > 0 ? options.eye_height : std::max({size.x, size.y, size.z}) / 3;
+    const double eye = request.eye > 0 ? request.eye : std::max({size.x, size.y, size.z}) / 3;
     ground.probe_eye = {middle.x, ground.height + eye, middle.z};
   }
   scene.ground = std::move(ground);

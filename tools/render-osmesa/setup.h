@@ -31,14 +31,15 @@ Result<render::Light> parse_light(const std::string& text, std::optional<color::
 // lamp stands there.
 Result<void> stand_lamps(const mesh::Mesh& mesh, std::vector<render::Light>& lights);
 
-// --camera or --orbit.
+// --camera, which is settled.
 Result<render::Camera> camera_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size);
 
-// What --emit, --floor and --eye-height say, before the mesh is read.
+// What --emit and --floor say, before the mesh is read.
 struct FloorRequest {
   enum class Kind { kNone, kShadow, kPaint } kind = Kind::kNone;
   std::string paint;             // with kPaint
   std::optional<double> height;  // none: the lowest point of the mesh
+  double eye = 0;                // above the floor, that the environment was seen from; 0: a third of the mesh
 };
 // "auto" is the floor shadow where `usual`, else none.
 Result<FloorRequest> parse_floor(const std::string& text, bool usual);
@@ -49,8 +50,8 @@ struct Emission {
 };
 Result<std::vector<Emission>> parse_emissions(const std::vector<std::string>& texts);
 
-// The floor of the scene, whose mesh is set.
-Result<void> set_ground(const FloorRequest& request, const Options& options, render::Scene& scene);
+// The floor of the scene, whose mesh is set. `paint` is that of the floor, if it wears one.
+Result<void> set_ground(const FloorRequest& request, const std::optional<paint::Paint>& paint, render::Scene& scene);
 
 // One picture of a sequence.
 struct Shot {

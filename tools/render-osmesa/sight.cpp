@@ -64,7 +64,7 @@ void tell_visibility(const render::Gbuffer& gbuffer, const mesh::Mesh& mesh, cli
                              count == 1 ? "its" : "their"));
   }
   if (seen == 0) {
-    session.warn("the mesh is not in the picture: check --camera or --orbit");
+    session.warn("the mesh is not in the picture: check --camera");
   } else if (2 * from_inside > seen) {
     session.warn(
         fmt::format("{} % of what is seen are back sides: the camera is inside the mesh, or its faces are turned",

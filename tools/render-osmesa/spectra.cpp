@@ -130,8 +130,7 @@ class Gathering {
       lacks.emplace_back("the floor shows the environment");
       return {};
     }
-    GONIO_ASSIGN(const paint::Paint paint, paint_named(request_.floor.paint, options_));
-    auto lobes = brdf::band_lobes(paint, spectra.eye);
+    auto lobes = brdf::band_lobes(*stage_.floor_paint, spectra.eye);
     if (!lobes.ok()) {
       lacks.push_back(fmt::format("the paint of the floor: {}", lobes.error().message));
       return {};

@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <functional>
 
 #include "base/paths.h"
 #include "base/text.h"
-#include "envmap/open_maps.h"
+#include "environment.h"
 #include "image/aov_file.h"
 #include "image/image.h"
 #include "mesh/unit.h"
-#include "prefilter/lobe_tree.h"
 #include "render/aov.h"
 #include "render/panes.h"
 #include "render/trim.h"
@@ -100,55 +97,6 @@ void tell_parts(const mesh::Mesh& mesh, const DressedMesh& dress, bool streamed,
                            dress.unpainted.size() > 6 ? ", ..." : ""));
 }
 
-// Whether the image holds the light of the environment, which may have been turned, brightened or cut since: their
-// irradiance agrees about the middle of each face.
-bool is_same_light(const envmap::Environment& image, const envmap::PrefilteredEnvironment& env) {
-  constexpr double kApart = 0.03;  // of the largest; the tolerance of the diffuse map is at most a tenth in use
-  const envmap::CubeMap& map = env.diffuse.map;
-  if (map.size == 0) return true;  // nothing to tell by
-  const prefilter::LobeTree exact(image);
-  const int middle = map.size / 2;
-  double largest = 0, apart = 0;
-  for (int face = 0; face < 6; ++face) {
-    const Vec3 truth = exact.lobe(envmap::cube_direction(face, middle + 0.5, middle + 0.5, map.size), 1, 1e-3);
-    for (int c = 0; c < 3; ++c) {
-      largest = std::max(largest, truth[c]);
-      apart = std::max(apart, std::abs(truth[c] - map.at(face, middle, middle)[c]));
-    }
-  }
-  return apart <= (kApart + env.diffuse.tolerance) * largest;
-}
-
-// The image that the environment was made from: as named, or beside the environment, if
-// it holds the same light; else its mirror part.
-Result<Source> source_of(const Options& options, const render::Scene& scene, cli::Session& session) {
-  if (scene.env == nullptr) return Source{};
-  std::vector<std::string> candidates = {options.check_source};
-  if (options.check_source.empty()) {
-    candidates = {scene.env->source, (std::filesystem::path(options.env).parent_path() / scene.env->source).string()};
-  }
-  std::string missing = "is not there";
-  for (const std::string& path : candidates) {
-    const bool is_pattern = path.find("{face}") != std::string::npos;
-    const bool there = is_pattern ? envmap::face_paths(path).ok() : is_plain_file(image::image_file(path));
-    if (!there && options.check_source.empty()) continue;
-    GONIO_ASSIGN(envmap::Environment environment,
-                 envmap::Environment::read(path, envmap::Environment::BadPixels::kZero));
-    if (is_same_light(environment, *scene.env)) return Source{std::move(environment), path};
-    missing = "is turned, brightened or cut there";
-    break;
-  }
-  if (scene.env->mirror.map.size == 0) {
-    return input_error(
-        "{}: its source \"{}\" {}, and it has no mirror part: name the image by --check-source, or make it with a "
-        "mirror",
-        options.env, scene.env->source, missing);
-  }
-  session.warn(fmt::format("the source \"{}\" of {} {}: its mirror part takes its place", scene.env->source,
-                           options.env, missing));
-  return Source{envmap::Environment::from_cube(scene.env->mirror.map, options.env), options.env + " (mirror part)"};
-}
-
 Result<void> dress_stage(const Options& options, Stage& stage) {
   if (options.split.empty()) {
     // A transport has the light that mirrors show of its own environment.
@@ -204,33 +152,12 @@ Result<void> set_gbuffer(const Options& options, const Request& request, Stage& 
   return check_samples(options, request, stage);
 }
 
-bool sums_are_asked_for(const Options& options) {
-  return render::sums_forced(options.effects).value_or(false);
-}
-
-// Whether a map of the environment is looked up by one picture of these paints, by its exponent; null where all may be.
-std::function<bool(double)> looked_up_maps(const Options& options, const Request& request, const Stage& stage) {
-  const bool sums = request.engine != nullptr && (request.engine->needs_texels || request.engine->traces_rays);
-  if (is_stream(options) || !options.textures.empty() || options.check > 0 || request.transport || sums) return {};
-  std::vector<paint::LobeFit> paints;
-  for (const DressedMesh& dress : stage.dresses) paints.insert(paints.end(), dress.paints.begin(), dress.paints.end());
-  if (std::ranges::any_of(paints, [](const paint::LobeFit& paint) { return !paint.tilts.empty(); })) return {};
-  const bool rays = options.gbuffer.empty() && !render::leave_out_rays(options.effects);
-  const bool mirror = rays || sums_are_asked_for(options) || render::has_mirror(paints) || options.background == "env";
-  return [mirror, exponents = render::lobe_exponents(paints)](double exponent) {
-    if (paint::is_mirror(exponent)) return mirror;
-    // A file holds exponents as floats.
-    return std::ranges::any_of(exponents, [&](double of) { return std::abs(of - exponent) <= 1e-6 * of; });
-  };
-}
-
 // The floor of a picture by an engine with prefiltered maps.
-Result<void> set_laid_floor(const Options& options, const Request& request, const render::Scene& scene,
-                            render::RaySetup& rays) {
+Result<void> set_laid_floor(const Request& request, const Stage& stage, render::RaySetup& rays) {
   rays.no_floor = "no floor is asked for: --floor shadow has one, and --background env calls for it";
   if (request.floor.kind == FloorRequest::Kind::kNone) return {};
-  render::Scene over = scene;
-  GONIO_TRY(set_ground(request.floor, options, over));
+  render::Scene over = stage.scene;
+  GONIO_TRY(set_ground(request.floor, stage.floor_paint, over));
   rays.floor = over.ground, rays.floor_forced = request.floor_named;
   if (!rays.absent.empty() && request.floor_named)
     return usage_error("--floor shadow is drawn by rays, and there are none: {}", rays.absent);
@@ -269,11 +196,11 @@ Result<void> set_rays(const Options& options, const Request& request, Stage& sta
         "the environment has no mirror part, which rays would meet: make it without --no-mirror. What the mesh does "
         "to light is not known, nor what that is worth";
   }
-  if (mirrored && (rays.absent.empty() || sums_are_asked_for(options))) {
+  if (mirrored && (rays.absent.empty() || render::sums_forced(options.effects).value_or(false))) {
     stage.sky.emplace(envmap::Environment::from_cube(stage.env.mirror.map, options.env));
     rays.environment = &*stage.sky;
   }
-  return set_laid_floor(options, request, stage.scene, rays);
+  return set_laid_floor(request, stage, rays);
 }
 
 }  // namespace
@@ -302,6 +229,10 @@ Result<void> set_stage(const Options& options, Request& request, Stage& stage, c
   if (is_stream(options)) base.paint.clear();  // its paints come one by one
   GONIO_TRY(dress_stage(base, stage));
   if (options.trim) tell_trim(stage.mesh, stage.dresses.front(), session);
+  for (const DressedMesh& dress : stage.dresses) {
+    for (const std::string& remark : dress.remarks) session.warn(remark);
+    for (const std::string& line : dress.fitted) session.say(line);
+  }
   tell_parts(stage.mesh, stage.dresses.front(), is_stream(options), session);
   render::Scene& scene = stage.scene;
   scene.mesh = &stage.mesh;
@@ -313,8 +244,7 @@ Result<void> set_stage(const Options& options, Request& request, Stage& stage, c
   }
   scene.reflection = request.reflection;
   if (!options.env.empty()) {
-    GONIO_ASSIGN(stage.env, envmap::read_env(options.env, looked_up_maps(options, request, stage)));
-    envmap::keep_open_maps(stage.env);  // those that the file lacks
+    GONIO_ASSIGN(stage.env, environment_of(options, request, stage, session));
     scene.env = &stage.env;
     if (options.texture_maps == "mip" && !options.textures.empty()) {
       GONIO_ASSIGN(stage.mip, render::mip_cube(stage.env));
@@ -323,13 +253,17 @@ Result<void> set_stage(const Options& options, Request& request, Stage& stage, c
   wear(stage.dresses.front(), options, stage);
   if (render::has_panes(scene) && !options.gbuffer.empty())
     return usage_error("--part dresses a part in glass, and --gbuffer does not hold what lies behind it: give --mesh");
+  if (request.floor.kind == FloorRequest::Kind::kPaint) {
+    GONIO_ASSIGN(stage.floor_paint, paint_named(request.floor.paint, options, session));
+  }
   GONIO_TRY(set_rays(options, request, stage));
   const bool summed = request.engine != nullptr && request.engine->needs_texels;
   if (options.check > 0 || summed || request.transport) {
     GONIO_ASSIGN(stage.source, source_of(options, scene, session));
   }
   if (summed && stage.source.environment) scene.texels = &stage.texels.emplace(*stage.source.environment);
-  if (request.engine != nullptr && request.engine->traces_rays) GONIO_TRY(set_ground(request.floor, options, scene));
+  if (request.engine != nullptr && request.engine->traces_rays)
+    GONIO_TRY(set_ground(request.floor, stage.floor_paint, scene));
   GONIO_ASSIGN(scene.emission, emission_of(stage.mesh, request.emissions));
   for (std::size_t part = 0; part < scene.emission.size(); ++part)
     if (render::is_pane(scene, part) && !(scene.emission[part] == color::Rgb{}))

@@ -32,6 +32,7 @@ struct Stage {
   std::shared_ptr<const render::Gbuffer> gbuffer;  // of --gbuffer, or none
   std::optional<KeptTransport> transport;          // of --gbuffer, or none
   std::vector<DressedMesh> dresses;                // one, or those of --split
+  std::optional<paint::Paint> floor_paint;         // of a floor that wears one
   envmap::PrefilteredEnvironment env;
   render::Scene scene;
   std::optional<render::MipCube> mip;

@@ -62,7 +62,7 @@ size() { oiiotool --info "$1" | sed -E 's/.*: +([0-9]+) x +([0-9]+),.*/\1x\2/'; 
   done
 }
 
-@test "paints without lobes are fitted by --basis, as fit-paint would" {
+@test "paints without lobes are fitted to --basis, as fit-paint would" {
   render-osmesa -q $walls --paint "$library#candy*" --basis "$TESTDATA/b5.basis.xml" -o '{name}-here.exr'
   render-osmesa -q $walls --paint "$fitted#candy*" -o '{name}-before.exr'
   [ "$(oiiotool candy_red-here.exr candy_red-before.exr --diff | tail -1)" = PASS ]
@@ -72,7 +72,7 @@ size() { oiiotool --info "$1" | sed -E 's/.*: +([0-9]+) x +([0-9]+),.*/\1x\2/'; 
   [ "$(oiiotool one.exr two.exr --diff | tail -1)" = PASS ]
   run render-osmesa $walls --paint "$library#candy_red" -o none.exr
   [ "$status" -eq 3 ]
-  [[ "$output" =~ "has no lobes: give --basis BASIS.xml to fit it here" ]]
+  [[ "$output" =~ "the environment has no lobe of exponent 1.3" ]]
 }
 
 @test "paints that fail are told by name, and the others are drawn" {

@@ -65,6 +65,7 @@ class Streaming {
   std::size_t failed() const { return failed_; }
   std::size_t far_off() const { return far_off_; }
   const Times& times() const { return times_; }
+  std::vector<std::string> remarks() const { return source_.remarks(); }
   double shading_ms() const { return done_ > 0 ? shading_ms_ / static_cast<double>(done_) : 0; }
 
  private:
@@ -223,6 +224,7 @@ Result<cli::Verdict> draw_stream(const Options& options, const Request& request,
   const Stopwatch clock;
   Streaming streaming(options, std::move(source), *views, *sink, session);
   GONIO_TRY(streaming.draw_all());
+  for (const std::string& remark : streaming.remarks()) session.warn(remark);
   report(options, request, streaming, *views, *sink, clock.elapsed_s(), display, session);
   if (streaming.failed() > kWarningsShown)
     session.warn(fmt::format("{} more paints have no picture", streaming.failed() - kWarningsShown));

@@ -26,7 +26,7 @@ texel() {
 
 draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimuth
   # shellcheck disable=SC2086
-  render-osmesa -q --mesh "$2" --texture "$3" ${lit/0,30/$azimuth,30} --orbit "$azimuth,0,0.9" --report "$1.json" -o "$1.exr"
+  render-osmesa -q --mesh "$2" --texture "$3" ${lit/0,30/$azimuth,30} --camera "$azimuth,0,0.9" --report "$1.json" -o "$1.exr"
 }
 
 @test "a mesh with texture coordinates uses them, and the report says so" {
@@ -40,7 +40,7 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
 
 @test "a mesh without texture coordinates gets a box, which is told" {
   # shellcheck disable=SC2086
-  run render-osmesa --mesh cube.obj --texture Cube=four.sbrdf.exr $lit --orbit 0,0,0.9 --report box.json --explain -o box.exr
+  run render-osmesa --mesh cube.obj --texture Cube=four.sbrdf.exr $lit --camera 0,0,0.9 --report box.json --explain -o box.exr
   [ "$status" -eq 0 ]
   [[ "$output" == *"Cube has no texture coordinates: its texture is projected by a box"* ]]
   [[ "$output" == *"four.sbrdf.exr on Cube: projected by box, 2 units of the mesh wide"* ]]
@@ -60,7 +60,7 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
   paint-sbrdf -q four.ppm --tile 8x8 -o many.sbrdf.exr
   floor() { # floor NAME EFFECTS ENGINE
     render-osmesa -q --mesh square.obj --texture 'Square=many.sbrdf.exr*20' --light 0,30@0 --size 48x48 --samples 1 \
-      --orbit 0,10,1 --effects "$2" --engine "$3" --report "$1.json" -o "$1.exr"
+      --camera 0,10,1 --effects "$2" --engine "$3" --report "$1.json" -o "$1.exr"
   }
   floor with auto,-rays cpu
   floor without auto,-rays,-texture-filter cpu
@@ -116,7 +116,7 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
   oiiotool along.sbrdf.exr askew.sbrdf.exr --add --mulc 0.5 -o averaged.sbrdf.exr
   shown() { # shown NAME ENGINE
     # shellcheck disable=SC2086
-    render-osmesa -q --mesh square.obj --texture "Square=$1.sbrdf.exr" $lit --light 40,50@1 --orbit 25,35,0.9 \
+    render-osmesa -q --mesh square.obj --texture "Square=$1.sbrdf.exr" $lit --light 40,50@1 --camera 25,35,0.9 \
       --engine "$2" -o shown.exr
     oiiotool shown.exr --ch R,G,B -o "$1-$2.exr"
   }
@@ -142,7 +142,7 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
   for engine in cpu gl integral path; do
     # shellcheck disable=SC2086
     render-osmesa -q --mesh square.obj --paint p.xml --texture Square=red.sbrdf.exr,project=decal,axis=z \
-      --texture Square=green.sbrdf.exr,project=decal,axis=z $lit --orbit 0,0,0.9 --engine $engine -o $engine.exr
+      --texture Square=green.sbrdf.exr,project=decal,axis=z $lit --camera 0,0,0.9 --engine $engine -o $engine.exr
     [ "$(texel $engine.exr 11 11) $(texel $engine.exr 20 11) $(texel $engine.exr 11 20) $(texel $engine.exr 20 20)" = "green red green blue" ] ||
       [ "$(texel $engine.exr 11 11) $(texel $engine.exr 20 11) $(texel $engine.exr 11 20) $(texel $engine.exr 20 20)" = "red green blue green" ] ||
       { echo "$engine: $(texel $engine.exr 11 11) $(texel $engine.exr 20 11) $(texel $engine.exr 11 20) $(texel $engine.exr 20 20)"; false; }
@@ -151,12 +151,12 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
   # The other way round, red lies over green.
   # shellcheck disable=SC2086
   render-osmesa -q --mesh square.obj --paint p.xml --texture Square=green.sbrdf.exr,project=decal,axis=z \
-    --texture Square=red.sbrdf.exr,project=decal,axis=z $lit --orbit 0,0,0.9 --report r.json -o turned.exr
+    --texture Square=red.sbrdf.exr,project=decal,axis=z $lit --camera 0,0,0.9 --report r.json -o turned.exr
   [ "$(texel turned.exr 11 11) $(texel turned.exr 20 11)" = "red red" ]
   [ "$(jq -r '.results.parts[0].paint' r.json)" = blue ]
   # The mean texels are seen through as well.
   # shellcheck disable=SC2086
-  render-osmesa -q --mesh square.obj --paint p.xml --texture Square=red.sbrdf.exr ${lit/auto/auto,-texture} --orbit 0,0,0.9 -o mean.exr
+  render-osmesa -q --mesh square.obj --paint p.xml --texture Square=red.sbrdf.exr ${lit/auto/auto,-texture} --camera 0,0,0.9 -o mean.exr
   oiiotool --dumpdata:empty=0 mean.exr | awk '/Pixel \(16, 16\)/ { exit !($(NF-3) > 0.05 && $(NF-1) > 0.05) }'
   run render-osmesa --mesh square.obj --part Square=glass --texture Square=red.sbrdf.exr $lit -o none.exr
   [ "$status" -eq 2 ] && [[ "$output" == *"glass, which has no place for a texture"* ]] && [ ! -e none.exr ]

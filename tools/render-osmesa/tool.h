@@ -17,19 +17,15 @@ struct Options {
   std::vector<std::string> parts, lights, emissions;
   std::string floor = "auto";
   bool trim = false;
-  double eye_height = 0;
   int bounces = render::Effort::kUsualBounces;
   std::string size = "auto";
-  std::vector<double> orbit = {35, 12};
-  std::vector<double> camera;
-  double fov_deg = 30;
+  std::vector<double> camera = {35, 12};  // settled: empty, or six numbers of places
   int samples = 0;
   std::string exposure = "auto";
   std::string view;
   std::string background = "none";
   std::vector<std::string> aovs;
   std::string effects = "auto", engine = "auto";
-  bool gpu = false;
   bool rays_are_refused = false;  // whether --effects says so, in a stream, whose effects are others
   std::string reflection = color::kDefaultOperator;
   std::string spectral = "auto";
@@ -39,8 +35,16 @@ struct Options {
   bool print_shader = false;
   std::vector<std::string> split;
   int turntable = 0, light_sweep = 0;
+  std::string check_text = "0";
+  bool no_cache = false;
+  std::string check_source;
+
+  // What settled() takes out of --camera, --check and --engine.
+  std::vector<double> orbit;
+  double fov_deg = 30;
   int check = 0;
-  std::string check_source, check_against = "auto";
+  std::string check_against = "auto";
+  bool gpu = false;
 };
 
 cli::ToolSpec tool_spec(Options& options);

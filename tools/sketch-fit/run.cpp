@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/text.h"
 #include "brdf/gloss.h"
+#include "formats/default_basis.h"
 #include "paint/curve.h"
 #include "paint_stream.h"
 #include "residual.h"
@@ -64,7 +65,7 @@ Result<void> check_light(const Options& options, const image::AovFile& buffers) 
 void warn_of_effects(const image::AovFile& buffers, bool found_views, cli::Session& session) {
   std::string unknown;
   for (const std::string& effect : sketch::effects_without_light(buffers))
-    if (!(effect == "travel" && found_views)) unknown += ",-" + effect;
+    if (!(effect == "travel" && found_views)) unknown += ",-" + (effect == "anisotropy" ? "brushed" : effect);
   if (!unknown.empty())
     session.warn(
         fmt::format("{} was drawn with effects that the search does not know, and the paint will be off: render "
@@ -164,9 +165,7 @@ Result<void> gather(const Options& options, Material& material) {
   }
   if (options.env.empty()) {
     input.least_cosine = 0.05, input.glare_deg = options.glare_deg;
-    material.basis = sketch::sketch_basis();
-    if (options.basis.empty()) return {};
-    GONIO_ASSIGN(material.basis, formats::read_basis(options.basis));
+    GONIO_ASSIGN(material.basis, formats::basis_or_default(options.basis));
     return {};
   }
   GONIO_ASSIGN(material.env, envmap::read_env(options.env));

@@ -161,8 +161,8 @@ Result<std::shared_ptr<const GlDriver>> egl_driver(bool on_gpu) {
   const auto none = [on_gpu](const std::string& why) {
     if (!on_gpu) return input_error("EGL has no software renderer: {}", why);
     return input_error(
-        "there is no GPU that OpenGL can draw on: {}: install libegl1 and the driver of the GPU with its EGL, or leave "
-        "out --gpu",
+        "there is no GPU that OpenGL can draw on: {}: install libegl1 and the driver of the GPU with its EGL, or take "
+        "another engine",
         why);
   };
   const Result<const Egl*> library = egl();

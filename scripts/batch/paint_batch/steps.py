@@ -28,7 +28,7 @@ def columns(plan):
 
 def frame_words(view, size):
     """The options of render-osmesa that the pictures of a scene have in common."""
-    return ["--orbit", view, "--size", size, "--background", "0.3,0.3,0.3"]
+    return ["--camera", view, "--size", size, "--background", "0.3,0.3,0.3"]
 
 
 def scene_name(source, mesh, view):

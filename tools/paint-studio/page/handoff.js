@@ -36,7 +36,8 @@ function editsOf(library, state, lines) {
 
 // The commands that make the paint of a state from its library, and fit it to the basis of the page.
 function commandOf(data, library, state, output = "design.paints.xml") {
-  const lines = [], edits = editsOf(library, state, lines), fit = `fit-paint --basis ${quoted(data.basis_file)}`;
+  const lines = [], edits = editsOf(library, state, lines);
+  const fit = data.basis_file ? `fit-paint --basis ${quoted(data.basis_file)}` : "fit-paint";
   if (state.steps.length === 0) lines.push(`${fit} ${edits[0]} -o ${quoted(output)}`);
   else lines.push([...edits, `${fit} -o ${quoted(output)}`].join(" |\n  "));
   return lines.join("\n");

@@ -1,0 +1,68 @@
+#include "settled.h"
+
+#include <algorithm>
+
+#include "base/text.h"
+#include "effect_words.h"
+#include "render/engine.h"
+
+namespace goniochrome::tool {
+
+namespace {
+
+// AZ,EL[,DIST[,FOV]] or six numbers of places[,FOV].
+Result<void> take_camera(Options& options) {
+  std::vector<double> numbers = options.camera;
+  options.camera.clear();
+  if (numbers.size() == 4 || numbers.size() == 7) {
+    constexpr double kLeast_deg = 1, kMost_deg = 150;
+    options.fov_deg = numbers.back();
+    if (!(options.fov_deg >= kLeast_deg && options.fov_deg <= kMost_deg))
+      return usage_error("--camera has the field of view {}: it goes from {} to {} degrees", shortest(options.fov_deg),
+                         kLeast_deg, kMost_deg);
+    numbers.pop_back();
+  }
+  if (numbers.size() == 6) {
+    options.camera = numbers;
+  } else if (numbers.size() == 2 || numbers.size() == 3) {
+    options.orbit = numbers;
+  } else {
+    return usage_error(
+        "--camera has {} numbers: write AZIMUTH,ELEVATION[,DISTANCE[,FOV]], or EX,EY,EZ,TX,TY,TZ[,FOV] for where it "
+        "stands and what it looks at",
+        numbers.size());
+  }
+  return {};
+}
+
+// N[,AGAINST].
+Result<void> take_check(Options& options) {
+  constexpr std::int64_t kMost = 100000000;
+  const auto pieces = split(options.check_text, ',');
+  const auto count = parse_integer(trimmed(pieces[0]));
+  const std::string against(pieces.size() > 1 ? trimmed(pieces[1]) : "auto");
+  const bool known = pieces.size() == 1 || (pieces.size() == 2 && (against == "truth" || against == "model"));
+  if (!count || *count < 0 || *count > kMost || !known)
+    return usage_error(
+        "--check is \"{}\": write how many pixels, 0 to {}, and after a comma truth or model, as in "
+        "100,model",
+        options.check_text, kMost);
+  options.check = static_cast<int>(*count), options.check_against = against;
+  return {};
+}
+
+}  // namespace
+
+Result<Options> settled(const Options& asked) {
+  Options options = asked;
+  GONIO_TRY(take_camera(options));
+  GONIO_TRY(take_check(options));
+  GONIO_ASSIGN(options.effects, effects_of_words(asked.effects));
+  if (asked.engine == kGpu) {
+    const auto able = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->needs_opengl; });
+    options.gpu = true, options.engine = (*able)->name;
+  }
+  return options;
+}
+
+}  // namespace goniochrome::tool
