@@ -205,7 +205,8 @@ class CgatsParser {
       if (field == "INSTRUMENT") columns_.instrument = i;
       if (field == "PAINT_CLASS") columns_.paint_class = i;
       if (field == "PAINT_CODE") columns_.code = i;
-      if (field == "DATE" || field == "DATETIME" || field == "MEASUREMENT_DATE" || field == "SAMPLE_DATE") columns_.date = i;
+      if (field == "DATE" || field == "DATETIME" || field == "MEASUREMENT_DATE" || field == "SAMPLE_DATE")
+        columns_.date = i;
       if (field == "GLOSS") columns_.gloss.push_back({60, i});
       if (field.starts_with("GLOSS_"))
         if (const auto angle = parse_number(field.substr(6))) columns_.gloss.push_back({*angle, i});

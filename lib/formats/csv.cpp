@@ -271,8 +271,8 @@ Result<paint::Paint> CsvPaintReader::State::described() const {
   return paint;
 }
 
-// Gives the paint of the first of its rows a name of its own. Paints of one name and several dates or codes have a number
-// behind it.
+// Gives the paint of the first of its rows a name of its own. Paints of one name and several dates or codes have a
+// number behind it.
 Result<void> CsvPaintReader::State::take_name(paint::Paint& paint) {
   const std::string stated = paint.name, date(text(header.column[kDate]));
   const bool is_told_apart = !date.empty() || !paint.code.empty();

@@ -163,7 +163,7 @@ std::vector<std::string> Remarks::lines() const {
 
 namespace {
 
-// Whether the words stand in the text, letters of either case, and not as a part of other words.
+// True where the words stand in the text, in letters of either case, and are no part of other words.
 bool has_words(std::string_view text, std::string_view words) {
   const std::string whole = lower(text), part = lower(words);
   const auto is_letter = [&](std::size_t at) {

@@ -8,7 +8,6 @@
 #include "base/result.h"
 #include "formats/cgats.h"
 #include "formats/imported.h"
-#include "formats/workbook.h"
 
 namespace goniochrome::formats {
 
@@ -18,6 +17,13 @@ struct Importer {
   bool (*looks)(std::string_view head);
   Result<ImportedPaints> (*read)(InputFile input, const ImportOptions& options);
 };
+
+// The workbooks (XLSX) of multi-angle instruments and their programs. Tables of colors and of spectra are found on all
+// sheets by their headings. A paint is a name and, where there is one, a date, and may stand on several sheets. Where a
+// geometry has a spectrum and no Lab, the Lab is integrated from it; where it has both and they disagree, the Lab is
+// taken and a remark tells by how much. Errors name file, sheet and row. goniochrome-paint(5), WORKBOOKS.
+bool looks_workbook(std::string_view head);
+Result<ImportedPaints> read_workbook(InputFile input, const ImportOptions& options);
 
 // QTX, the exchange format of color quality programs: a section for each standard and batch, whose spectrum is percent.
 // The viewing is stated in words. goniochrome-paint(5), FILES OF INSTRUMENTS; so are those below.

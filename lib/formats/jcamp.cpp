@@ -101,7 +101,7 @@ class JcampBlock {
   std::map<std::string, std::string, std::less<>> values_;
 };
 
-// What turns the abscissas of a unit into nanometers.
+// An abscissa of this unit in nanometers; nothing for other units.
 std::optional<double> nanometers(double x, const std::string& unit) {
   if (unit.find("NANOMETER") != std::string::npos || unit == "NM") return x;
   if (unit.find("MICROMETER") != std::string::npos || unit == "UM") return 1000 * x;

@@ -84,7 +84,7 @@ class MtfParser {
     return {};
   }
 
-  // What stands behind `key   :`.
+  // The value behind `key   :`.
   static std::optional<std::string_view> behind(std::string_view text, std::string_view key) {
     const std::size_t colon = text.find(':');
     if (!text.starts_with(key) || colon == std::string_view::npos) return std::nullopt;

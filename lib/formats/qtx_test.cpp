@@ -108,7 +108,7 @@ TEST_F(Qtx, RefusalsNameLineKeyAndRemedy) {
               HasSubstr("wavelengths lie from 300 to 1100 nm"));
   EXPECT_THAT(refusal("[STANDARD 0]\nSTD_R=1,2\nSTD_R=1,2\n"), HasSubstr(":3: STD_R stands in this section a second"));
   EXPECT_THAT(refusal("[STANDARD 0]\nSTD_R=1e9,2\n"), HasSubstr("which is no reflectance"));
-  // What is sound around it is read where that is wanted.
+  // Sound sections around it are read where that is wanted.
   ImportOptions options;
   options.keep_going = true;
   const auto rest = good("[BATCH 0]\nBAT_R=1\n" + whole, options);

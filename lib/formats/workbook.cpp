@@ -1,4 +1,4 @@
-#include "formats/workbook.h"
+#include "formats/importers.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "formats/workbook.h"
+#include "formats/importers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,7 +12,7 @@
 
 namespace goniochrome::formats::csv_for_test {
 
-// What the reader gave, without the folder in messages.
+// Paints and messages as the reader gave them, messages without the folder.
 struct Reading {
   std::vector<paint::Paint> paints;
   std::vector<int> lines;

@@ -64,7 +64,7 @@ class RecordImport {
   ImportedPaints result_;
 };
 
-// What `parse` makes of the name and the whole text of a file, which may be in UTF-8, UTF-16 or Windows-1252.
+// The paints that `parse` makes of the name and the whole text of a file, in UTF-8, UTF-16 or Windows-1252.
 template <class Parse>
 Result<ImportedPaints> import_text(InputFile input, Parse&& parse) {
   constexpr std::size_t kLargestFile = std::size_t{1} << 30;

@@ -52,7 +52,7 @@ class ScaleJudge {
   // was assumed. Error: the values make no sense on the scale that holds, or on neither scale, or on both.
   Result<double> unit(Scale stated, Scale option, Remarks& remarks);
 
-  // The same where `format` defines the scale, which holds as long as the values can be of it.
+  // A scale that `format` defines holds as long as the values can be of it.
   Result<double> unit_of_format(const std::string& format, Scale defined, Scale option, Remarks& remarks);
 
   // Error: factors that a file states by the value of white cannot be.
