@@ -65,7 +65,7 @@ void add_common_options(ToolSpec& spec, CommonOptions& common, const CommonTexts
     spec.option("time-limit", "S", "60", &common.time_limit_s,
                 "longest time for " + texts.time_limit + "; 0 is no limit")
         .from(0)
-        .more("After this time the best result so far is written and the exit status is 4.");
+        .more("After this time the best result so far is written and " + texts.stopped + ".");
   if (!texts.seed.empty())
     spec.option("seed", "N", "7", &common.seed, "number that starts the random choice of " + texts.seed)
         .from(0)

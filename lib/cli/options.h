@@ -99,6 +99,7 @@ struct CommonOptions {
 struct CommonTexts {
   bool explain = false;
   std::string time_limit = {};  // "the search"
+  std::string stopped = "the exit status is 4";  // once the time is over
   std::string seed = {};        // "the starting points of the search"
 };
 void add_common_options(ToolSpec& spec, CommonOptions& common, const CommonTexts& texts = {});

@@ -311,6 +311,7 @@ cli::ToolSpec tool_spec(Options& o) {
   cli::add_common_options(spec, o.common,
                           {.explain = true,
                            .time_limit = "each picture by the engine path, rays, and --aov transport",
+                           .stopped = "the exit status is 4 where --tolerance was given and not met",
                            .seed = "the pixels to check, and the samples of the engine path"});
   add_examples(spec);
   add_report(spec);

@@ -282,8 +282,7 @@ Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Disp
 void Shooting::tell_rays() {
   const render::CorrectionNoise& rays = frame_.rays;
   if (!plan_.effects.rays.any() || (rays.dark && !plan_.effects.rays.floor)) return;
-  const bool limited = session_.common().time_limit_s > 0;
-  stopped_ |= limited && !rays.reached;
+  stopped_ |= session_.common().tolerance_given && !rays.reached;
   session_.results()["rays"] = {{"noise_de00_p95", json_number(rays.de00_p95)},
                                 {"samples", rays.samples},
                                 {"free_share", rays.free_share},
@@ -306,7 +305,7 @@ void Shooting::tell_noise() {
   if (!frame_.noise) return;
   const render::Noise& noise = *frame_.noise;
   all_reached_ = all_reached_ && noise.reached;
-  stopped_ |= !noise.reached && plan_.effects.most_samples_in_all == 0;
+  stopped_ |= session_.common().tolerance_given && !noise.reached;
   Json& results = session_.results();
   results["noise_de00_p95"] = json_number(noise.de00_p95);
   results["noise_de00_mean"] = json_number(noise.de00_mean);
