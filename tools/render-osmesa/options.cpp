@@ -22,8 +22,7 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
               "mesh: OBJ or glTF 2.0 with parts, or OFF, PLY, STL")
       .more(
           "Each node of a glTF scene with a mesh is a part of its name, or else of that of the mesh. Nodes of one name "
-          "and material are one part; another material makes the part NAME.MATERIAL. Draco and meshoptimizer are "
-          "unpacked.");
+          "and material are one part; another material makes the part NAME.MATERIAL.");
   spec.option("gbuffer", "FILE", "view.exr", &o.gbuffer, "shade the buffers of an earlier picture instead of a mesh")
       .more(
           "View and size are those of the file:\n- Buffers of --aov normal,part are shaded in other paints or light, "
@@ -45,8 +44,7 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
   spec.flag("trim", &o.trim, "dress glass, tires, rims, seams and the underside instead of painting them")
       .more(
           "Words in the names of parts and materials tell them, or else glTF materials that transmit light, are "
-          "transparent or are polished metal. A line says what was recognized. --part goes before --trim, and --trim "
-          "before --paint.");
+          "transparent or are polished metal. --part goes before --trim, and --trim before --paint.");
   spec.option("split", "PAINT,PAINT", "a.xml#red,a.xml#blue", &o.split, "draw the halves of the picture in two paints");
   spec.option("texture", "PART=FILE[,WORD=VALUE]", "Hood=flakes.exr,project=decal,axis=y", &o.textures,
               "surface that varies over a part or material")
@@ -226,9 +224,6 @@ void add_examples(cli::ToolSpec& spec) {
        "fitted.xml#candy_red --part Glass=fitted.xml#silver_black_flop --light 30,50 --light -60,20,0.5,0.5,0.6 "
        "--samples 16 -o candy.png",
        "draw it in a fitted paint, and its windows in another one"},
-      {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --aov normal,part -o view.exr && render-osmesa "
-       "--gbuffer view.exr --light 30,50 --light-sweep 12 -o sweep.png",
-       "rasterize the mesh once, and move the light around it"},
       {"paint-edit testdata/paints.paints.xml#candy_red --variations face | render-osmesa --paint - --mesh "
        "testdata/speed-shape.obj --light 30,50 --size 320x180 --sheet 3x3 -o sheet.png",
        "show a paint among its eight variations on one sheet"},
@@ -297,8 +292,7 @@ cli::ToolSpec tool_spec(Options& o) {
                      .summary = "draw painted meshes under image light and directional lights"};
   spec.description = {
       "render-osmesa draws a mesh whose parts wear measured paints. The light is an image of an environment, or lamps, "
-      "or both. It needs neither a window nor a graphics card. The result is scene-linear radiance (OpenEXR, linear "
-      "Rec.2020) or a display picture (PNG).",
+      "or both. The result is scene-linear radiance (OpenEXR, linear Rec.2020) or a display picture (PNG).",
       "A part without a paint is matt gray of 18 %, and a warning says so. World axes are those of the environment: +Y "
       "is up, and the azimuth is 0 at +Z and grows toward +X."};
   add_surfaces(spec, o);
