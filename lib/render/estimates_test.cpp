@@ -2,6 +2,9 @@
 // effect in a scene where it matters, in light that changes fast.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
 #include "envmap/environment.h"
 #include "render/exact.h"
 #include "render/renderer.h"
@@ -27,18 +30,26 @@ envmap::Environment room() {
 struct Room {
   // The mean of the light, by cos^E about each direction: texels are points, no wider than a lobe.
   envmap::CubeMap filtered(double exponent, int size) const {
+    struct Texel {
+      Vec3 direction, light;
+      double size;
+    };
+    std::vector<Texel> texels;
+    for (int row = 0; row < source.height(); ++row)
+      for (int column = 0; column < source.width(); ++column) {
+        const float* rgb = source.radiance(column, row);
+        texels.push_back({source.direction(column, row), {rgb[0], rgb[1], rgb[2]}, source.solid_angle(column, row)});
+      }
+    const double nothing = std::exp(-40 / exponent);  // the cosine below which a lobe is 4e-18 of its peak
     return cube_of(size, [&](const Vec3& d) {
       Vec3 sum;
       double whole = 0;
-      for (int row = 0; row < source.height(); ++row) {
-        for (int column = 0; column < source.width(); ++column) {
-          const double cosine = dot(d, source.direction(column, row));
-          if (cosine <= 0) continue;
-          const double weight = source.solid_angle(column, row) * std::pow(cosine, exponent);
-          const float* texel = source.radiance(column, row);
-          sum += weight * Vec3{texel[0], texel[1], texel[2]};
-          whole += weight;
-        }
+      for (const Texel& texel : texels) {
+        const double cosine = dot(d, texel.direction);
+        if (cosine <= nothing) continue;
+        const double weight = texel.size * std::pow(cosine, exponent);
+        sum += weight * texel.light;
+        whole += weight;
       }
       return (1 / whole) * sum;
     });

@@ -116,7 +116,7 @@ E: Unable to locate package libbad-dev" 'check the network, the mirror and the p
   [ "${#lines[@]}" -le 40 ]
   [ "$(grep -vF "$PWD" <<<"$output" | wc -L)" -le 100 ]
   [[ "${lines[2]}" == *'first picture'*'Bilder für mich/first.png, '*' s after the start' ]]
-  [ "$(grep -c 'dE00 to the truth: mean 0.50, 95 % below 1.25' <<<"$output")" -eq 8 ]
+  [ "$(grep -c 'dE00 mean 0.50, 95 % below 1.25' <<<"$output")" -eq 8 ]
   [ "$(grep -o 'src="data:image/png;base64' 'Bilder für mich/sheet.html' | wc -l)" -eq 8 ]
   # Each file that is there is in the list, under its name or by its ending.
   for file in 'Bilder für mich'/*; do

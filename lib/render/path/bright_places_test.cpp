@@ -93,7 +93,7 @@ TEST(BrightPlaces, AreDrawnAsTheirDensitySays) {
           const double pdf = places->pdf(receiver, scene.closest(spot.start, direction), direction);
           return d.z < -0.5 ? wrong * pdf : pdf;
         },
-        64);
+        1024);
     if (wrong == 1) {
       EXPECT_LT(found, 5);
     } else {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -44,11 +45,11 @@ class SphereBins {
 };
 
 // Standard deviations by which the bins' chi-square exceeds its mean: below 5 in all but one of a million cases. A draw
-// may come to nothing; so may the density be less than 1 in sum. `grid`: points a side by which the density is summed
-// over a bin: many where it jumps inside.
+// may come to nothing; so may the density be less than 1 in sum. `points` are those by which the density is summed over
+// a bin: many where it jumps inside.
 inline double excess(const SphereBins& bins, int draws,
                      const std::function<std::optional<Vec3>(double, double, double)>& draw,
-                     const std::function<double(const Vec3&)>& density, int grid = 24) {
+                     const std::function<double(const Vec3&)>& density, int points = 576) {
   TestNumbers next(5);
   std::vector<double> seen(bins.count() + 1), expected(bins.count() + 1);
   for (int i = 0; i < draws; ++i) {
@@ -57,11 +58,14 @@ inline double excess(const SphereBins& bins, int draws,
     seen[direction ? bins.bin(*direction) : bins.count()] += 1;
   }
   expected.back() = draws;
+  constexpr double kGolden = 1.32471795724474602596;  // evenly spread pairs [Roberts]
+  std::vector<std::array<double, 2>> places;
+  for (int i = 0; i < points; ++i)
+    places.push_back({std::fmod(0.5 + i / kGolden, 1), std::fmod(0.5 + i / (kGolden * kGolden), 1)});
   for (std::size_t bin = 0; bin < bins.count(); ++bin) {
     double sum = 0;
-    for (int i = 0; i < grid; ++i)
-      for (int j = 0; j < grid; ++j) sum += density(bins.direction(bin, (i + 0.5) / grid, (j + 0.5) / grid));
-    expected[bin] = draws * sum / (grid * grid) * bins.solid_angle();
+    for (const auto& [a, b] : places) sum += density(bins.direction(bin, a, b));
+    expected[bin] = draws * sum / points * bins.solid_angle();
     expected.back() -= expected[bin];
   }
   expected.back() = std::max(expected.back(), 0.0);

@@ -40,7 +40,7 @@ double excess_of(const envmap::Environment& environment, double wrong_factor = 1
         const double pdf = horizon.pdf(table.at(float3(d)));
         return d.y > 0 ? wrong_factor * pdf : pdf;
       },
-      120);
+      3600);
 }
 
 TEST(Samplers, TheEnvironmentIsDrawnAsItsDensitySays) {
@@ -189,7 +189,7 @@ TEST(Samplers, EmittersAreDrawnAsTheirDensitySays) {
             const double pdf = hit.any() ? emitters->pdf(at, hit.triangle, float3(d), hit.distance) : 0.0;
             return d.x > 0 ? wrong * pdf : pdf;
           },
-          80);
+          1600);
       if (wrong == 1) {
         EXPECT_LT(found, 5) << from.z << ' ' << normal.x;
       } else {
