@@ -49,7 +49,7 @@ paint::LobeFit coated(const std::vector<paint::GlossReading>& readings) {
 // Fresnel at the half vector.
 double shown_reading(const paint::LobeFit& fit, const TestMeter& meter, double gloss_deg) {
   const auto source = window_points(meter.angle_deg, kSourceParallel_deg, kSourcePerpendicular_deg, 4),
-             receptor = window_points(meter.angle_deg, meter.receptor_par_deg, meter.receptor_perp_deg, 20);
+             receptor = window_points(meter.angle_deg, meter.receptor_par_deg, meter.receptor_perp_deg, 32);
   double numerator = 0, mirror = 0, denominator = 0;
   for (const WindowPoint& i : source) {
     const Vec3 light = {-i.w.x, -i.w.y, i.w.z};
