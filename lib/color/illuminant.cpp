@@ -44,7 +44,7 @@ std::optional<std::string> illuminant_named(std::string_view text) {
   for (const char* known : kIlluminantNames)
     if (text == known) return known;
   std::string name = plain_name(text);
-  const auto* other = std::ranges::find(kOtherNames, name, &std::pair<std::string_view, std::string_view>::first);
+  const auto other = std::ranges::find(kOtherNames, name, &std::pair<std::string_view, std::string_view>::first);
   if (other != kOtherNames.end()) name = other->second;
   for (const char* known : kIlluminantNames)
     if (plain_name(known) == name) return known;
