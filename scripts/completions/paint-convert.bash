@@ -7,6 +7,8 @@ _paint_convert() {
     --scale) COMPREPLY=($(compgen -W "auto percent factor" -- "$word")); return ;;
     --aperture) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --geometry) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --average) COMPREPLY=($(compgen -W "none name code" -- "$word")); return ;;
+    --outliers) COMPREPLY=($(compgen -W "keep drop" -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --to) COMPREPLY=($(compgen -W "auto xml csv wide cxf cgats" -- "$word")); return ;;
     --columns) COMPREPLY=($(compgen -W "core all" -- "$word")); return ;;
@@ -15,7 +17,7 @@ _paint_convert() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--from --illuminant --observer --scale --aperture --keep-going --geometry --fit-appearance --output --to --columns --cxf-compat --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--from --illuminant --observer --scale --aperture --keep-going --geometry --fit-appearance --average --outliers --output --to --columns --cxf-compat --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }
