@@ -50,6 +50,12 @@ cli::ToolSpec tool_spec(Options& o) {
           "Comparisons are joined by && || ! (or by the words and, or, not) and parentheses, as in \"class==metallic "
           "and not flags==dark\". A figure that does not apply makes a comparison false; hue_shift_index==na asks for "
           "it. Where no paint matches, the exit status is 1.");
+  spec.flag("classify", &o.classify, "infer the class of paints that state none from their readings")
+      .more(
+          "goniochrome-theory(7), CLASSES, has the rule. --where and --format paints see the inferred class, and a "
+          "last "
+          "column of the table, class_source, tells it from a stated one. Where the readings decide nothing, the "
+          "class stays unknown.");
   spec.heading = "comparison";
   spec.option("score", "TABLE", "cayman.brdf", &o.score, "compare the models of paints with measured directions")
       .more(
@@ -87,24 +93,29 @@ cli::ToolSpec tool_spec(Options& o) {
       {"paint-stats -w 'class==metallic and L15>60' -f paints testdata/paints.paints.xml | fit-paint -q --basis "
        "testdata/b5.basis.xml -o light.paints.xml",
        "fit the light metallics of a library and leave the rest out"},
+      {"paint-stats --classify -w 'class==metallic' -f paints testdata/paints.csv -o metallics.paints.xml",
+       "collect what seems to be a metallic in a table that knows no classes"},
       {"paint-stats -w 'flags==through_gray' -o turning.paints.xml testdata/paints.paints.xml",
        "collect the paints that change their hue by way of gray; the ending says that paints are wanted"}};
   spec.report = {{"paints[].name", "name of the paint; beside it stand code, class, source and flags[]"}};
   for (const paint::MetricColumn& column : paint::metric_columns())
     spec.report.push_back({std::string("paints[].") + column.name, column.meaning});
-  spec.report.insert(spec.report.end(),
-                     {{"read", "number of paints read"},
-                      {"paints[].under.NAME",
-                       "with --illuminant: inconstancy and, with --standard, metamerism, each with "
-                       "its color difference by geometry"},
-                      {"paints[].textures[]", "quantity, geometry, version, instrument and value, where there are any"},
-                      {"matched", "number of paints written"},
-                      {"left_out", "number of paints that --keep-going left out"},
-                      {"scores[]",
-                       "with --score: name, model, rows, left_out, de00_mean, de00_p95, de00_max, or "
-                       "those of another formula, de76_mean and de76_p95 of each model of a paint"},
-                      {"paints_per_s", "paints a second, without reading and writing"},
-                      {"warnings[]", "messages about paints left out"}});
+  spec.report.insert(
+      spec.report.end(),
+      {{"read", "number of paints read"},
+       {"paints[].under.NAME",
+        "with --illuminant: inconstancy and, with --standard, metamerism, each with "
+        "its color difference by geometry"},
+       {"paints[].textures[]", "quantity, geometry, version, instrument and value, where there are any"},
+       {"paints[].class_source", "with --classify: stated, inferred, or - where the class is unknown"},
+       {"inferred, undecided", "with --classify: number of paints that state no class and got one, or none"},
+       {"matched", "number of paints written"},
+       {"left_out", "number of paints that --keep-going left out"},
+       {"scores[]",
+        "with --score: name, model, rows, left_out, de00_mean, de00_p95, de00_max, or "
+        "those of another formula, de76_mean and de76_p95 of each model of a paint"},
+       {"paints_per_s", "paints a second, without reading and writing"},
+       {"warnings[]", "messages about paints left out"}});
   spec.see_also = {"colorsnap(1)", "paint-convert(1)", "paint-edit(1)"};
   return spec;
 }
