@@ -157,7 +157,7 @@ double difference(const DifferenceFormula& formula, const Lab& standard, const L
 // one at the largest g, by .075/.0435/(1 + .075 g); and the image of a disc is a disc, hence convex, so that the bound
 // of the derivative is one of distances.
 //
-// Of DIN 6175, S_L and the terms of S_C and S_H grow or fall with L and C alone; each takes its largest value. The
+// In DIN 6175, S_L and the terms of S_C and S_H grow or fall with L and C alone; each takes its largest value. The
 // difference lies between that by a* and b* and that by chroma and hue, so that the larger of all weights bounds both.
 double difference_floor(const DifferenceFormula& formula, const Lab& standard, const LabBox& box,
                         double aspecular_deg) {
