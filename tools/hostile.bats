@@ -416,6 +416,7 @@ exr relight -q --from D65 --to A $TESTDATA/outdoor.exr
 tsv goniogeom-index -q one.xml --lights 30 --views as15
 xml trompe-fit -q one.xml --angle 2
 tsv colorsnap -q -l $TESTDATA/paints.paints.xml -k 1 one.xml
+tsv paint-compare -q -s one.xml one.xml
 xml paint-pick -q --face p.ppm@4,4
 svg plot-paint -q one.xml
 gltf paint-export -q --to gltf fit.xml

@@ -11,7 +11,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../lib"
 
-order=(base math color paint formats library brdf materials image display envmap prefilter mesh rays fit capture render panels sketch studio report cli)
+order=(base math color paint formats library quality brdf materials image display envmap prefilter mesh rays fit capture render panels sketch studio report cli)
 declare -A rank
 for i in "${!order[@]}"; do rank[${order[i]}]=$i; done
 rank[fuzz]=99

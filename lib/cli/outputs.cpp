@@ -14,8 +14,9 @@ namespace goniochrome::cli {
 namespace {
 
 // The options that name files to write, in all tools.
-constexpr std::array<std::string_view, 9> kOutputs = {"output",  "report",   "table", "plot",     "curve",
-                                                      "picture", "residual", "cloud", "error-map"};
+constexpr std::array<std::string_view, 12> kOutputs = {"output",    "report",      "table",      "plot",
+                                                       "curve",     "picture",     "residual",   "cloud",
+                                                       "error-map", "make-limits", "show-limit", "chart"};
 
 struct File {
   std::string what;  // "--output", or "PAINTS" for a positional word
@@ -48,7 +49,7 @@ std::vector<std::string> names_in(const std::string& text) {
 
 // The values of the options that name files: of those that are written, or of those that are read.
 std::vector<File> named_files(const ToolSpec& spec, bool written) {
-  constexpr std::array<std::string_view, 2> kWritten = {"FILE", "PATTERN"};
+  constexpr std::array<std::string_view, 3> kWritten = {"FILE", "PATTERN", "PATH"};
   constexpr std::array<std::string_view, 5> kRead = {"FILE", "PAINT", "IMAGE", "TABLE", "DROPPER"};
   std::vector<File> files;
   const auto add = [&](const std::string& what, const std::string& text) {

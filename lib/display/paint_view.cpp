@@ -1,5 +1,7 @@
 #include "display/paint_view.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -58,6 +60,19 @@ color::Rgb in_display_gamut(const color::Rgb& rgb) {
 double srgb_signal(double light) {
   const double v = std::clamp(light, 0.0, 1.0);
   return v <= 0.0031308 ? 12.92 * v : 1.055 * math::pow(v, 1 / 2.4) - 0.055;
+}
+
+std::array<int, 3> screen_color(const color::Lab& lab, const color::Xyz& white) {
+  const color::Rgb shown = color::rec709_from_rec2020(in_display_gamut(color::rgb_from_lab(lab, white)));
+  std::array<int, 3> codes{};
+  for (int c = 0; c < 3; ++c)
+    codes[static_cast<std::size_t>(c)] = static_cast<int>(std::lround(255 * srgb_signal(shown[c])));
+  return codes;
+}
+
+std::string css_color(const color::Lab& lab, const color::Xyz& white) {
+  const std::array<int, 3> rgb = screen_color(lab, white);
+  return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
 }
 
 // dv/dcode of v = ((c + .055)/1.055)^2.4 is below 2.3 sqrt(v) for v in 0..1; the line near black adds the constant. The

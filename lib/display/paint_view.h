@@ -4,6 +4,9 @@
 // Light is linear, and 1 is the white of the display.
 #pragma once
 
+#include <array>
+#include <string>
+
 #include "color/color.h"
 
 namespace goniochrome::display {
@@ -27,6 +30,10 @@ color::Rgb in_display_gamut(const color::Rgb& rgb);
 
 // The sRGB signal (IEC 61966-2-1), 0..1, of one channel or of a luminance; light below 0 counts as 0 and above 1 as 1.
 double srgb_signal(double light);
+
+// A color under its white as an sRGB display shows it: its codes, 0..255, and "#rrggbb".
+std::array<int, 3> screen_color(const color::Lab& lab, const color::Xyz& white);
+std::string css_color(const color::Lab& lab, const color::Xyz& white);
 
 // How much light five codes of an 8-bit sRGB display stand for around `light`, where the picture went through the view
 // "Paint" and the largest channel is `brightest`. It is an upper bound.

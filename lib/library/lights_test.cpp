@@ -54,7 +54,7 @@ class Lights : public testing::Test {
   }
   // The distance in one light by sums over the spectra, without rows, index or plan.
   static double distance_in(const std::string& light, const paint::Paint& x, const paint::Paint& y,
-                            ColorMetric metric) {
+                            color::DifferenceFormula metric) {
     static std::map<std::string, color::SpectralColorimeter> meters;
     if (!meters.contains(light)) {
       std::vector<double> nm;
@@ -66,7 +66,7 @@ class Lights : public testing::Test {
     for (std::size_t g = 0; g < 3; ++g) {
       const color::Lab a = meter->lab(x.measurement->spectra[g].factors),
                        b = meter->lab(y.measurement->spectra[g].factors);
-      sum += metric == ColorMetric::kDe76 ? color::delta_e_76(a, b) : color::delta_e_2000(a, b);
+      sum += metric == kDe76 ? color::delta_e_76(a, b) : color::delta_e_2000(a, b);
     }
     return sum;
   }
@@ -77,7 +77,7 @@ class Lights : public testing::Test {
 };
 
 TEST_F(Lights, TheNearestAreThoseOfALookAtEveryPaintInEveryLight) {
-  for (const ColorMetric metric : {ColorMetric::kDe76, ColorMetric::kDe00}) {
+  for (const color::DifferenceFormula& metric : {kDe76, kDe00}) {
     const auto search = LightsSearch::open(path_, kLights, {.count = 5, .metric = metric});
     ASSERT_TRUE(search.ok()) << search.error().message;
     EXPECT_EQ(search->without_spectra(), 1U);

@@ -114,8 +114,12 @@ Result<SearchPlan> LibrarySearch::plan(const paint::Paint& query) const {
     const auto row = std::ranges::find(rows, geometry, &paint::LabReading::geometry);
     if (row == rows.end())
       return input_error("it has no color at {}: it was measured at {}", paint::geometry_name(geometry), names_of(own));
+    const double aspecular_deg = paint::aspecular_angle_deg(geometry);
+    if (aspecular_deg == 0 && options_.metric.kind == color::DifferenceFormula::Kind::kDin6175)
+      return input_error("it is compared at {}, where DIN 6175 has no difference: leave that geometry out",
+                         paint::geometry_name(geometry));
     const auto weight = std::ranges::find(options_.weights, geometry, &std::pair<paint::Geometry, double>::first);
-    plan.terms.push_back({0, row->lab, weight == options_.weights.end() ? 1 : weight->second});
+    plan.terms.push_back({0, row->lab, weight == options_.weights.end() ? 1 : weight->second, aspecular_deg});
   }
   if (std::ranges::all_of(plan.terms, [](const SearchTerm& term) { return term.weight == 0; }))
     return input_error("every geometry it is compared at, {}, has weight 0", names_of(plan.geometries));

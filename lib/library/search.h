@@ -15,7 +15,7 @@ namespace goniochrome::library {
 
 struct LibrarySearchOptions {
   std::size_t count = 5;
-  ColorMetric metric = ColorMetric::kDe76;
+  color::DifferenceFormula metric = kDe76;
   std::optional<SearchMethod> method = {};                       // empty: the faster one
   std::vector<paint::Geometry> geometries = {};                  // to compare at; empty: those that are shared
   std::vector<std::pair<paint::Geometry, double>> weights = {};  // 0 or more; geometries that are not listed have 1

@@ -83,7 +83,7 @@ TEST_F(Searching, FindsAcrossSectionsWhatOneListWouldGive) {
   std::shuffle(all.begin(), all.end(), random_);
   const LibraryIndex index = index_of(all);
   ASSERT_EQ(index.sections().size(), 2u);
-  for (const ColorMetric metric : {ColorMetric::kDe76, ColorMetric::kDe00}) {
+  for (const color::DifferenceFormula& metric : {kDe76, kDe00}) {
     const LibrarySearch search(index, {.count = 7, .metric = metric, .weights = {{at_45({110})[0], 2}}});
     for (int q = 0; q < 100; ++q) {
       const paint::Paint query = q % 2 ? all[static_cast<std::size_t>(q)] : paints(1, {15, 45, 110})[0];

@@ -101,7 +101,8 @@ Result<Paint> in_light(Paint paint, const color::ViewingCondition& stated) {
 }
 
 Result<std::vector<DifferenceAt>> inconstancy(const Measurement& measurement, const color::ViewingCondition& reference,
-                                              const color::ViewingCondition& test) {
+                                              const color::ViewingCondition& test,
+                                              const color::DifferenceFormula& formula) {
   GONIO_TRY(check_spectra(measurement, test));
   Meter at_reference(reference), at_test(test);
   std::vector<DifferenceAt> result;
@@ -109,16 +110,18 @@ Result<std::vector<DifferenceAt>> inconstancy(const Measurement& measurement, co
     GONIO_ASSIGN(const color::Xyz before, at_reference.xyz(spectrum));
     GONIO_ASSIGN(const color::Xyz after, at_test.xyz(spectrum));
     const color::Xyz& white = at_reference.white();
-    result.push_back({spectrum.geometry,
-                      color::delta_e_2000(color::lab_from_xyz(before, white),
-                                          color::lab_from_xyz(corresponding(after, at_test.white(), white), white))});
+    result.push_back(
+        {spectrum.geometry, color::difference(formula, color::lab_from_xyz(before, white),
+                                              color::lab_from_xyz(corresponding(after, at_test.white(), white), white),
+                                              aspecular_angle_deg(spectrum.geometry))});
   }
   return Result(std::move(result));
 }
 
 Result<std::vector<DifferenceAt>> metamerism(const Measurement& sample, const Measurement& standard,
                                              const color::ViewingCondition& reference,
-                                             const color::ViewingCondition& test) {
+                                             const color::ViewingCondition& test,
+                                             const color::DifferenceFormula& formula) {
   GONIO_TRY(check_spectra(sample, test));
   GONIO_TRY(check_spectra(standard, test));
   Meter at_reference(reference), at_test(test);
@@ -136,8 +139,9 @@ Result<std::vector<DifferenceAt>> metamerism(const Measurement& sample, const Me
     GONIO_ASSIGN(const color::Xyz standard_shows, at_test.xyz(*other));
     shows.X *= scale(is.X, should.X), shows.Y *= scale(is.Y, should.Y), shows.Z *= scale(is.Z, should.Z);
     const color::Xyz& white = at_test.white();
-    result.push_back({spectrum.geometry, color::delta_e_2000(color::lab_from_xyz(shows, white),
-                                                             color::lab_from_xyz(standard_shows, white))});
+    result.push_back({spectrum.geometry,
+                      color::difference(formula, color::lab_from_xyz(standard_shows, white),
+                                        color::lab_from_xyz(shows, white), aspecular_angle_deg(spectrum.geometry))});
   }
   return Result(std::move(result));
 }

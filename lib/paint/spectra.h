@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "color/color_difference.h"
 #include "paint/paint.h"
 
 namespace goniochrome::paint {
@@ -25,24 +26,30 @@ Result<Paint> in_light(Paint paint, const color::ViewingCondition& stated);
 // A color difference at a geometry.
 struct DifferenceAt {
   Geometry geometry;
-  double de00 = 0;
+  double value = 0;
 };
 
-// The color inconstancy of a paint, at each geometry of which it has a spectrum: how far the color under `test` seems
-// to be from the color under `reference`, to an eye that has adapted to each. The color under `test` becomes its
-// corresponding color by CMCCAT2000 with complete adaptation, as in CMCCON02 [Luo, Li, Hunt, Rigg and Smith 2003], and
-// the difference is CIEDE2000. A paint that reflects all wavelengths alike has 0. Error: as under_light().
-Result<std::vector<DifferenceAt>> inconstancy(const Measurement& measurement, const color::ViewingCondition& reference,
-                                              const color::ViewingCondition& test);
+// The usual formula of both functions below.
+inline constexpr color::DifferenceFormula kInOtherLight{color::DifferenceFormula::Kind::kCiede2000};
 
-// The special metamerism index for a change of illuminant (CIE 15:2004, 9.2.2.3), by CIEDE2000, at each geometry of
+// The color inconstancy of a paint by a formula, at each geometry of which it has a spectrum: how far the color under
+// `test` seems to be from the color under `reference`, to an eye that has adapted to each. The color under `test`
+// becomes its corresponding color by CMCCAT2000 with complete adaptation, as in CMCCON02 [Luo, Li, Hunt, Rigg and Smith
+// 2003], and is the sample; the color under `reference` is the standard. A paint that reflects all wavelengths alike
+// has 0. Error: as under_light().
+Result<std::vector<DifferenceAt>> inconstancy(const Measurement& measurement, const color::ViewingCondition& reference,
+                                              const color::ViewingCondition& test,
+                                              const color::DifferenceFormula& formula = kInOtherLight);
+
+// The special metamerism index for a change of illuminant (CIE 15:2004, 9.2.2.3) by a formula, at each geometry of
 // which both have a spectrum: how much two paints that match under `reference` differ under `test`. If they do not
 // quite match under `reference`, X, Y and Z of the sample under `test` are multiplied by the ratio that would make them
 // match there, so that a pair with proportional spectra has 0. The index of a sample that has X, Y or Z of 0 under
 // `reference` is NaN, unless the standard has 0 as well. Error: as under_light().
 Result<std::vector<DifferenceAt>> metamerism(const Measurement& sample, const Measurement& standard,
                                              const color::ViewingCondition& reference,
-                                             const color::ViewingCondition& test);
+                                             const color::ViewingCondition& test,
+                                             const color::DifferenceFormula& formula = kInOtherLight);
 
 // The spectrum of equal steps that has these factors, or nothing where the steps differ by more than 1e-6 of the first.
 std::optional<SpectrumReading> spectrum_of(const Geometry& geometry, const std::vector<double>& wavelengths_nm,

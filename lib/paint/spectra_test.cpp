@@ -51,7 +51,7 @@ TEST(Spectra, GrayIsGrayInEveryLight) {
 
 double largest(const Result<std::vector<DifferenceAt>>& differences) {
   double most = 0;
-  for (const DifferenceAt& difference : *differences) most = std::max(most, difference.de00);
+  for (const DifferenceAt& difference : *differences) most = std::max(most, difference.value);
   return most;
 }
 
@@ -149,7 +149,7 @@ TEST(Spectra, MetamerismIsTheDifferenceOfAnExactPairUnderTheOtherLight) {
   // Black against black is no pair that differs; black against color has no index.
   const std::vector<double> black(31, 0.0);
   EXPECT_EQ(largest(metamerism(measured(black), measured(black), day, lamp)), 0);
-  EXPECT_TRUE(std::isnan(metamerism(measured(black), measured(first), day, lamp)->at(0).de00));
+  EXPECT_TRUE(std::isnan(metamerism(measured(black), measured(first), day, lamp)->at(0).value));
   // Geometries that only one of them has are left out.
   EXPECT_TRUE(metamerism(measured(first), measured(first, {.aspecular_deg = 15}), day, lamp)->empty());
 }

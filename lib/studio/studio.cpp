@@ -118,7 +118,7 @@ Result<Json> Studio::State::load(JsonReader& request) {
                  }));
   }
   by_de76.emplace(*index, library::LibrarySearchOptions{});
-  by_de00.emplace(*index, library::LibrarySearchOptions{.metric = library::ColorMetric::kDe00});
+  by_de00.emplace(*index, library::LibrarySearchOptions{.metric = library::kDe00});
   pane.emplace(*index);
   return Json{{"paints", index->size()}, {"geometries", pane->geometries()}};
 }

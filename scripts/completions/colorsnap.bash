@@ -4,7 +4,7 @@ _colorsnap() {
     --library|-l) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --filter) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --count|-k) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --metric|-m) COMPREPLY=($(compgen -W "de76 de00" -- "$word")); return ;;
+    --formula|-m) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --geometry|-g) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --weight|-w) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --illuminant) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -19,7 +19,7 @@ _colorsnap() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--library --filter --count --metric --geometry --weight --illuminant --mix-observers --method --threshold --off-radial --output --format --cloud --assign --keep-going --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--library --filter --count --formula --geometry --weight --illuminant --mix-observers --method --threshold --off-radial --output --format --cloud --assign --keep-going --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

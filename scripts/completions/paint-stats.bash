@@ -5,6 +5,7 @@ _paint_stats() {
     --score) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --illuminant) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --standard) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --formula) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --format|-f) COMPREPLY=($(compgen -W "auto tsv json paints" -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -12,7 +13,7 @@ _paint_stats() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--where --score --illuminant --standard --keep-going --output --format --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--where --classify --score --illuminant --standard --formula --keep-going --output --format --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

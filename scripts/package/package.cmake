@@ -2,7 +2,7 @@
 
 # The files of the tools are the component "tools", which is all that the package holds. The library for other programs is the
 # component "development", which `cmake --install` adds.
-set(modules base math color paint formats library brdf materials image display envmap prefilter mesh rays fit capture render panels sketch studio report)
+set(modules base math color paint formats library quality brdf materials image display envmap prefilter mesh rays fit capture render panels sketch studio report)
 foreach(module ${modules})
   set_target_properties(goniochrome_${module} PROPERTIES EXPORT_NAME ${module})
   target_include_directories(goniochrome_${module} PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/goniochrome>)

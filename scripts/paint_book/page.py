@@ -29,7 +29,7 @@ def text(value):
 
 
 def number(value, digits=1):
-    return "n/a" if value is None else f"{value:.{digits}f}"
+    return "n/a" if value is None else f"{round(value, digits) + 0.0:.{digits}f}"  # 0.0 takes the sign off a zero
 
 
 def address_beside(file, page_file):

@@ -118,7 +118,7 @@ column() {
 
   run colorsnap -l lib.xml wish.xml --metric de94
   [ "$status" -eq 2 ]
-  [[ "$output" == *'--metric is "de94": give de76, de00'* ]]
+  [[ "$output" == *'--formula: there is no color difference formula "de94": use cie76, cie94'* ]]
   run colorsnap -l lib.xml wish.xml --method grid
   [ "$status" -eq 2 ]
 }
@@ -361,4 +361,15 @@ column() {
   run --separate-stderr colorsnap -l lib.xml wish.xml --cloud cloud.png
   [ "$status" -eq 2 ]
   [[ "$stderr" == *'--cloud is "cloud.png": give a name that ends in .svg'* ]]
+}
+
+@test "every formula finds a paint itself, and both ways of searching agree" {
+  for formula in cie76 cie94 cmc:1:1 ciede2000 din99o din6175; do
+    colorsnap -q -l "$TESTDATA/paints.paints.xml" --formula $formula -k 4 --method tree "$TESTDATA/paints.paints.xml#*metallic" -o tree.tsv
+    colorsnap -q -l "$TESTDATA/paints.paints.xml" --formula $formula -k 4 --method scan "$TESTDATA/paints.paints.xml#*metallic" -o scan.tsv
+    cmp tree.tsv scan.tsv
+    [ "$(awk -F '\t' '$2 == 1 && ($1 != $3 || $6 != 0)' tree.tsv | wc -l)" -eq 0 ]
+  done
+  run colorsnap -l "$TESTDATA/paints.paints.xml" --formula cie2 "$TESTDATA/paints.paints.xml"
+  [ "$status" -eq 2 ]
 }

@@ -8,23 +8,15 @@ namespace goniochrome::tool {
 
 namespace {
 
-// The signed CIELAB hue difference: what remains of the distance in the a*b* plane without the chroma difference.
-double hue_difference(const color::Lab& x, const color::Lab& y) {
-  const double turn = std::atan2(y.a * x.b - y.b * x.a, x.a * y.a + x.b * y.b);
-  return 2 * std::sqrt(color::chroma(x) * color::chroma(y)) * std::sin(turn / 2);
-}
-
 Neighbor neighbor_of(library::LibraryMatch match, const std::vector<library::SearchTerm>& terms,
-                     library::ColorMetric metric) {
+                     const color::DifferenceFormula& metric) {
   Neighbor neighbor;
   double weight = 0;
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const color::Lab &query = terms[i].lab, &found = match.lab[i];
-    neighbor.de.push_back(metric == library::ColorMetric::kDe76 ? color::delta_e_76(query, found)
-                                                                : color::delta_e_2000(query, found));
-    neighbor.dL += query.L - found.L;
-    neighbor.dC += color::chroma(query) - color::chroma(found);
-    neighbor.dH += hue_difference(query, found);
+    neighbor.de.push_back(color::difference(metric, query, found, terms[i].aspecular_deg));
+    const color::LabDifference difference = color::lab_difference(found, query);
+    neighbor.dL += difference.dL, neighbor.dC += difference.dC, neighbor.dH += difference.dH;
     weight += terms[i].weight;
   }
   const auto count = static_cast<double>(terms.size());
@@ -53,7 +45,7 @@ Result<QueryPlan> Searched::plan(const paint::Paint& query) const {
   return Result(std::move(result));
 }
 
-std::vector<Neighbor> Searched::nearest(const QueryPlan& plan, library::ColorMetric metric) const {
+std::vector<Neighbor> Searched::nearest(const QueryPlan& plan, const color::DifferenceFormula& metric) const {
   std::vector<Neighbor> neighbors;
   if (!plan.lights) {
     for (library::LibraryMatch& match : search_.nearest(plan.plan))
@@ -67,8 +59,8 @@ std::vector<Neighbor> Searched::nearest(const QueryPlan& plan, library::ColorMet
   return neighbors;
 }
 
-Finding finding_of(const paint::Paint& query, QueryPlan plan, const Searched& library, library::ColorMetric metric,
-                   const library::VerdictLimits& limits) {
+Finding finding_of(const paint::Paint& query, QueryPlan plan, const Searched& library,
+                   const color::DifferenceFormula& metric, const library::VerdictLimits& limits) {
   Finding finding;
   finding.query = query.name;
   const Stopwatch searching;

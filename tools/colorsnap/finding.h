@@ -52,7 +52,7 @@ class Searched {
   // Of the first light.
   const library::LibrarySearch& search() const { return search_; }
   Result<QueryPlan> plan(const paint::Paint& query) const;
-  std::vector<Neighbor> nearest(const QueryPlan& plan, library::ColorMetric metric) const;
+  std::vector<Neighbor> nearest(const QueryPlan& plan, const color::DifferenceFormula& metric) const;
 
  private:
   const library::LibraryIndex& index_;
@@ -62,7 +62,7 @@ class Searched {
 
 // Searches the library and judges the design. `query` must be the paint of the plan. Several threads may call it at
 // once.
-Finding finding_of(const paint::Paint& query, QueryPlan plan, const Searched& library, library::ColorMetric metric,
-                   const library::VerdictLimits& limits);
+Finding finding_of(const paint::Paint& query, QueryPlan plan, const Searched& library,
+                   const color::DifferenceFormula& metric, const library::VerdictLimits& limits);
 
 }  // namespace goniochrome::tool

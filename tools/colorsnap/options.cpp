@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "color/spectrum.h"
+#include "formulas.h"
 #include "paint/metrics.h"
 #include "table_output.h"
 
@@ -45,10 +46,8 @@ Result<paint::MetricRange> range_of(std::string_view text) {
 }  // namespace
 
 Result<library::LibrarySearchOptions> search_options(const Options& o) {
-  library::LibrarySearchOptions search{
-      .count = static_cast<std::size_t>(o.count),
-      .metric = o.metric == "de00" ? library::ColorMetric::kDe00 : library::ColorMetric::kDe76,
-      .mix_conditions = o.mix_observers};
+  library::LibrarySearchOptions search{.count = static_cast<std::size_t>(o.count), .mix_conditions = o.mix_observers};
+  GONIO_ASSIGN(search.metric, formula_of(o.formula));
   if (o.method != "auto")
     search.method = o.method == "tree" ? library::SearchMethod::kTree : library::SearchMethod::kScan;
   for (const std::string& list : o.geometries)
@@ -91,8 +90,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "paints by their class. Where several filters are given, a paint has to pass all of them.");
   spec.heading = "comparison";
   spec.option("count,k", "N", "3", &o.count, "number of matches for each paint").from(1, 100000);
-  spec.option("metric,m", "METRIC", "de00", &o.metric, "color difference: CIE 1976 (de76) or CIEDE2000 (de00)")
-      .one_of({"de76", "de00"});
+  spec.option("formula,metric,m", "FORMULA", "ciede2000", &o.formula, "formula of the color difference")
+      .more("It is one of " + color::formula_words() +
+            "; goniochrome-theory(7), COLOR DIFFERENCES, has them. The query is the standard of those that are not "
+            "symmetric. The search is exact with each of them.");
   spec.option("geometry,g", "LIST", "45as15,45as45,45as110", &o.geometries, "geometries at which paints are compared")
       .more("Where the option is given, the geometries that query and library share are not looked for.");
   spec.option("weight,w", "LIST", "45as15=2,45as110=0.5", &o.weights, "weights of geometries; 1 for the others");
@@ -110,7 +111,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.heading = "verdict";
   spec.option("threshold", "DE", "5", &o.threshold, "mean difference beyond which a design is outside the library")
       .from(0)
-      .in("units of the metric per unit of weight");
+      .in("units of the formula per unit of weight");
   spec.option("off-radial", "DE", "3", &o.off_radial, "difference of hue shifts beyond which a design is off-radial")
       .from(0)
       .in("CIELAB units");
@@ -180,8 +181,8 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.description = {
       "colorsnap reads paints, most often designs, and finds for each of them the nearest paints of a library, so that "
       "a formulation can start from the code of a paint that exists. The distance of two paints is the sum of their "
-      "color differences at the geometries that are compared, each with its weight. The answer is exact in both "
-      "metrics. Of equally near paints, the one that stands first in the library comes first.",
+      "color differences at the geometries that are compared, each with its weight. The answer is exact with "
+      "every formula. Of equally near paints, the one that stands first in the library comes first.",
       "A paint is compared by its measured rows, or where it has none by its curve at 15, 25, 45, 75 and 110 degrees. "
       "Without --geometry, a query is compared at the geometries that it shares with the most paints of the library, "
       "but at three at least as long as any paint has so many. Library paints that lack one of these geometries are "

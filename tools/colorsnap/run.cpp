@@ -192,13 +192,13 @@ class Run {
            fmt::format(
                "method {}: {}; the scan wins only below {} paints, or where a filter lets fewer than one in {} through "
                "(measured: 10^6 paints, 5 nearest, tree 52 us against 5.8 ms in dE76, 1.3 against 120 ms in dE00)\n"
-               "metric {}: {}\n"
+               "formula {}: {}\n"
                "compared at {}; every answer is exact, ties in the library's order\n"
                "left out: paints without a color\n",
                options_.method, options_.method == "auto" ? "as measured" : "as told", library::kLeafSize + 1,
-               library::kScanFraction, options_.metric,
-               metric_ == library::ColorMetric::kDe76 ? "sum of CIE 1976 differences"
-                                                      : "sum of CIEDE2000 differences, pruned by a proven lower bound",
+               library::kScanFraction, color::formula_name(metric_),
+               metric_ == library::kDe76 ? "sum of the differences"
+                                         : "sum of the differences, pruned by a proven lower bound",
                options_.geometries.empty() ? "the geometries that query and library share"
                                            : "the geometries asked for");
   }
@@ -239,7 +239,7 @@ class Run {
   cli::Session& session_;
   const Searched& library_;
   const library::LibraryIndex& index_;
-  library::ColorMetric metric_;
+  const color::DifferenceFormula& metric_;
   std::vector<std::pair<paint::Geometry, double>> weights_;
   const library::LibrarySearch& search_;
   Cloud cloud_;

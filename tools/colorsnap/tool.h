@@ -16,7 +16,7 @@ struct Options {
   std::string output = "-", cloud;
   std::string format = "auto";
   int count = 5;
-  std::string metric = "de76";
+  std::string formula = "cie76";
   std::vector<std::string> geometries;
   std::vector<std::string> weights;
   std::vector<std::string> filters;

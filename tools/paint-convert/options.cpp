@@ -44,6 +44,19 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .more("Several are separated by commas. Tables, CxF and CGATS get rows that are missing from the curve.");
   spec.flag("fit-appearance", &o.fit_appearance, "fit face, flop and travel to the rows of each measured paint")
       .more("The residual of the fit is written with them.");
+  spec.option("average", "KEY", "name", &o.average, "write one paint for all readings of the same name or code")
+      .one_of({"none", "name", "code"})
+      .more(
+          "The numbers and dates in parentheses by which readings of one name are told apart do not count. "
+          "Spectra are averaged as spectra, and Lab is the color of their mean; Lab, gloss and textures are averaged "
+          "where there are no spectra. The report has number and standard deviations by geometry. All paints are held "
+          "in memory.");
+  spec.option("outliers", "WHAT", "drop", &o.outliers, "what --average does with readings that stand apart")
+      .one_of({"keep", "drop"})
+      .more(
+          "Each is named in a warning. A reading stands apart where its CIE 1976 difference from the median, in the "
+          "mean over the geometries, is more than three times the median of these differences and more than 0.1. "
+          "Fewer than four readings have no outliers.");
   spec.heading = "output";
   spec.option("output,o", "FILE", "paints.cxf", &o.output, "where to write; - is standard output");
   spec.option("to", "FORMAT", "wide", &o.to, "format of the output")
@@ -68,6 +81,8 @@ void add_report(cli::ToolSpec& spec) {
        "turn paint XML into a wide table that keeps gloss and class"},
       {"paint-convert --geometry 25,45,75 --to csv testdata/paints.paints.xml | head",
        "show the readings of one set of angles"},
+      {"paint-convert --average name --outliers drop testdata/paints.csv -o means.paints.xml",
+       "make one paint of repeated readings"},
       {"paint-convert testdata/paints.paints.xml -o paints.cxf", "hand a library over as CxF3"},
       {"paint-convert testdata/paints.csv --fit-appearance | paint-edit --travel-shift 10 -o softer.paints.xml",
        "fit face, flop and travel, and go on in another tool"}};
@@ -75,6 +90,11 @@ void add_report(cli::ToolSpec& spec) {
       {"read", "number of paints read whole"},
       {"written", "number of paints written"},
       {"skipped", "number of rows or paints that --keep-going left out"},
+      {"averages[].name, readings, kept",
+       "with --average: name of each paint, how many readings it had and how many count"},
+      {"averages[].geometries.NAME",
+       "readings, standard deviations L, a and b, and mean_distance from the mean, CIE 1976"},
+      {"averages[].outliers[]", "name, distance and median_distance of the readings that stand apart"},
       {"measured[].name", "name of the paint that a measured BRDF became"},
       {"measured[].format", "one of merl, cornell, mbsdf, rgl and openmaterial; description holds the file's own words"},
       {"measured[].illuminant", "illuminant that the Lab values are relative to; observer stands beside it"},

@@ -396,3 +396,28 @@ lightness() { sed -n 2p | cut -d, -f5 | xargs printf '%.3f'; }
   [ "$status" -eq 3 ]
   [[ "$stderr" == *'old.cxf:1: is CxF of another version ("http://old.example/cxf2"): export CxF3'* ]]
 }
+
+# Three readings of a name, of which one more stands apart, and a paint of its own.
+repeated() {
+  echo sample,geometry,illuminant,observer,L,a,b
+  local name L
+  for name in 'red 50' 'red (2) 50.2' 'red (3) 49.9' 'red (4) 50.1' 'red (5) 57' 'blue 30'; do
+    L=${name##* }
+    echo "${name% *},45as45,D65,10,$L,10,0"
+  done
+}
+
+@test "repeated readings become their mean, and what stands apart is named" {
+  repeated >in.csv
+  run paint-convert --average name in.csv -o out.paints.xml --report report.json
+  [ "$status" -eq 0 ]
+  [[ $output == *'paint "red (5)" stands apart from the 5 readings of "red"'*kept* ]]
+  [ "$(jq -r '.results.averages[0] | "\(.name) \(.readings) \(.kept) \(.geometries["45as45"].readings)"' report.json)" = "red 5 5 5" ]
+  [ "$(jq '.results.averages[0].geometries["45as45"].L > 3' report.json)" = true ]
+  [ "$(grep -c '<paint ' out.paints.xml)" -eq 2 ]
+  run paint-convert -q --average name --outliers drop in.csv --to csv
+  [[ $output == *'red,45as45,D65,10,50.05,10,0'* ]]
+  run paint-convert -q --average code in.csv -o out.paints.xml
+  [ "$status" -eq 3 ]
+  [[ $output == *'paint "red" has no code: give --average name'* ]]
+}

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <ctime>
 
+#include "averaging.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "formats.h"
@@ -90,14 +91,20 @@ class Conversion {
  public:
   Conversion(const Options& options, const SourceSetup& setup, const Selection& selection, PaintSink& sink,
              cli::Session& session)
-      : options_(options), setup_(setup), selection_(selection), sink_(sink), session_(session) {}
+      : options_(options),
+        setup_(setup),
+        selection_(selection),
+        sink_(sink),
+        session_(session),
+        averaging_(options, session) {}
 
   Result<void> convert(Input& input);
   Result<void> finish();
   int read = 0, written = 0, skipped = 0;
 
  private:
-  Result<void> pass(paint::Paint paint, const formats::PaintSource& source);
+  Result<void> take(paint::Paint paint, const formats::PaintSource& source);
+  Result<void> pass(paint::Paint paint, const std::string& place);
   Result<void> skip(const Error& error);
   Result<void> bring_to_light(paint::Paint& paint);
 
@@ -106,6 +113,7 @@ class Conversion {
   const Selection& selection_;
   PaintSink& sink_;
   cli::Session& session_;
+  Averaging averaging_;
   formats::Remarks remarks_;
   formats::NameLedger names_;
   std::vector<std::string> inputs_;
@@ -143,17 +151,24 @@ Result<void> Conversion::bring_to_light(paint::Paint& paint) {
   return {};
 }
 
-Result<void> Conversion::pass(paint::Paint paint, const formats::PaintSource& source) {
+// A paint as it is read: it goes on, or waits for the other readings of its name.
+Result<void> Conversion::take(paint::Paint paint, const formats::PaintSource& source) {
   ++read;
+  if (options_.average == "none") return pass(std::move(paint), source.place());
+  const auto waits = averaging_.take(std::move(paint), source.place());
+  return waits.ok() ? Result<void>() : skip(waits.error());
+}
+
+Result<void> Conversion::pass(paint::Paint paint, const std::string& place) {
   if (const auto other = names_.note(paint.name, static_cast<int>(inputs_.size())))
     if (*other != static_cast<int>(inputs_.size()))
-      return skip(input_error("{}: paint \"{}\" is also in {}: rename one of them", source.place(), paint.name,
-                              inputs_[*other - 1]));
+      return skip(
+          input_error("{}: paint \"{}\" is also in {}: rename one of them", place, paint.name, inputs_[*other - 1]));
   const auto relit = bring_to_light(paint);
-  if (!relit.ok()) return skip(input_error("{}: paint \"{}\": {}", source.place(), paint.name, relit.error().message));
+  if (!relit.ok()) return skip(input_error("{}: paint \"{}\": {}", place, paint.name, relit.error().message));
   std::vector<paint::Geometry> from_curve;
   const auto selected = selection_.apply(paint, from_curve, remarks_);
-  if (!selected.ok()) return skip(input_error("{}: {}", source.place(), selected.error().message));
+  if (!selected.ok()) return skip(input_error("{}: {}", place, selected.error().message));
   GONIO_TRY(sink_.write(paint, from_curve));
   ++written;
   if (written % 1000 == 0) session_.progress(fmt::format("{} paints", written));
@@ -173,7 +188,7 @@ Result<void> Conversion::convert(Input& input) {
       continue;
     }
     if (!*paint) break;
-    GONIO_TRY(pass(std::move(**paint), *input.source));
+    GONIO_TRY(take(std::move(**paint), *input.source));
   }
   for (const std::string& warning : input.source->closing_warnings()) session_.warn(warning);
   if (Json figures = input.source->figures(); !figures.is_null())
@@ -183,6 +198,9 @@ Result<void> Conversion::convert(Input& input) {
 }
 
 Result<void> Conversion::finish() {
+  GONIO_TRY(
+      averaging_.finish([&](paint::Paint paint, const std::string& place) { return pass(std::move(paint), place); },
+                        [&](const Error& error) { return skip(error); }));
   GONIO_TRY(sink_.finish());
   for (const std::string& remark : remarks_.lines()) session_.warn(remark);
   for (const std::string& warning : sink_.warnings()) session_.warn(warning);

@@ -20,6 +20,7 @@ struct Options {
   double aperture_deg = 0;
   bool cxf_compat = false;
   std::string columns = "core";
+  std::string average = "none", outliers = "keep";
   bool fit_appearance = false;
   bool keep_going = false;
 };

@@ -61,9 +61,7 @@ color::Rgb signals(const color::Rgb& light) {
 }
 
 std::string css_color(const color::Lab& lab) {
-  const color::Rgb s = signals(color::rgb_from_lab(lab, *color::white_point({})));
-  const auto byte = [](double v) { return static_cast<int>(std::lround(255 * v)); };
-  return fmt::format("#{:02x}{:02x}{:02x}", byte(s.x), byte(s.y), byte(s.z));
+  return display::css_color(lab, *color::white_point({}));
 }
 
 // The picture for the page. It is no wider than kWidest, and each pixel is the mean light of those it stands for.

@@ -6,9 +6,9 @@
 
 #include "base/paths.h"
 #include "base/text.h"
-#include "drawing.h"
 #include "image/aov_file.h"
 #include "page.h"
+#include "paint_drawing.h"
 #include "paint_stream.h"
 #include "probe.h"
 #include "sketch/pick.h"
@@ -138,7 +138,8 @@ Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Sessio
     GONIO_TRY(write(options.output, paints, session));
     return cli::Verdict::kDone;
   }
-  GONIO_ASSIGN(PaintDrawing drawing, PaintDrawing::make(options, session));
+  GONIO_ASSIGN(PaintDrawing drawing, PaintDrawing::make({options.mesh, options.env, options.basis}));
+  for (const std::string& remark : drawing.remarks()) session.warn(remark);
   for (PageOfPaint& paint : paints) {
     GONIO_ASSIGN(paint.picture, drawing.png(paint.picked.paint));
   }

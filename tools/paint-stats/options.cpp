@@ -1,5 +1,6 @@
 #include "tool.h"
 
+#include "color/color_difference.h"
 #include "color/spectrum.h"
 #include "paint/metrics.h"
 #include "table_output.h"
@@ -49,28 +50,38 @@ cli::ToolSpec tool_spec(Options& o) {
           "Comparisons are joined by && || ! (or by the words and, or, not) and parentheses, as in \"class==metallic "
           "and not flags==dark\". A figure that does not apply makes a comparison false; hue_shift_index==na asks for "
           "it. Where no paint matches, the exit status is 1.");
+  spec.flag("classify", &o.classify, "infer the class of paints that state none from their readings")
+      .more(
+          "goniochrome-theory(7), CLASSES, has the rule. --where and --format paints see the inferred class, and a "
+          "last "
+          "column of the table, class_source, tells it from a stated one. Where the readings decide nothing, the "
+          "class stays unknown.");
   spec.heading = "comparison";
   spec.option("score", "TABLE", "cayman.brdf", &o.score, "compare the models of paints with measured directions")
       .more(
           "TABLE is a measured BRDF, or paint XML or CSV with readings of paints of the same names. The models are the "
           "curve of a paint, its lobes and its color map, where it has them. Directions less than 10 degrees from "
           "specular or more than 75 degrees from the normal are left out and counted. The table has one line for each "
-          "model: how many directions were compared, and the mean, the 95th percentile and the largest CIEDE2000 "
-          "difference, and the mean and the 95th percentile of the CIE 1976 difference. A measured BRDF is for the "
+          "model: how many directions were compared, and the mean, the 95th percentile and the largest difference by "
+          "--formula, and the mean and the 95th percentile of the CIE 1976 difference. A measured BRDF is for the "
           "paint that has the name of its file; if there is none, it is for all paints.");
   spec.option("illuminant", "NAME,...", "A,F11", &o.illuminants, "tell how the colors change in other light")
       .more(
           "The names are " + color::spectral_illuminants() +
-          ". The table has a column inconstancy_NAME for each: the CIEDE2000 difference between the color under the "
+          ". The table has a column inconstancy_NAME for each: the color difference between the color under the "
           "illuminant of the readings and under this one, to an eye that has adapted to each of them by CMCCAT2000, at "
           "the geometry where it is largest. It is n/a for paints without spectra; paint-convert keeps those of CxF "
           "and of measured BRDFs. The columns stand behind all others, and --where does not know them.");
   spec.option("standard", "PAINT", "fitted.xml#candy_red", &o.standard, "pair each paint with this one")
       .more(
           "With --illuminant the table has a column metamerism_NAME for each illuminant: the special metamerism index "
-          "of CIE 15, by CIEDE2000, at the geometry where it is largest. It tells how much two paints that match in "
+          "of CIE 15 at the geometry where it is largest. It tells how much two paints that match in "
           "the light of the readings differ in this one. What they differ by in the light of the readings is taken "
           "off before, by a factor for each of X, Y and Z. PAINT is a file with one paint, or FILE#NAME.");
+  spec.option("formula", "FORMULA", "cmc:2:1", &o.formula, "formula of these color differences")
+      .more("It is one of " + color::formula_words() +
+            "; goniochrome-theory(7), COLOR DIFFERENCES, has them. With --score its columns are named after it, de00 "
+            "where it is CIEDE2000, and the readings are the standard.");
   add_keep_going(spec, "keep-going,k", o.keep_going, "paints that cannot be read");
   spec.heading = "output";
   add_table_options(spec, o.output, o.format, "the paints themselves, with every element kept", "paint");
@@ -82,24 +93,29 @@ cli::ToolSpec tool_spec(Options& o) {
       {"paint-stats -w 'class==metallic and L15>60' -f paints testdata/paints.paints.xml | fit-paint -q --basis "
        "testdata/b5.basis.xml -o light.paints.xml",
        "fit the light metallics of a library and leave the rest out"},
+      {"paint-stats --classify -w 'class==metallic' -f paints testdata/paints.csv -o metallics.paints.xml",
+       "collect what seems to be a metallic in a table that knows no classes"},
       {"paint-stats -w 'flags==through_gray' -o turning.paints.xml testdata/paints.paints.xml",
        "collect the paints that change their hue by way of gray; the ending says that paints are wanted"}};
   spec.report = {{"paints[].name", "name of the paint; beside it stand code, class, source and flags[]"}};
   for (const paint::MetricColumn& column : paint::metric_columns())
     spec.report.push_back({std::string("paints[].") + column.name, column.meaning});
-  spec.report.insert(spec.report.end(),
-                     {{"read", "number of paints read"},
-                      {"paints[].under.NAME",
-                       "with --illuminant: inconstancy and, with --standard, metamerism, each with "
-                       "its CIEDE2000 difference by geometry"},
-                      {"paints[].textures[]", "quantity, geometry, version, instrument and value, where there are any"},
-                      {"matched", "number of paints written"},
-                      {"left_out", "number of paints that --keep-going left out"},
-                      {"scores[]",
-                       "with --score: name, model, rows, left_out, de00_mean, de00_p95, de00_max, "
-                       "de76_mean and de76_p95 of each model of a paint"},
-                      {"paints_per_s", "paints a second, without reading and writing"},
-                      {"warnings[]", "messages about paints left out"}});
+  spec.report.insert(
+      spec.report.end(),
+      {{"read", "number of paints read"},
+       {"paints[].under.NAME",
+        "with --illuminant: inconstancy and, with --standard, metamerism, each with "
+        "its color difference by geometry"},
+       {"paints[].textures[]", "quantity, geometry, version, instrument and value, where there are any"},
+       {"paints[].class_source", "with --classify: stated, inferred, or - where the class is unknown"},
+       {"inferred, undecided", "with --classify: number of paints that state no class and got one, or none"},
+       {"matched", "number of paints written"},
+       {"left_out", "number of paints that --keep-going left out"},
+       {"scores[]",
+        "with --score: name, model, rows, left_out, de00_mean, de00_p95, de00_max, or "
+        "those of another formula, de76_mean and de76_p95 of each model of a paint"},
+       {"paints_per_s", "paints a second, without reading and writing"},
+       {"warnings[]", "messages about paints left out"}});
   spec.see_also = {"colorsnap(1)", "paint-convert(1)", "paint-edit(1)"};
   return spec;
 }

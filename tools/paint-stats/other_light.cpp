@@ -1,6 +1,7 @@
 #include "other_light.h"
 
 #include "formats/xml.h"
+#include "formulas.h"
 #include "illuminants.h"
 #include "table_output.h"
 
@@ -12,15 +13,15 @@ namespace {
 std::string field_of(const std::vector<paint::DifferenceAt>& differences) {
   double largest = -1;
   for (const paint::DifferenceAt& difference : differences)
-    if (!(difference.de00 <= largest)) largest = difference.de00;  // also one that is not a number
-  constexpr int kDecimals = 2;                                     // these come from spectra
+    if (!(difference.value <= largest)) largest = difference.value;  // also one that is not a number
+  constexpr int kDecimals = 2;                                       // these come from spectra
   return "\t" + (largest >= 0 ? table_number(largest, kDecimals) : std::string("n/a"));
 }
 
 Json json_of(const std::vector<paint::DifferenceAt>& differences) {
   Json json = Json::object();
   for (const paint::DifferenceAt& difference : differences)
-    json[paint::geometry_name(difference.geometry)] = json_number(difference.de00);
+    json[paint::geometry_name(difference.geometry)] = json_number(difference.value);
   return json;
 }
 
@@ -38,6 +39,7 @@ Result<paint::Measurement> standard_of(const std::string& reference) {
 
 Result<OtherLight> OtherLight::create(const Options& options) {
   OtherLight result;
+  GONIO_ASSIGN(result.formula_, formula_of(options.formula));
   GONIO_ASSIGN(result.illuminants_, illuminants_of(options.illuminants));
   if (options.standard.empty()) return result;
   if (result.illuminants_.empty())
@@ -62,9 +64,9 @@ Result<OtherLight::Figures> OtherLight::of(const paint::Paint& paint) const {
     std::vector<paint::DifferenceAt> inconstancy, metamerism;
     if (known) {
       const color::ViewingCondition reference = paint.measurement->condition, test = {name, reference.observer_deg};
-      GONIO_ASSIGN(inconstancy, paint::inconstancy(*paint.measurement, reference, test));
+      GONIO_ASSIGN(inconstancy, paint::inconstancy(*paint.measurement, reference, test, formula_));
       if (standard_) {
-        GONIO_ASSIGN(metamerism, paint::metamerism(*paint.measurement, *standard_, reference, test));
+        GONIO_ASSIGN(metamerism, paint::metamerism(*paint.measurement, *standard_, reference, test, formula_));
       }
     }
     figures.columns += field_of(inconstancy);

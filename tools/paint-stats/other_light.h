@@ -28,6 +28,7 @@ class OtherLight {
 
  private:
   std::vector<std::string> illuminants_;
+  color::DifferenceFormula formula_ = paint::kInOtherLight;
   std::optional<paint::Measurement> standard_;
 };
 

@@ -321,3 +321,28 @@ spectral() {
   [ "$status" -eq 1 ]
   [[ "$stderr" == *"the input holds no paints"* ]]
 }
+
+@test "classes are inferred from readings and told as inferred" {
+  paint-convert -q "$TESTDATA/paints.paints.xml" --to csv -o bare.csv
+  paint-convert -q bare.csv -o bare.paints.xml
+  run --separate-stderr paint-stats --classify bare.paints.xml -o t.tsv
+  [ "$status" -eq 0 ]
+  # No class is wrong: they are stated in the library.
+  paste <(column class <t.tsv) <(paint-stats -q "$paints" | column class) >pairs
+  [ "$(awk '$1 != "unknown" && $2 != "unknown" && $1 != $2' pairs | wc -l)" -eq 0 ]
+  [ "$(grep -cv unknown pairs)" -gt 40 ]
+  [ "$(column class_source <t.tsv | sort -u | xargs)" = "- inferred" ]
+  paint-stats -q --classify "$paints" | column class_source | grep -qx stated
+  paint-stats -q --classify -w 'class==metallic' -f paints bare.paints.xml | grep -q 'name="silver_fine" class="metallic"'
+}
+
+@test "other formulas tell the inconstancy too" {
+  printf 'sample,geometry,illuminant,observer' >s.csv
+  { printf ',%d' $(seq 400 10 700); printf '\nred,45as45,D65,10'; printf ',0.%02d' $(seq 10 2 70); echo; } >>s.csv
+  paint-convert -q --scale factor s.csv -o s.paints.xml
+  de00=$(paint-stats -q --illuminant A s.paints.xml | column inconstancy_A)
+  cie76=$(paint-stats -q --illuminant A --formula cie76 s.paints.xml | column inconstancy_A)
+  [ "$de00" != "$cie76" ]
+  run paint-stats --formula cie2 s.paints.xml
+  [ "$status" -eq 2 ]
+}

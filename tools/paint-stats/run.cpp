@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "other_light.h"
+#include "paint/inferred_class.h"
 #include "paint/metrics.h"
 #include "paint_stream.h"
 #include "score.h"
@@ -32,7 +33,13 @@ int decimals_for(const paint::Paint& paint) {
 struct Figures {
   paint::PaintMetrics numbers;
   OtherLight::Figures elsewhere;
+  std::optional<bool> inferred;  // with --classify: whether the class follows from the readings
 };
+
+// Where a class comes from.
+const char* class_source(const paint::Paint& paint, const Figures& figures) {
+  return paint.paint_class == paint::PaintClass::kUnknown ? "-" : *figures.inferred ? "inferred" : "stated";
+}
 
 Json as_json(const paint::Paint& paint, const Figures& figures) {
   const paint::PaintMetrics& numbers = figures.numbers;
@@ -48,14 +55,15 @@ Json as_json(const paint::Paint& paint, const Figures& figures) {
                                   {"value", texture.value}});
   json["source"] = paint::source_name(numbers.source);
   json["flags"] = numbers.flags;
+  if (figures.inferred) json["class_source"] = class_source(paint, figures);
   if (!figures.elsewhere.json.is_null()) json["under"] = figures.elsewhere.json;
   return json;
 }
 
-std::string table_head(const OtherLight& light) {
+std::string table_head(const OtherLight& light, bool classify) {
   std::string text = "name\tcode\tclass";
   for (const paint::MetricColumn& column : paint::metric_columns()) text += std::string("\t") + column.name;
-  return text + "\tsource\tflags" + light.head() + "\n";
+  return text + "\tsource\tflags" + light.head() + (classify ? "\tclass_source\n" : "\n");
 }
 
 std::string table_line(const paint::Paint& paint, const Figures& figures) {
@@ -68,13 +76,13 @@ std::string table_line(const paint::Paint& paint, const Figures& figures) {
   std::string flags;
   for (const char* flag : numbers.flags) flags += (flags.empty() ? "" : ",") + std::string(flag);
   return text + "\t" + paint::source_name(numbers.source) + "\t" + (flags.empty() ? "-" : flags) +
-         figures.elsewhere.columns + "\n";
+         figures.elsewhere.columns + (figures.inferred ? std::string("\t") + class_source(paint, figures) : "") + "\n";
 }
 
 // Where matching paints go, in one of the three formats.
 class Sink {
  public:
-  static Result<Sink> begin(Format format, OutputFile file, Prolog prolog, const OtherLight& light,
+  static Result<Sink> begin(Format format, OutputFile file, Prolog prolog, const OtherLight& light, bool classify,
                             const cli::Session& session) {
     Sink sink;
     sink.format_ = format;
@@ -84,7 +92,7 @@ class Sink {
       return sink;
     }
     sink.file_.emplace(std::move(file));
-    if (format == Format::kTable) GONIO_TRY(sink.file_->write(table_head(light)));
+    if (format == Format::kTable) GONIO_TRY(sink.file_->write(table_head(light, classify)));
     return sink;
   }
 
@@ -124,7 +132,7 @@ class Run {
     prolog.take(batches);
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_.format, options_.output), std::move(file), std::move(prolog),
-                                        *light_, session_));
+                                        *light_, options_.classify, session_));
     sink_.emplace(std::move(sink));
     session_.begin_list("paints");
     GONIO_TRY(for_each_batch(
@@ -153,7 +161,7 @@ class Run {
     read_ += batch.size();
     for (std::size_t i = 0; i < batch.size(); ++i) {
       if (!figures[i]->ok()) return input_error("paint \"{}\": {}", batch[i].name, figures[i]->error().message);
-      GONIO_TRY(take(batch[i], **figures[i]));
+      GONIO_TRY(options_.classify ? take_classified(batch[i], **figures[i]) : take(batch[i], **figures[i]));
     }
     return sink_->flush();
   }
@@ -161,7 +169,19 @@ class Run {
   Result<Figures> figures_of(const paint::Paint& paint) const {
     GONIO_ASSIGN(paint::PaintMetrics numbers, paint::metrics(paint));
     GONIO_ASSIGN(OtherLight::Figures elsewhere, light_->of(paint));
-    return Figures{std::move(numbers), std::move(elsewhere)};
+    return Figures{std::move(numbers), std::move(elsewhere), std::nullopt};
+  }
+
+  // Gives a paint that states no class the one that its readings tell.
+  Result<void> take_classified(paint::Paint paint, Figures& figures) {
+    figures.inferred = false;
+    if (paint.paint_class == paint::PaintClass::kUnknown) {
+      const auto found = paint::inferred_class(paint, figures.numbers);
+      ++(found ? inferred_ : undecided_);
+      figures.inferred = found.has_value();
+      paint.paint_class = found.value_or(paint::PaintClass::kUnknown);
+    }
+    return take(paint, figures);
   }
 
   Result<void> take(const paint::Paint& paint, const Figures& figures) {
@@ -179,6 +199,10 @@ class Run {
     results["paints_per_s"] = measuring_s_ > 0 ? static_cast<double>(read_) / measuring_s_ : 0.0;
     std::string line = fmt::format("{}: {} paints", session_.tool(), read_);
     if (filter_) line += fmt::format(", {} match", matched_);
+    if (options_.classify) {
+      results["inferred"] = inferred_, results["undecided"] = undecided_;
+      line += fmt::format(", {} classes inferred from readings, {} undecided", inferred_, undecided_);
+    }
     if (left_out_ > 0) line += fmt::format(", {} left out", left_out_);
     if (read_ + left_out_ == 0) session_.warn("the input holds no paints");
     session_.say(line);
@@ -190,7 +214,7 @@ class Run {
   std::optional<paint::PaintFilter> filter_;
   std::optional<OtherLight> light_;
   std::optional<Sink> sink_;
-  std::size_t read_ = 0, matched_ = 0, left_out_ = 0;
+  std::size_t read_ = 0, matched_ = 0, left_out_ = 0, inferred_ = 0, undecided_ = 0;
   double measuring_s_ = 0;
 };
 

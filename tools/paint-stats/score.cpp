@@ -14,6 +14,7 @@
 #include "formats/csv.h"
 #include "formats/encoding.h"
 #include "formats/xml.h"
+#include "formulas.h"
 #include "image/surface_file.h"
 #include "math/statistics.h"
 #include "paint/curve.h"
@@ -117,20 +118,27 @@ class Table {
 // The differences of one model.
 struct Score {
   std::string model;
-  std::vector<double> de76, de00;
+  std::vector<double> de76, by_formula;
+};
+
+// The differences of all models of a paint by a formula.
+struct Scores {
+  color::DifferenceFormula formula;
+  std::vector<Score> list;
 };
 
 // `predicted` gives Lab at the directions of a row, or nothing where the model says nothing.
 template <class Predicted>
-void add_score(const std::string& model, const Rows& rows, Predicted&& predicted, std::vector<Score>& scores) {
+void add_score(const std::string& model, const Rows& rows, Predicted&& predicted, Scores& scores) {
   Score score{model, {}, {}};
   for (const Row& row : rows.kept) {
     const std::optional<color::Lab> lab = predicted(row);
     if (!lab) continue;
     score.de76.push_back(color::delta_e_76(*lab, row.lab));
-    score.de00.push_back(color::delta_e_2000(*lab, row.lab));
+    const double aspecular_deg = paint::aspecular_angle_rad(row.light, row.view, {0, 0, 1}) / kDegree;
+    score.by_formula.push_back(color::difference(scores.formula, row.lab, *lab, aspecular_deg));
   }
-  if (!score.de76.empty()) scores.push_back(std::move(score));
+  if (!score.de76.empty()) scores.list.push_back(std::move(score));
 }
 
 bool is_beyond_critical(const Row& row, double index) {
@@ -139,8 +147,9 @@ bool is_beyond_critical(const Row& row, double index) {
 }
 
 // Every model that a paint has.
-Result<std::vector<Score>> scores_of(const paint::Paint& paint, const Rows& rows, const std::filesystem::path& folder) {
-  std::vector<Score> scores;
+Result<Scores> scores_of(const paint::Paint& paint, const Rows& rows, const std::filesystem::path& folder,
+                         const color::DifferenceFormula& formula) {
+  Scores scores{formula, {}};
   const auto aspecular_deg = [](const Row& row) {
     return paint::aspecular_angle_rad(row.light, row.view, {0, 0, 1}) / kDegree;
   };
@@ -182,14 +191,20 @@ Result<std::vector<Score>> scores_of(const paint::Paint& paint, const Rows& rows
   return Result(std::move(scores));
 }
 
-Json as_json(const std::string& paint, const Score& score, const Rows& rows) {
+// The name of the columns of a formula, which is de00 for CIEDE2000.
+std::string column_of(const color::DifferenceFormula& formula) {
+  using Kind = color::DifferenceFormula::Kind;
+  return formula.kind == Kind::kCiede2000 ? "de00" : formula_name(formula);
+}
+
+Json as_json(const std::string& paint, const Score& score, const std::string& column, const Rows& rows) {
   return {{"name", paint},
           {"model", score.model},
           {"rows", score.de76.size()},
           {"left_out", rows.left_out},
-          {"de00_mean", math::mean(score.de00)},
-          {"de00_p95", math::percentile_95(score.de00)},
-          {"de00_max", *std::max_element(score.de00.begin(), score.de00.end())},
+          {column + "_mean", math::mean(score.by_formula)},
+          {column + "_p95", math::percentile_95(score.by_formula)},
+          {column + "_max", *std::max_element(score.by_formula.begin(), score.by_formula.end())},
           {"de76_mean", math::mean(score.de76)},
           {"de76_p95", math::percentile_95(score.de76)}};
 }
@@ -209,6 +224,8 @@ std::string line_of(const Json& json) {
 Result<cli::Verdict> score(const Options& options, cli::Session& session) {
   const Format format = format_of(options.format, options.output);
   if (format == Format::kPaints) return usage_error("--score writes a table or JSON, and no paints");
+  GONIO_ASSIGN(const color::DifferenceFormula formula, formula_of(options.formula));
+  const std::string column = column_of(formula);
   GONIO_ASSIGN(const Table table, Table::read(options.score));
   std::vector<std::pair<paint::Paint, std::filesystem::path>> paints;
   bool named = false;
@@ -219,19 +236,20 @@ Result<cli::Verdict> score(const Options& options, cli::Session& session) {
       paints.emplace_back(std::move(paint), std::filesystem::path(formats::paint_reference(path).file).parent_path());
     }
   }
-  std::string text = format == Format::kTable
-                         ? "name\tmodel\trows\tleft_out\tde00_mean\tde00_p95\tde00_max\tde76_mean\tde76_p95\n"
-                         : "";
+  std::string text =
+      format == Format::kTable
+          ? fmt::format("name\tmodel\trows\tleft_out\t{0}_mean\t{0}_p95\t{0}_max\tde76_mean\tde76_p95\n", column)
+          : "";
   std::size_t scored = 0;
   session.begin_list("scores");
   for (const auto& [paint, folder] : paints) {
     if (table.is_of_one_paint() && named && paint.name != table.stem()) continue;
     GONIO_ASSIGN(const std::optional<Rows> rows, table.of(paint));
     if (!rows || rows->kept.empty()) continue;
-    GONIO_ASSIGN(const std::vector<Score> scores, scores_of(paint, *rows, folder));
-    scored += !scores.empty();
-    for (const Score& each : scores) {
-      const Json json = as_json(paint.name, each, *rows);
+    GONIO_ASSIGN(const Scores scores, scores_of(paint, *rows, folder, formula));
+    scored += !scores.list.empty();
+    for (const Score& each : scores.list) {
+      const Json json = as_json(paint.name, each, column, *rows);
       text += format == Format::kTable ? line_of(json) : json.dump() + "\n";
       session.add("scores", [&] { return json; });
     }

@@ -17,6 +17,8 @@ struct Options {
   std::string score;
   std::vector<std::string> illuminants;
   std::string standard;
+  std::string formula = "ciede2000";
+  bool classify = false;
   bool keep_going = false;
 };
 

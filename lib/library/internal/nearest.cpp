@@ -40,7 +40,7 @@ namespace goniochrome::library {
 // 6. G falls with Cb. The chroma of y lies between that of the box's point nearest to the gray axis and that of a point
 //    farthest from it, which bounds G on both sides: its least value in (1 + G)^2, its largest in Cb'.
 // 7. Cb' grows with G and with the chroma of y; RC and SC grow with Cb'.
-double de00_floor(const color::Lab& color, const LabBox& box) {
+double de00_floor(const color::Lab& color, const color::LabBox& box) {
   const auto gap = [](double value, double low, double high) { return std::max({low - value, value - high, 0.0}); };
   const auto squared = [](double x) { return x * x; };
   const auto ratio7 = [&](double chroma) {  // sqrt(C^7/(C^7 + 25^7))
@@ -99,18 +99,24 @@ Pair de76_floors(const color::Lab& lab, const ChildBounds* bounds) {
   return {std::sqrt(sum[0]), std::sqrt(sum[1])};
 }
 
-Pair de00_floors(const color::Lab& lab, const ChildBounds* bounds) {
+// A number that no color of the box is nearer than, by any formula but CIE 1976.
+double floor_of(const color::DifferenceFormula& metric, const SearchTerm& term, const color::LabBox& box) {
+  return metric == kDe00 ? de00_floor(term.lab, box)
+                         : color::difference_floor(metric, term.lab, box, term.aspecular_deg);
+}
+
+Pair floors(const color::DifferenceFormula& metric, const SearchTerm& term, const ChildBounds* bounds) {
   const auto box = [&](int side) {
-    return LabBox{{bounds[0].low[side], bounds[1].low[side], bounds[2].low[side]},
-                  {bounds[0].high[side], bounds[1].high[side], bounds[2].high[side]}};
+    return color::LabBox{{bounds[0].low[side], bounds[1].low[side], bounds[2].low[side]},
+                         {bounds[0].high[side], bounds[1].high[side], bounds[2].high[side]}};
   };
-  return {de00_floor(lab, box(0)), de00_floor(lab, box(1))};
+  return {floor_of(metric, term, box(0)), floor_of(metric, term, box(1))};
 }
 
 class Search {
  public:
-  Search(const TreeView& tree, std::span<const SearchTerm> terms, ColorMetric metric, std::span<const LeafMask> masks,
-         NearestMatches& best)
+  Search(const TreeView& tree, std::span<const SearchTerm> terms, const color::DifferenceFormula& metric,
+         std::span<const LeafMask> masks, NearestMatches& best)
       : tree_(tree), terms_(terms), metric_(metric), masks_(masks), best_(best), paint_(terms.size()) {
     for (const SearchTerm& term : terms) slack_ += term.weight * kAbsoluteSlack;
   }
@@ -138,22 +144,22 @@ class Search {
   void look_at(std::size_t leaf) {
     const LeafMask mask = masks_.empty() ? full_leaf(tree_, leaf) : masks_[leaf];
     if (mask == 0) return;
-    std::array<double, kLeafSize> floors{};
+    std::array<double, kLeafSize> least{};
     for (const SearchTerm& term : terms_) {
       const double* block = tree_.block(leaf) + 3 * term.geometry * kLeafSize;
-      if (metric_ == ColorMetric::kDe76) {
-        add_de76(block, term.lab.L, term.lab.a, term.lab.b, term.weight, floors.data());
+      if (metric_ == kDe76) {
+        add_de76(block, term.lab.L, term.lab.a, term.lab.b, term.weight, least.data());
       } else {
         for (LeafMask rest = mask; rest; rest &= rest - 1) {
           const int lane = std::countr_zero(rest);
           const color::Lab lab = color(block, lane);
-          floors[lane] += term.weight * de00_floor(term.lab, {lab, lab});
+          least[lane] += term.weight * floor_of(metric_, term, {lab, lab});
         }
       }
     }
     for (LeafMask rest = mask; rest; rest &= rest - 1) {
       const int lane = std::countr_zero(rest);
-      if (!out_of_reach(floors[lane])) offer(leaf, lane);
+      if (!out_of_reach(least[lane])) offer(leaf, lane);
     }
   }
 
@@ -176,8 +182,7 @@ class Search {
     Pair sum;
     for (const SearchTerm& term : terms_) {
       const ChildBounds* children = tree_.children(node) + 3 * term.geometry;
-      const Pair part =
-          metric_ == ColorMetric::kDe76 ? de76_floors(term.lab, children) : de00_floors(term.lab, children);
+      const Pair part = metric_ == kDe76 ? de76_floors(term.lab, children) : floors(metric_, term, children);
       sum.left += term.weight * part.left;
       sum.right += term.weight * part.right;
     }
@@ -186,7 +191,7 @@ class Search {
 
   const TreeView& tree_;
   std::span<const SearchTerm> terms_;
-  ColorMetric metric_;
+  color::DifferenceFormula metric_;
   std::span<const LeafMask> masks_;
   NearestMatches& best_;
   std::vector<color::Lab> paint_;
@@ -199,11 +204,11 @@ SearchMethod faster_method(std::size_t paints, std::size_t passing) {
   return paints > kLeafSize && passing >= paints / kScanFraction ? SearchMethod::kTree : SearchMethod::kScan;
 }
 
-double search_distance(std::span<const SearchTerm> terms, std::span<const color::Lab> lab, ColorMetric metric) {
+double search_distance(std::span<const SearchTerm> terms, std::span<const color::Lab> lab,
+                       const color::DifferenceFormula& metric) {
   double sum = 0;
   for (std::size_t i = 0; i < terms.size(); ++i)
-    sum += terms[i].weight * (metric == ColorMetric::kDe76 ? color::delta_e_76(terms[i].lab, lab[i])
-                                                           : color::delta_e_2000(terms[i].lab, lab[i]));
+    sum += terms[i].weight * color::difference(metric, terms[i].lab, lab[i], terms[i].aspecular_deg);
   return sum;
 }
 
@@ -222,8 +227,8 @@ LeafMask full_leaf(const TreeView& tree, std::size_t leaf) {
   return count == kLeafSize ? ~LeafMask{0} : (LeafMask{1} << count) - 1;
 }
 
-void find_nearest(const TreeView& tree, std::span<const SearchTerm> terms, ColorMetric metric, SearchMethod method,
-                  std::span<const LeafMask> masks, NearestMatches& best) {
+void find_nearest(const TreeView& tree, std::span<const SearchTerm> terms, const color::DifferenceFormula& metric,
+                  SearchMethod method, std::span<const LeafMask> masks, NearestMatches& best) {
   if (tree.size == 0) return;
   Search search(tree, terms, metric, masks, best);
   if (method == SearchMethod::kTree) return search.descend(0, 0, tree.leaves());

@@ -6,21 +6,19 @@
 #include <span>
 #include <vector>
 
-#include "color/color.h"
+#include "color/color_difference.h"
 #include "library/internal/tree.h"
 
 namespace goniochrome::library {
 
-// Colors with lower.L <= L <= upper.L, and so on.
-struct LabBox {
-  color::Lab lower, upper;
-};
-
 // A number that is not above delta_e_2000(color, y) for any y in `box`, except for rounding and for the 1e-9 of chroma
 // that CIEDE2000 calls gray (a slack of 1e-9 relative and 1e-8 absolute is ample). The box may be a point.
-double de00_floor(const color::Lab& color, const LabBox& box);
+double de00_floor(const color::Lab& color, const color::LabBox& box);
 
-enum class ColorMetric { kDe76, kDe00 };
+// The two formulas that searches know best.
+inline constexpr color::DifferenceFormula kDe76{color::DifferenceFormula::Kind::kCie76};
+inline constexpr color::DifferenceFormula kDe00{color::DifferenceFormula::Kind::kCiede2000};
+
 enum class SearchMethod { kTree, kScan };
 
 // The faster method for a tree of `paints`, of which `passing` are to be considered. library_bench measured it on
@@ -36,6 +34,7 @@ struct SearchTerm {
   std::size_t geometry = 0;  // channels 3 geometry, 3 geometry + 1, 3 geometry + 2
   color::Lab lab;
   double weight = 1;
+  double aspecular_deg = 45;  // of that geometry, which DIN 6175 asks for
 };
 
 struct Match {
@@ -49,8 +48,9 @@ struct Match {
 };
 
 // The distance that all searches compare: the sum over the terms, in their order, of weight times color difference.
-// `lab` has the other paint's color for each term.
-double search_distance(std::span<const SearchTerm> terms, std::span<const color::Lab> lab, ColorMetric metric);
+// `lab` has the other paint's color for each term. The query is the standard of formulas that are not symmetric.
+double search_distance(std::span<const SearchTerm> terms, std::span<const color::Lab> lab,
+                       const color::DifferenceFormula& metric);
 
 // The best `count` matches offered so far, nearest first.
 class NearestMatches {
@@ -77,7 +77,7 @@ LeafMask full_leaf(const TreeView& tree, std::size_t leaf);
 
 // Offers `best` every paint of the tree that can be among its nearest. `masks`, if not empty, has a word for each leaf.
 // Both methods give the same answer to the last bit, ties included.
-void find_nearest(const TreeView& tree, std::span<const SearchTerm> terms, ColorMetric metric, SearchMethod method,
-                  std::span<const LeafMask> masks, NearestMatches& best);
+void find_nearest(const TreeView& tree, std::span<const SearchTerm> terms, const color::DifferenceFormula& metric,
+                  SearchMethod method, std::span<const LeafMask> masks, NearestMatches& best);
 
 }  // namespace goniochrome::library

@@ -44,7 +44,7 @@ const Library& library(std::size_t size) {
   return made;
 }
 
-bool agrees_with_brute_force(const Library& made, const std::vector<SearchTerm>& query, ColorMetric metric,
+bool agrees_with_brute_force(const Library& made, const std::vector<SearchTerm>& query, color::DifferenceFormula metric,
                              const NearestMatches& found) {
   NearestMatches brute(kCount);
   std::vector<color::Lab> lab(3);
@@ -60,8 +60,9 @@ bool agrees_with_brute_force(const Library& made, const std::vector<SearchTerm>&
   });
 }
 
-template <ColorMetric metric, SearchMethod method>
+template <bool de00, SearchMethod method>
 void nearest(benchmark::State& state) {
+  constexpr color::DifferenceFormula metric = de00 ? kDe00 : kDe76;
   const Library& made = library(static_cast<std::size_t>(state.range(0)));
   const auto run = [&](const std::vector<SearchTerm>& query) {
     NearestMatches best(kCount);
@@ -88,7 +89,7 @@ void nearest_filtered(benchmark::State& state) {
   std::size_t q = 0;
   for (auto _ : state) {
     NearestMatches best(kCount);
-    find_nearest(tree, made.queries[q++ % made.queries.size()], ColorMetric::kDe76, method, masks, best);
+    find_nearest(tree, made.queries[q++ % made.queries.size()], kDe76, method, masks, best);
     benchmark::DoNotOptimize(best);
   }
 }
@@ -108,10 +109,10 @@ void sizes(benchmark::internal::Benchmark* bench) {
   bench->Unit(benchmark::kMicrosecond);
 }
 
-BENCHMARK(nearest<ColorMetric::kDe76, SearchMethod::kScan>)->Apply(sizes);
-BENCHMARK(nearest<ColorMetric::kDe76, SearchMethod::kTree>)->Apply(sizes);
-BENCHMARK(nearest<ColorMetric::kDe00, SearchMethod::kScan>)->Apply(sizes);
-BENCHMARK(nearest<ColorMetric::kDe00, SearchMethod::kTree>)->Apply(sizes);
+BENCHMARK(nearest<false, SearchMethod::kScan>)->Apply(sizes);
+BENCHMARK(nearest<false, SearchMethod::kTree>)->Apply(sizes);
+BENCHMARK(nearest<true, SearchMethod::kScan>)->Apply(sizes);
+BENCHMARK(nearest<true, SearchMethod::kTree>)->Apply(sizes);
 BENCHMARK(nearest_filtered<SearchMethod::kScan>)
     ->ArgsProduct({{1000000}, {10, 100, 1000, 10000, 100000}})
     ->Unit(benchmark::kMicrosecond);

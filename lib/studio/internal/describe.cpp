@@ -48,17 +48,8 @@ color::Xyz screen_white(const color::ViewingCondition& condition) {
   return white.ok() ? *white : color::Xyz{0.9504, 1, 1.0888};
 }
 
-std::array<int, 3> screen_color(const color::Lab& lab, const color::Xyz& white) {
-  const color::Rgb shown = color::rec709_from_rec2020(display::in_display_gamut(color::rgb_from_lab(lab, white)));
-  std::array<int, 3> rgb{};
-  for (int c = 0; c < 3; ++c)
-    rgb[static_cast<std::size_t>(c)] = static_cast<int>(std::lround(255 * display::srgb_signal(shown[c])));
-  return rgb;
-}
-
 std::string css_color(const color::Lab& lab, const color::ViewingCondition& condition) {
-  const std::array<int, 3> rgb = screen_color(lab, screen_white(condition));
-  return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
+  return display::css_color(lab, screen_white(condition));
 }
 
 Result<Json> description(const paint::Paint& paint) {

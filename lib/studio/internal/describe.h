@@ -13,9 +13,6 @@ namespace goniochrome::studio {
 // The white that readings of this condition are relative to; that of D65 where the illuminant is unknown.
 color::Xyz screen_white(const color::ViewingCondition& condition);
 
-// The color as an sRGB display shows it, in 0..255.
-std::array<int, 3> screen_color(const color::Lab& lab, const color::Xyz& white);
-
 // "#rrggbb": the color as an sRGB display shows it, under the light that the reading is relative to.
 std::string css_color(const color::Lab& lab, const color::ViewingCondition& condition);
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "display/paint_view.h"
 #include "paint/metrics.h"
 #include "studio/internal/describe.h"
 
@@ -139,7 +140,7 @@ Result<Json> LibraryPane::cloud(JsonReader& request) {
     for (std::size_t place = 0; place < section.tree.size; ++place) {
       const color::Lab lab = lab_at(section.tree, place, g);
       cloud_.push_back({static_cast<float>(lab.L), static_cast<float>(lab.a), static_cast<float>(lab.b)});
-      const std::array<int, 3> rgb = screen_color(lab, white);
+      const std::array<int, 3> rgb = display::screen_color(lab, white);
       cloud_colors_.push_back(static_cast<std::uint32_t>(rgb[0]) | static_cast<std::uint32_t>(rgb[1]) << 8 |
                               static_cast<std::uint32_t>(rgb[2]) << 16 | 0xff000000U);
       cloud_paints_.push_back(section.tree.labels[place]);

@@ -1,0 +1,237 @@
+#include "quality/limits.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/text.h"
+#include "paint/edit.h"
+
+namespace goniochrome::quality {
+
+namespace {
+
+constexpr std::string_view kHead = "geometry,quantity,low,high";
+
+constexpr std::array kAngleQuantities = {"dL", "da", "db", "dC", "dH"};
+constexpr std::array kWholeQuantities = {"flop_index", "chroma_index", "hue_shift_index", "hue_travel_deg",
+                                         "gloss20",    "gloss60",      "gloss85"};
+
+bool is_one_of(const auto& names, std::string_view name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+bool is_difference(std::string_view quantity) {
+  return quantity == "dE" || (quantity.starts_with("dE_") && color::parse_formula(quantity.substr(3)).ok());
+}
+
+Result<void> check_quantity(const Limit& limit) {
+  const std::string& name = limit.quantity;
+  const bool whole = is_one_of(kWholeQuantities, name), angle = is_one_of(kAngleQuantities, name);
+  const bool other = name.starts_with("metamerism_") || name.starts_with("texture:");
+  if (!whole && !angle && !other && !is_difference(name))
+    return input_error(
+        "there is no quantity \"{}\": use dL, da, db, dC, dH, dE, dE_FORMULA, {}, metamerism_ILLUMINANT or "
+        "texture:NAME",
+        shown(name), joined({kWholeQuantities.begin(), kWholeQuantities.end()}, ", "));
+  if ((limit.at == kMean || limit.at == kLargest) && !is_difference(name))
+    return input_error("{} is for dE alone, and not for {}", limit.at, name);
+  if (whole && limit.at != "*" && limit.at != kWhole)
+    return input_error("{} belongs to the whole paint: write * for the geometry", name);
+  return {};
+}
+
+// A cell of a number; nothing where it is empty.
+Result<std::optional<double>> bound_in(std::string_view cell, const char* column) {
+  if (cell.empty()) return std::optional<double>();
+  const auto value = parse_number(cell);
+  if (!value) return input_error("{} is \"{}\", which is no number", column, shown(cell));
+  return value;
+}
+
+Result<Limit> limit_in(std::string_view line, char separator) {
+  std::vector<std::string_view> cells = split(line, separator);
+  while (cells.size() > 4 && trimmed(cells.back()).empty()) cells.pop_back();
+  if (cells.size() != 4) return input_error("has {} cells: write {}", cells.size(), kHead);
+  Limit limit{std::string(trimmed(cells[0])), std::string(trimmed(cells[1]))};
+  if (!is_one_of(std::array{"*", kMean, kLargest, kWhole}, limit.at) && !limit.quantity.starts_with("texture:")) {
+    const auto geometry = paint::parse_geometry(limit.at);
+    if (!geometry.ok()) return input_error("{}", geometry.error().message);
+    limit.at = paint::geometry_name(*geometry);
+  }
+  GONIO_TRY(check_quantity(limit));
+  GONIO_ASSIGN(limit.low, bound_in(trimmed(cells[2]), "low"));
+  GONIO_ASSIGN(limit.high, bound_in(trimmed(cells[3]), "high"));
+  if (!limit.low && !limit.high) return input_error("has neither low nor high: give one of them");
+  if (limit.low && limit.high && *limit.low > *limit.high)
+    return input_error("low is {}, above high, which is {}", shortest(*limit.low), shortest(*limit.high));
+  return Result(std::move(limit));
+}
+
+// Where a geometry lies between mirror direction and flop, as painters say it.
+const char* place_of(const paint::Geometry& geometry) {
+  const double angle_deg = paint::aspecular_angle_deg(geometry);
+  return angle_deg <= 30 ? " near gloss" : angle_deg <= 60 ? " in the face" : " in the flop";
+}
+
+// The color to which a hue turns, counterclockwise or clockwise.
+const char* hue_word(double hue_deg, bool up) {
+  constexpr std::array kUp = {"yellow", "green", "blue", "red"}, kDown = {"red", "yellow", "green", "blue"};
+  return (up ? kUp : kDown)[static_cast<std::size_t>(hue_deg / 90) % 4];
+}
+
+std::string fault_of(const Deviation& d, const AngleDifference* angle, bool up) {
+  const std::string& q = d.quantity;
+  if (q == "dL") return up ? "too light" : "too dark";
+  if (q == "da") return up ? "too red" : "too green";
+  if (q == "db") return up ? "too yellow" : "too blue";
+  if (q == "dC") return up ? "too colorful" : "too gray";
+  if (q == "dH") return std::string("too ") + hue_word(angle ? color::hue_deg(angle->standard) : 0, up);
+  if (q.starts_with("dE")) return up ? "too far off" : "nearer than the limit allows";
+  if (q.starts_with("gloss")) return up ? "too glossy" : "too matt";
+  if (q.starts_with("metamerism")) return "matches in the light of the readings alone";
+  if (q.starts_with("texture:")) return (up ? "too much " : "too little ") + q.substr(8);
+  return (up ? "too much " : "too little ") + std::string(q == "flop_index"       ? "flop"
+                                                          : q == "hue_travel_deg" ? "hue travel"
+                                                                                  : q);
+}
+
+// Two numbers with as few decimals as tell them apart, two at least.
+std::pair<std::string, std::string> told_apart(double value, double limit) {
+  for (int decimals = 2; decimals < 9; ++decimals) {
+    std::string a = fmt::format("{:.{}f}", value, decimals), b = fmt::format("{:.{}f}", limit, decimals);
+    if (a == b) continue;
+    for (std::string* text : {&a, &b}) {
+      text->erase(text->find_last_not_of('0') + 1);
+      if (text->ends_with('.')) text->pop_back();
+    }
+    return {a, b};
+  }
+  return {shortest(value), shortest(limit)};
+}
+
+Excess excess_of(const Deviation& d, const Limit& limit, bool up, const Comparison& comparison) {
+  const double bound = up ? *limit.high : *limit.low;
+  const auto [value, passed] = told_apart(d.value, bound);
+  const auto angle = std::ranges::find_if(
+      comparison.angles, [&](const AngleDifference& a) { return paint::geometry_name(a.geometry) == d.at; });
+  const AngleDifference* at = angle == comparison.angles.end() ? nullptr : &*angle;
+  std::string words = fmt::format("{}: {} {}, limit {}: {}{}", d.at, d.quantity, value, passed, fault_of(d, at, up),
+                                  at ? place_of(at->geometry) : "");
+  return {d, up ? std::nullopt : limit.low, up ? limit.high : std::nullopt, std::move(words)};
+}
+
+bool concerns(const Limit& limit, const Deviation& d, const std::string& first_formula) {
+  if ((limit.quantity == "dE" ? first_formula : limit.quantity) != d.quantity) return false;
+  return limit.at == "*" ? d.at != kMean && d.at != kLargest : limit.at == d.at;
+}
+
+bool keeps(double value, const Limit& limit) {
+  return !(limit.low && !(value >= *limit.low - kLimitSlack)) && !(limit.high && !(value <= *limit.high + kLimitSlack));
+}
+
+std::string unescaped(std::string text) {
+  for (const auto& [entity, letter] : {std::pair{"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&amp;", "&"}})
+    for (std::size_t at = 0; (at = text.find(entity, at)) != std::string::npos; at += 1)
+      text.replace(at, std::string_view(entity).size(), letter);
+  return text;
+}
+
+bool is_limits_element(const std::string& element) {
+  const std::string_view tag = std::string_view(element).substr(0, element.find('>'));
+  return tag.find(kQualityNamespace) != std::string_view::npos && tag.find("limits") < tag.find(' ');
+}
+
+}  // namespace
+
+Result<std::vector<Limit>> parse_limits(std::string_view table, const std::string& name) {
+  std::vector<Limit> limits;
+  char separator = ',';
+  int number = 0;
+  bool has_head = false;
+  if (table.starts_with("\xEF\xBB\xBF")) table.remove_prefix(3);
+  for (std::string_view line : split(table, '\n')) {
+    ++number;
+    line = trimmed(line);
+    if (line.empty() || line.starts_with('#')) continue;
+    if (!has_head) {
+      for (const char each : {'\t', ';'})
+        if (line.find(each) != std::string_view::npos) separator = each;
+      std::string head(line);
+      std::ranges::replace(head, separator, ',');
+      std::erase(head, ' ');
+      if (lower(head) != kHead) return input_error("{}:{}: the columns of limits are {}", name, number, kHead);
+      has_head = true;
+      continue;
+    }
+    auto limit = limit_in(line, separator);
+    if (!limit.ok()) return input_error("{}:{}: {}", name, number, limit.error().message);
+    limits.push_back(std::move(*limit));
+  }
+  if (limits.empty()) return input_error("{}: there is no limit in it", name);
+  return Result(std::move(limits));
+}
+
+std::string limits_table(const std::vector<Limit>& limits) {
+  std::string text = std::string(kHead) + "\n";
+  const auto cell = [](const std::optional<double>& bound) { return bound ? shortest(*bound) : ""; };
+  for (const Limit& limit : limits)
+    text += fmt::format("{},{},{},{}\n", limit.at, limit.quantity, cell(limit.low), cell(limit.high));
+  return text;
+}
+
+Result<std::vector<Limit>> limits_of(const paint::Paint& paint) {
+  const auto found = std::ranges::find_if(paint.foreign, is_limits_element);
+  if (found == paint.foreign.end()) return std::vector<Limit>();
+  const std::size_t begin = found->find('>') + 1, end = found->rfind("</");
+  if (end == std::string::npos || end < begin) return input_error("paint \"{}\": its limits are empty", paint.name);
+  return parse_limits(unescaped(found->substr(begin, end - begin)), fmt::format("limits of paint \"{}\"", paint.name));
+}
+
+paint::Paint with_limits(paint::Paint paint, const std::vector<Limit>& limits) {
+  std::erase_if(paint.foreign, is_limits_element);
+  paint.foreign.push_back(
+      fmt::format("<limits xmlns=\"{}\">\n{}</limits>", kQualityNamespace, xml_escaped(limits_table(limits), "")));
+  return paint;
+}
+
+Result<void> add_needed(const std::vector<Limit>& limits, CompareOptions& options) {
+  for (const Limit& limit : limits) {
+    if (limit.quantity.starts_with("dE_")) {
+      GONIO_ASSIGN(const color::DifferenceFormula formula, color::parse_formula(limit.quantity.substr(3)));
+      if (std::ranges::find(options.formulas, formula) == options.formulas.end()) options.formulas.push_back(formula);
+    } else if (limit.quantity.starts_with("metamerism_")) {
+      const std::string name = limit.quantity.substr(11);
+      if (std::ranges::find(options.illuminants, name) == options.illuminants.end())
+        options.illuminants.push_back(name);
+    }
+  }
+  return {};
+}
+
+std::vector<Excess> judged(const Comparison& comparison, const CompareOptions& options,
+                           const std::vector<Limit>& limits) {
+  std::vector<Excess> excesses;
+  if (limits.empty()) return excesses;
+  const std::vector<Deviation> all = deviations(comparison, options);
+  const std::string first_formula = quantity_of(options.formulas.front());
+  for (const Limit& limit : limits) {
+    bool met = false;
+    for (const Deviation& d : all) {
+      if (!concerns(limit, d, first_formula) || std::isnan(d.value)) continue;
+      met = true;
+      if (!keeps(d.value, limit))
+        excesses.push_back(excess_of(d, limit, limit.high && d.value > *limit.high, comparison));
+    }
+    if (met) continue;
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    excesses.push_back({{limit.at, limit.quantity, none},
+                        limit.low,
+                        limit.high,
+                        fmt::format("{}: {} has a limit and was not measured", limit.at, limit.quantity)});
+  }
+  return excesses;
+}
+
+}  // namespace goniochrome::quality

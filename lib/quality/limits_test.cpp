@@ -1,0 +1,155 @@
+#include "quality/limits.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random_for_test.h"
+#include "quality/limit_maker.h"
+
+namespace goniochrome::quality::limits_test {
+namespace {
+
+using Kind = color::DifferenceFormula::Kind;
+
+paint::Paint paint_of(const std::string& name, const color::Lab& at_15, const color::Lab& at_45,
+                      const color::Lab& at_110) {
+  paint::Paint paint;
+  paint.name = name;
+  paint.measurement = paint::Measurement{
+      {}, "", {{{.aspecular_deg = 15}, at_15}, {{.aspecular_deg = 45}, at_45}, {{.aspecular_deg = 110}, at_110}}};
+  return paint;
+}
+
+const paint::Paint kRed = paint_of("red", {60, 50, 30}, {40, 40, 20}, {20, 30, 10});
+
+Comparison moved(const color::Lab& by, const CompareOptions& options) {
+  paint::Paint sample = kRed;
+  for (paint::LabReading& row : sample.measurement->rows)
+    row.lab = {row.lab.L + by.L, row.lab.a + by.a, row.lab.b + by.b};
+  return *compare(*subject_of(kRed), *subject_of(sample), options);
+}
+
+std::vector<Limit> limits(const std::string& rows) {
+  const auto parsed = parse_limits("geometry,quantity,low,high\n" + rows, "limits.csv");
+  EXPECT_TRUE(parsed.ok()) << parsed.error().message;
+  return *parsed;
+}
+
+std::vector<std::string> words(const Comparison& comparison, const CompareOptions& options, const std::string& rows) {
+  std::vector<std::string> result;
+  for (const Excess& excess : judged(comparison, options, limits(rows))) result.push_back(excess.words);
+  return result;
+}
+
+const CompareOptions kOptions{{{Kind::kCiede2000}, {Kind::kCmc}}, {}};
+
+TEST(Limits, FailInWordsThatTellPlaceAmountAndDirection) {
+  const Comparison dark = moved({-2.1, 0, 0}, kOptions);
+  EXPECT_EQ(words(dark, kOptions, "45as15,dL,-1.5,\n"),
+            std::vector<std::string>{"45as15: dL -2.1, limit -1.5: too dark near gloss"});
+  EXPECT_EQ(words(dark, kOptions, "*,dL,-1.5,1.5\n").size(), 3u);
+  EXPECT_EQ(words(moved({0, 0, 3}, kOptions), kOptions, "45as110,db,,1\n"),
+            std::vector<std::string>{"45as110: db 3, limit 1: too yellow in the flop"});
+  // At a hue of 27 deg a turn counterclockwise is one to yellow.
+  EXPECT_EQ(words(moved({0, -1, 2}, kOptions), kOptions, "45as45,dH,-1,1\n").front().substr(0, 11), "45as45: dH ");
+  EXPECT_NE(words(moved({0, -1, 2}, kOptions), kOptions, "45as45,dH,-1,1\n").front().find("too yellow"),
+            std::string::npos);
+  EXPECT_EQ(words(dark, kOptions, "max,dE,,1\nmean,dE_cmc:2:1,,0.1\n").size(), 2u);
+}
+
+TEST(Limits, AreKeptByNumbersOnThem) {
+  // 124.3 - 2.4 is not a number of this base; the difference misses -2.4 by a rounding.
+  paint::Paint standard = kRed, sample = kRed;
+  standard.measurement->rows[0].lab.L = 124.3, sample.measurement->rows[0].lab.L = 121.9;
+  const Comparison c = *compare(*subject_of(standard), *subject_of(sample), kOptions);
+  EXPECT_TRUE(judged(c, kOptions, limits("45as15,dL,-2.4,2.4\n")).empty());
+  EXPECT_EQ(judged(c, kOptions, limits("45as15,dL,-2.39999,2.4\n")).size(), 1u);
+}
+
+TEST(Limits, OfWhatWasNotMeasuredFail) {
+  EXPECT_EQ(words(moved({}, kOptions), kOptions, "45as25,dL,-1,1\n"),
+            std::vector<std::string>{"45as25: dL has a limit and was not measured"});
+  EXPECT_EQ(words(moved({}, kOptions), kOptions, "*,gloss60,-1,1\n15d,texture:Sparkle Grade,,1\n").size(), 2u);
+}
+
+TEST(Limits, ComeBackFromTheirTableAndFromAPaint) {
+  const std::vector<Limit> all =
+      limits("*,dL,-1.5,1.5\nmax,dE_cmc:2:1,,1.7\n15d,texture:Sparkle <&> Grade,-1,\n*,metamerism_A,,0.5\n");
+  const auto same = [](const Limit& x, const Limit& y) {
+    return x.at == y.at && x.quantity == y.quantity && x.low == y.low && x.high == y.high;
+  };
+  EXPECT_TRUE(std::ranges::equal(*parse_limits(limits_table(all), "again"), all, same));
+  const paint::Paint carrying = with_limits(with_limits(kRed, limits("*,dL,0,1\n")), all);
+  EXPECT_EQ(carrying.foreign.size(), 1u);
+  EXPECT_TRUE(std::ranges::equal(*limits_of(carrying), all, same));
+  EXPECT_TRUE(limits_of(kRed)->empty());
+  CompareOptions options{{{Kind::kCie76}}, {}};
+  ASSERT_TRUE(add_needed(all, options).ok());
+  EXPECT_EQ(options.formulas.size(), 2u);
+  EXPECT_EQ(options.illuminants, std::vector<std::string>{"A"});
+}
+
+TEST(Limits, AreRefusedWithTheirLine) {
+  for (const char* wrong : {"*,dL,1,-1", "*,dQ,1,2", "*,dL,,", "*,dL,x,2", "*,dL,1", "x,dL,1,2", "mean,dL,1,2",
+                            "45as15,gloss60,1,2", "*,dE_cie99,,2", "*,dL,nan,2"}) {
+    const auto result = parse_limits(
+        "geometry;quantity;low;high\n\n*;dL;-1;1\n" +
+            [&] {
+              std::string row = wrong;
+              std::ranges::replace(row, ',', ';');
+              return row;
+            }() +
+            "\n",
+        "l.csv");
+    ASSERT_FALSE(result.ok()) << wrong;
+    EXPECT_EQ(result.error().message.substr(0, 8), "l.csv:4:") << wrong;
+  }
+  EXPECT_FALSE(parse_limits("dL,1,2\n", "l.csv").ok());
+  EXPECT_FALSE(parse_limits("geometry,quantity,low,high\n", "l.csv").ok());
+}
+
+TEST(Limits, MadeByAShareAreKeptByItAndNotByMore) {
+  TestNumbers random(5);
+  LimitMaker maker;
+  std::vector<Comparison> panels;
+  for (int i = 0; i < 200; ++i) {
+    panels.push_back(moved({2 * random() - 1, 4 * random() - 2, 3 * random()}, kOptions));
+    maker.add(panels.back(), kOptions);
+  }
+  const auto kept = [&](const std::vector<Limit>& limits) {
+    return std::ranges::count_if(panels, [&](const Comparison& c) { return judged(c, kOptions, limits).empty(); });
+  };
+  EXPECT_EQ(kept(*maker.by_share(0.9)), 180);
+  EXPECT_EQ(kept(*maker.by_share(1)), 200);
+  EXPECT_EQ(kept(*maker.by_spread(100)), 200);
+  LimitMaker few;
+  few.add(panels[0], kOptions), few.add(panels[1], kOptions);
+  EXPECT_FALSE(few.by_spread(3).ok());
+}
+
+TEST(Limits, AreReachedByTheEightPaintsThatJustPass) {
+  const std::vector<Limit> all = limits("*,dL,-1,2\n45as15,dE,,1.5\nmax,dE_cmc:2:1,,1\n");
+  const auto family = just_passing(kRed, kOptions, all);
+  ASSERT_TRUE(family.ok()) << family.error().message;
+  ASSERT_EQ(family->size(), 9u);
+  EXPECT_EQ((*family)[1].name, "red.face-lighter");
+  for (std::size_t i = 1; i < 9; ++i) {
+    const Comparison c = *compare(*subject_of(kRed), *subject_of((*family)[i]), kOptions);
+    EXPECT_TRUE(judged(c, kOptions, all).empty()) << (*family)[i].name;
+    paint::Paint beyond = (*family)[i];
+    for (std::size_t g = 0; g < 3; ++g) {
+      color::Lab& lab = beyond.measurement->rows[g].lab;
+      const color::Lab& s = kRed.measurement->rows[g].lab;
+      lab = {s.L + 1.001 * (lab.L - s.L), s.a + 1.001 * (lab.a - s.a), s.b + 1.001 * (lab.b - s.b)};
+      EXPECT_NE(lab, s);
+    }
+    EXPECT_GE(judged(*compare(*subject_of(kRed), *subject_of(beyond), kOptions), kOptions, all).size(), 1u);
+  }
+  EXPECT_FALSE(just_passing(kRed, kOptions, limits("*,dL,-1,1\n")).ok());
+  EXPECT_FALSE(just_passing(kRed, kOptions, limits("*,dL,1,2\n")).ok());
+}
+
+}  // namespace
+}  // namespace goniochrome::quality::limits_test

@@ -1,0 +1,22 @@
+// Pages of charts: every judgement with its pictures, and the control charts of all samples in their order.
+#pragma once
+
+#include <vector>
+
+#include "cli/tool.h"
+#include "sink.h"
+#include "tool.h"
+
+namespace goniochrome::tool {
+
+struct ChartedSample {
+  Judgement judgement;
+  paint::Paint sample;
+};
+
+// Writes the page of --chart, or a folder with a page for each sample and an index. Error: the drawing cannot be set up
+// or a file cannot be written.
+Result<void> write_charts(const Options& options, const std::vector<ChartedSample>& samples,
+                          const quality::CompareOptions& compare, cli::Session& session);
+
+}  // namespace goniochrome::tool

@@ -1,0 +1,144 @@
+#include "sink.h"
+
+#include <algorithm>
+
+#include "base/text.h"
+
+namespace goniochrome::tool {
+
+namespace {
+
+std::string table_head(const quality::CompareOptions& compare) {
+  std::string text = "sample\tminus_standard\tgeometry\tdL\tda\tdb\tdC\tdH";
+  for (const color::DifferenceFormula& formula : compare.formulas) text += "\t" + quality::quantity_of(formula);
+  return text + "\tother\tverdict\n";
+}
+
+// The other quantities at a place.
+std::string others_at(const quality::Comparison& comparison, const std::string& at, int decimals) {
+  std::string text;
+  for (const quality::Deviation& d : comparison.others)
+    if (d.at == at) text += (text.empty() ? "" : ",") + table_field(d.quantity) + "=" + table_number(d.value, decimals);
+  return text.empty() ? "-" : text;
+}
+
+std::string verdict_at(const Judgement& judgement, const std::string& at) {
+  const bool fails =
+      std::ranges::any_of(judgement.excesses, [&](const quality::Excess& excess) { return excess.deviation.at == at; });
+  return judgement.standard->limits.empty() ? "-" : fails ? "fail" : "pass";
+}
+
+std::string table_line(const Judgement& judgement, const std::string& at, const quality::AngleDifference& angle,
+                       int decimals) {
+  const quality::Comparison& comparison = judgement.comparison;
+  std::string text = table_field(comparison.sample) + "\t" + table_field(comparison.standard) + "\t" + at;
+  const color::LabDifference& d = angle.lab;
+  for (const double value : {d.dL, d.da, d.db, d.dC, d.dH}) text += "\t" + table_number(value, decimals);
+  for (const double value : angle.by_formula) text += "\t" + table_number(value, decimals);
+  return text + "\t" + others_at(comparison, at, decimals) + "\t" + verdict_at(judgement, at) + "\n";
+}
+
+// Places of others that are no geometry of the comparison, such as the instrument's own words for its light.
+std::vector<std::string> further_places(const quality::Comparison& comparison) {
+  std::vector<std::string> places = {quality::kWhole};
+  for (const quality::Deviation& d : comparison.others) {
+    const auto is_angle = [&](const quality::AngleDifference& a) { return paint::geometry_name(a.geometry) == d.at; };
+    if (std::ranges::none_of(comparison.angles, is_angle) && std::ranges::find(places, d.at) == places.end())
+      places.push_back(d.at);
+  }
+  return places;
+}
+
+std::string table_lines(const Judgement& judgement, const quality::CompareOptions& compare) {
+  const quality::Comparison& comparison = judgement.comparison;
+  std::vector<color::Lab> colors;
+  for (const quality::AngleDifference& angle : comparison.angles)
+    colors.insert(colors.end(), {angle.standard, angle.sample});
+  const int decimals = decimals_of(colors);
+  std::string text;
+  for (const quality::AngleDifference& angle : comparison.angles)
+    text += table_line(judgement, paint::geometry_name(angle.geometry), angle, decimals);
+  text += table_line(judgement, quality::kMean, comparison.mean, decimals);
+  text += table_line(judgement, quality::kLargest, comparison.largest, decimals);
+  std::string blank;
+  for (std::size_t i = 0; i < 5 + compare.formulas.size(); ++i) blank += "\t-";
+  for (const std::string& place : further_places(comparison)) {
+    // The verdict of the paint is that of all of its limits.
+    const std::string verdict = place == quality::kWhole ? judgement.verdict() : verdict_at(judgement, place);
+    text += table_field(comparison.sample) + "\t" + table_field(comparison.standard) + "\t" + table_field(place) +
+            blank + "\t" + others_at(comparison, place, decimals) + "\t" + verdict + "\n";
+  }
+  return text;
+}
+
+Json angle_json(const quality::AngleDifference& angle, const quality::CompareOptions& compare) {
+  const color::LabDifference& d = angle.lab;
+  Json json = {{"dL", json_number(d.dL)},
+               {"da", json_number(d.da)},
+               {"db", json_number(d.db)},
+               {"dC", json_number(d.dC)},
+               {"dH", json_number(d.dH)}};
+  for (std::size_t i = 0; i < compare.formulas.size(); ++i)
+    json[quality::quantity_of(compare.formulas[i])] = json_number(angle.by_formula[i]);
+  return json;
+}
+
+paint::Paint with_verdict(paint::Paint sample, const Judgement& judgement) {
+  sample.foreign.push_back(fmt::format("<verdict xmlns=\"{}\" standard=\"{}\" result=\"{}\">{}</verdict>",
+                                       quality::kQualityNamespace, xml_escaped(judgement.comparison.standard),
+                                       judgement.verdict(), xml_escaped(judgement.words(), "")));
+  return sample;
+}
+
+}  // namespace
+
+std::string Judgement::words() const {
+  std::vector<std::string> words;
+  for (const quality::Excess& excess : excesses) words.push_back(excess.words);
+  return joined(words, "; ");
+}
+
+Json judgement_json(const Judgement& judgement, const quality::CompareOptions& compare) {
+  const quality::Comparison& comparison = judgement.comparison;
+  Json json = {
+      {"sample", comparison.sample},    {"standard", comparison.standard}, {"direction", "sample minus standard"},
+      {"verdict", judgement.verdict()}, {"failures", Json::array()},       {"geometries", Json::object()}};
+  for (const quality::Excess& excess : judgement.excesses)
+    json["failures"].push_back({{"at", excess.deviation.at},
+                                {"quantity", excess.deviation.quantity},
+                                {"value", json_number(excess.deviation.value)},
+                                {"limit", json_number(excess.low.value_or(excess.high.value_or(0)))},
+                                {"words", excess.words}});
+  for (const quality::AngleDifference& angle : comparison.angles)
+    json["geometries"][paint::geometry_name(angle.geometry)] = angle_json(angle, compare);
+  json["mean"] = angle_json(comparison.mean, compare);
+  json["max"] = angle_json(comparison.largest, compare);
+  for (const quality::Deviation& d : comparison.others) json["others"][d.at][d.quantity] = json_number(d.value);
+  return json;
+}
+
+Result<Sink> Sink::begin(Format format, const quality::CompareOptions& compare, OutputFile file, Prolog prolog,
+                         const cli::Session& session) {
+  Sink sink;
+  sink.format_ = format, sink.compare_ = compare;
+  if (format == Format::kPaints) {
+    GONIO_ASSIGN(formats::PaintWriter writer, begin_paints(std::move(file), std::move(prolog), session));
+    sink.writer_.emplace(std::move(writer));
+    return Result(std::move(sink));
+  }
+  sink.file_.emplace(std::move(file));
+  if (format == Format::kTable) GONIO_TRY(sink.file_->write(table_head(compare)));
+  return Result(std::move(sink));
+}
+
+std::string Sink::text(const Judgement& judgement) const {
+  if (format_ == Format::kTable) return table_lines(judgement, compare_);
+  if (format_ == Format::kPaints) return "";
+  return judgement_json(judgement, compare_).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Result<void> Sink::write(const Judgement& judgement, const std::string& text, const paint::Paint& sample) {
+  return writer_ ? writer_->write(with_verdict(sample, judgement)) : file_->write(text);
+}
+
+}  // namespace goniochrome::tool
