@@ -52,8 +52,9 @@ Library random_library(std::mt19937_64& random, std::size_t size, const std::vec
 }
 
 // Every paint, one after another. The differences of a paint are added in the order of the terms, until it is out.
-std::vector<Match> brute_force(const Library& library, const std::vector<SearchTerm>& terms, const color::DifferenceFormula& metric,
-                               std::size_t count, const std::function<bool(std::size_t)>& passes = {}) {
+std::vector<Match> brute_force(const Library& library, const std::vector<SearchTerm>& terms,
+                               const color::DifferenceFormula& metric, std::size_t count,
+                               const std::function<bool(std::size_t)>& passes = {}) {
   std::vector<Match> best;
   for (std::size_t i = 0; i < library.size(); ++i) {
     if (passes && !passes(i)) continue;
