@@ -22,7 +22,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.heading = "comparison";
   spec.option("formula", "FORMULA,...", "cmc:2:1,din6175", &o.formulas, "formulas of the color difference dE")
       .more("They are " + color::formula_words() +
-            ", and without the option ciede2000. The first is the one of charts and of limits of dE. DIN 6175-2:2001 "
+            ", and without the option those that limits name, or ciede2000. The first is the one of charts and of "
+            "limits of dE. DIN 6175-2:2001 "
             "follows a public program of a color system and was not compared with the text of the standard.");
   spec.option("illuminant", "NAME,...", "A,F11", &o.illuminants, "tell the metamerism under these illuminants")
       .more("The names are " + color::spectral_illuminants() +

@@ -46,7 +46,7 @@ field() {
   run paint-compare -s std.paints.xml -l limits.csv std.paints.xml -o table.tsv
   [ "$status" -eq 0 ]
   [ "$output" = "paint-compare: 1 compared with 1 standard, 1 pass, 0 fail" ]
-  [ "$(field dL mean), $(field dE_ciede2000 max)" = "0, 0" ]
+  [ "$(field dL mean), $(field dE_cmc:2:1 max)" = "0, 0" ]
 }
 
 @test "JSON lines and the report hold the same judgement, paint XML its verdict" {

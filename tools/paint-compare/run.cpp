@@ -159,9 +159,9 @@ class Run {
 Result<quality::CompareOptions> compare_options(const Options& options, const Standards& standards) {
   quality::CompareOptions compare;
   GONIO_ASSIGN(compare.formulas, formulas_of(options.formulas));
-  if (compare.formulas.empty()) compare.formulas.push_back(paint::kInOtherLight);
   GONIO_ASSIGN(compare.illuminants, illuminants_of(options.illuminants));
   for (const Standard& standard : standards.all()) GONIO_TRY(quality::add_needed(standard.limits, compare));
+  if (compare.formulas.empty()) compare.formulas.push_back(paint::kInOtherLight);
   for (const std::string& name : compare.illuminants) {
     const auto known = paint::lab_of({{}, 400, 300, {1, 1}}, {name, 10});
     if (!known.ok()) return input_error("limits: metamerism_{}: {}", name, known.error().message);
