@@ -18,7 +18,7 @@ _paint_convert() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--from --illuminant --observer --scale --viewing --aperture --keep-going --geometry --fit-appearance --output --to --columns --cxf-compat --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--from --illuminant --observer --scale --viewing --aperture --keep-going --geometry --fit-appearance --average --outliers --output --to --columns --cxf-compat --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }
