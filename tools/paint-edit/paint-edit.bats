@@ -365,7 +365,7 @@ usage_error() { # TEXT ARGUMENTS...
 
 @test "an input without paints is told, and is no success" {
   echo '<paints xmlns="urn:goniochrome:paint:1" version="1"/>' >none.xml
-  run --separate-stderr paint-edit none.xml --lighter 2 -o out.paints.xml
+  run --separate-stderr paint-edit none.xml --hue 3 -o out.paints.xml
   [ "$status" -eq 1 ]
   [[ $stderr == *"the input holds no paints: nothing was edited"* ]]
 }

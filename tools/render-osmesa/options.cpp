@@ -86,7 +86,7 @@ void add_light(cli::ToolSpec& spec, Options& o) {
           "is named and nothing lacks a spectrum; on is an error where anything does. Lamps are named " +
           color::spectral_illuminants() +
           ", or by tables, see TABLES OF SPECTRA in goniochrome-paint(5). Paints need measured spectra, unless they "
-          "are gray. Environments, textures and color maps have none.");
+          "are gray; environments and textures have none.");
   spec.option("floor", "WHAT[,HEIGHT][,eye=H]", "shadow,eye=1.5", &o.floor, "level floor: none, shadow or a PAINT")
       .in("units of the mesh for heights")
       .more(
