@@ -253,7 +253,8 @@ TEST_F(EnvironmentFile, HardCase_PrefilterBadTexelsAreRefusedByNameOrZeroedWithA
   const auto refused = Environment::from_lat_long(image, BadPixels::kError, "x.hdr");
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().message,
-            "x.hdr: texel 3,5 channel G is nan: repair the image, or zero such texels with --bad-pixels zero");
+            "x.hdr: texel 3,5 channel G is nan: repair the image, or zero such texels with "
+            "prefilter-envmap --bad-pixels zero");
   const auto zeroed = Environment::from_lat_long(image, BadPixels::kZero, "x.hdr");
   ASSERT_TRUE(zeroed.ok());
   EXPECT_EQ(zeroed->replaced().nan, 1);

@@ -282,7 +282,7 @@ Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Disp
 void Shooting::tell_rays() {
   const render::CorrectionNoise& rays = frame_.rays;
   if (!plan_.effects.rays.any() || (rays.dark && !plan_.effects.rays.floor)) return;
-  stopped_ |= session_.common().tolerance_given && !rays.reached;
+  stopped_ |= session_.common().time_limit_s > 0 && session_.common().tolerance_given && !rays.reached;
   session_.results()["rays"] = {{"noise_de00_p95", json_number(rays.de00_p95)},
                                 {"samples", rays.samples},
                                 {"free_share", rays.free_share},
@@ -305,7 +305,8 @@ void Shooting::tell_noise() {
   if (!frame_.noise) return;
   const render::Noise& noise = *frame_.noise;
   all_reached_ = all_reached_ && noise.reached;
-  stopped_ |= session_.common().tolerance_given && !noise.reached;
+  const bool by_time_alone = session_.common().time_limit_s > 0 && !session_.common().tolerance_given;
+  stopped_ |= !noise.reached && plan_.effects.most_samples_in_all == 0 && !by_time_alone;
   Json& results = session_.results();
   results["noise_de00_p95"] = json_number(noise.de00_p95);
   results["noise_de00_mean"] = json_number(noise.de00_mean);
