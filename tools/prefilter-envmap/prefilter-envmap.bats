@@ -353,7 +353,7 @@ PY
   ball_photograph dark.hdr 0 100
   run --separate-stderr prefilter-envmap -e 6 --size 4 lit.hdr -o x.env.exr --report r.json
   [ "$status" -eq 0 ]
-  [[ "$stderr" = *"lit.hdr: is square and has light in its corners"*"give --ball auto"* ]]
+  [[ "$stderr" = *"lit.hdr: is square and has light in its corners"*"give prefilter-envmap --ball auto"* ]]
   jq -e '(.results.warnings | length) == 1 and .results.source.layout == "angular probe"' r.json
   run --separate-stderr prefilter-envmap -e 6 --size 4 dark.hdr -o x.env.exr
   [[ "$stderr" != *"corners"* ]]
