@@ -68,7 +68,8 @@ TEST(ColorDifference, OfSymmetricFormulasIsTheSameEitherWayAndOfTheOthersIsNot) 
     for (const DifferenceFormula& formula : kAll) {
       const double forth = difference(formula, x, y, 25), back = difference(formula, y, x, 25);
       const bool by_standard = formula.kind == Kind::kCmc || formula.kind == Kind::kCie94;
-      if (!by_standard) EXPECT_NEAR(forth, back, 1e-12 * forth) << formula_name(formula);
+      if (by_standard) continue;
+      EXPECT_NEAR(forth, back, 1e-12 * forth) << formula_name(formula);
     }
   }
   const Lab gray{50, 0, 0}, red{50, 60, 0};

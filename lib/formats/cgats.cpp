@@ -168,8 +168,9 @@ class CgatsParser {
                                                                       "COMPUTATIONAL_PARAMETER", "DEVICE_CLASS"};
 
   static bool is_none(std::string_view value) {
-    static constexpr std::array<std::string_view, 8> kNone = {"", "no", "none", "na", "n/a", "0", "output", "input"};
-    return std::ranges::find(kNone, lower(trimmed(value))) != kNone.end();
+    static constexpr std::array<std::string_view, 8> kNothingSaid = {"",    "no", "none",   "na",
+                                                                     "n/a", "0",  "output", "input"};
+    return std::ranges::find(kNothingSaid, lower(trimmed(value))) != kNothingSaid.end();
   }
   void note_unheard(std::string_view key, std::string_view value) {
     remarks_.note(
