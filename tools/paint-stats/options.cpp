@@ -93,7 +93,7 @@ cli::ToolSpec tool_spec(Options& o) {
       {"paint-stats -w 'class==metallic and L15>60' -f paints testdata/paints.paints.xml | fit-paint -q --basis "
        "testdata/b5.basis.xml -o light.paints.xml",
        "fit the light metallics of a library and leave the rest out"},
-      {"paint-stats --classify -w 'class==metallic' -f paints testdata/paints.csv -o metallics.paints.xml",
+      {"paint-stats --classify -w 'class==metallic' -f paints testdata/paints.paints.xml -o metallics.paints.xml",
        "collect what seems to be a metallic in a table that knows no classes"},
       {"paint-stats -w 'flags==through_gray' -o turning.paints.xml testdata/paints.paints.xml",
        "collect the paints that change their hue by way of gray; the ending says that paints are wanted"}};
