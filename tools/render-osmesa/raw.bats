@@ -184,7 +184,7 @@ same() { [ "$(oiiotool "$1" "$2" --diff | tail -1)" = PASS ]; }
   printf 'nothing here\n' >notes.txt
   run render-osmesa $view --light 30,40 -p notes.txt -o none.exr
   [ "$status" -eq 3 ]
-  [[ "$output" =~ "notes.txt: is neither paint XML nor a table, CxF, CGATS or workbook" ]]
+  [[ "$output" =~ "notes.txt: is neither paint XML nor a table, CxF, CGATS, workbook or file of an instrument" ]]
   printf 'sample,geometry,illuminant,observer,L,a,b\nred,45as15,D65,10,x,1,2\n' >wrong.csv
   run render-osmesa $view --light 30,40 -p wrong.csv -o none.exr
   [ "$status" -eq 3 ]
