@@ -14,7 +14,7 @@ namespace {
 
 // The part of the tolerance that the noise of these effects may take, as one standard deviation at 95 of 100 points.
 // The error of a point may be several times its standard deviation, so that this alone does not keep the whole picture
-// within the tolerance: --check-against truth tells. A picture for which nobody asks how accurate it is may take all.
+// within the tolerance: --check N,truth tells. A picture for which nobody asks how accurate it is may take all.
 constexpr double kRayNoiseShare = 0.5;
 // The most samples of a point that are drawn for effects that nobody asked for by name. Most points get far fewer.
 constexpr int kMostUnaskedSamples = 1024;
