@@ -36,7 +36,7 @@ class PaintDrawing {
   // A picture whose left half is that of `left`, which image() gave, and whose right half shows the paint.
   Result<std::string> split_png(image::Image left, const paint::Paint& right);
 
-  // What the file of the mesh says that is not understood.
+  // Statements of the mesh file that the reader does not understand.
   const std::vector<std::string>& remarks() const { return state_->mesh.remarks; }
   // "on car.obj under studio.env.exr"
   const std::string& described() const { return state_->description; }

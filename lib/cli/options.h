@@ -98,9 +98,9 @@ struct CommonOptions {
 // they do something in it, and says what that is; an empty text leaves an option out.
 struct CommonTexts {
   bool explain = false;
-  std::string time_limit = {};  // "the search"
+  std::string time_limit = {};                   // "the search"
   std::string stopped = "the exit status is 4";  // once the time is over
-  std::string seed = {};        // "the starting points of the search"
+  std::string seed = {};                         // "the starting points of the search"
 };
 void add_common_options(ToolSpec& spec, CommonOptions& common, const CommonTexts& texts = {});
 

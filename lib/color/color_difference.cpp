@@ -88,7 +88,7 @@ double din6175(const Lab& standard, const Lab& sample, double aspecular_deg) {
   return w * gray + (1 - w) * weighted(d, s);
 }
 
-// How far a number lies outside of an interval.
+// The distance of a number from an interval; 0 inside.
 double gap(double value, double low, double high) {
   return std::max({low - value, value - high, 0.0});
 }

@@ -9,14 +9,14 @@
 
 namespace goniochrome::envmap {
 
-// Whether the content of a file is that of a prefiltered environment, whole or not, and no image to be filtered.
+// True if the content of a file is a prefiltered environment, even a damaged one, and not an image to be filtered.
 bool is_prefiltered(const std::string& content);
 
-// As read_env(); `path` is what errors call the file.
+// Reads the content of a file like read_env(). Errors call the file `path`.
 Result<PrefilteredEnvironment> env_of_content(const std::string& content, const std::string& path,
                                               const std::function<bool(double exponent)>& is_wanted = {});
 
-// As write_env().
+// Returns the content that write_env() would write to `path`.
 Result<std::string> env_content(const std::string& path, const PrefilteredEnvironment& env, const std::string& command);
 
 }  // namespace goniochrome::envmap

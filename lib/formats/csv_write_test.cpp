@@ -102,7 +102,7 @@ TEST(PaintCsvWriter, SpectraComeBackAsTheyWere) {
   paints[0].measurement->spectra.clear();
   EXPECT_EQ(written(paints, layout), written(paints, {{}, true}));
   EXPECT_EQ(written({}, layout), written({}, {{}, true}));
-  // What has no columns is named.
+  // The error names spectra that have no columns.
   const ScratchFolder folder;
   auto writer = CsvPaintWriter::begin(*OutputFile::create(folder.path("p.csv")), layout);
   paints[0].measurement->spectra = {{at_15, 400, 10, {1, 1, 1, 1}}, {at_25, 400, 10, {1, 1, 1, 1, 1}}};
@@ -112,7 +112,7 @@ TEST(PaintCsvWriter, SpectraComeBackAsTheyWere) {
               ElementsAre("spectra are left out that have other wavelengths than the first paint of the table (x at "
                           "45as15 and 1 more)",
                           "spectra without L*, a* and b* beside them are left out (y at 45as25)"));
-  // Where the first paint has none, the remedy is told.
+  // If the first paint has no spectra, the error tells the remedy.
   auto reversed = CsvPaintWriter::begin(*OutputFile::create(folder.path("r.csv")), layout);
   paints[0].measurement->spectra.clear();
   for (const paint::Paint& paint : paints) ASSERT_TRUE(reversed->write(paint).ok());

@@ -21,11 +21,11 @@ class PaintSource {
   virtual ~PaintSource() = default;
   // The next paint, or nothing at the end. After an error next() goes on with what can still be read.
   virtual Result<std::optional<paint::Paint>> next() = 0;
-  // Where the paint last returned began: `file:line`.
+  // The place of the paint that was returned last: `file:line`.
   virtual std::string place() const = 0;
   // "paint XML", "long table", ...
   virtual std::string format() const = 0;
-  // Whether its paints may have a face and a flop, and not rows alone.
+  // True if its paints may have a face and a flop beside their readings.
   virtual bool holds_designs() const { return false; }
   // The steps that made the file, and foreign elements; of paint XML alone. Read as far as the first paint.
   virtual std::vector<Processing> processing() { return {}; }

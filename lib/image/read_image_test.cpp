@@ -62,7 +62,8 @@ std::string jpeg(int width, int height, int samples, J_COLOR_SPACE space,
   return content;
 }
 
-// As Adobe's programs store inks, paper being 255, where `adobe`; else as they are. `space` is JCS_CMYK or JCS_YCCK.
+// A JPEG of inks. With `adobe` the inks are stored inverted, so that paper is 255, as Adobe's programs do. `space` is
+// JCS_CMYK or JCS_YCCK.
 std::string cmyk_jpeg(bool adobe, J_COLOR_SPACE space) {
   const auto set_up = [&](jpeg_compress_struct& info) {
     jpeg_set_colorspace(&info, space);

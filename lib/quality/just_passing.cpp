@@ -42,7 +42,7 @@ class AngleLimits {
            });
   }
 
-  // How far the color may go in a direction, or nothing where no limit bounds it.
+  // The largest distance that the limits allow in a direction; nothing if no limit bounds it.
   std::optional<double> reach(const color::Lab& direction) const {
     const auto at = [&](double r) {
       const color::Lab& s = standard_.lab;

@@ -69,7 +69,7 @@ Result<Limit> limit_in(std::string_view line, char separator) {
   return Result(std::move(limit));
 }
 
-// Where a geometry lies between mirror direction and flop, as painters say it.
+// The painter's word for the region of a geometry between mirror direction and flop.
 const char* place_of(const paint::Geometry& geometry) {
   const double angle_deg = paint::aspecular_angle_deg(geometry);
   return angle_deg <= 30 ? " near gloss" : angle_deg <= 60 ? " in the face" : " in the flop";

@@ -11,7 +11,7 @@ import subprocess
 from cross_check.with_mitsuba import VENV
 from shared.tools import run_tool
 
-# Of its own: the numpy that it brings is not that of Debian.
+# A separate environment, because colour-science brings a numpy of its own.
 ENVIRONMENT = VENV.with_name("cross-check-colour")
 PAIRS = 10000
 FORMULAS = ("cie76", "cie94", "cmc:2:1", "cmc:1:1", "ciede2000")

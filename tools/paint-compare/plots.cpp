@@ -32,7 +32,7 @@ std::optional<double> tolerance_of(const Judgement& judgement, const quality::An
   return limit ? limit->high : std::nullopt;
 }
 
-// How far from the standard the difference reaches `tolerance`, in a direction of the a*b* plane.
+// The distance from the standard, in a direction of the a*b* plane, at which the difference reaches `tolerance`.
 double reach(const color::DifferenceFormula& formula, const quality::AngleDifference& angle, double direction_rad,
              double tolerance) {
   double low = 0, high = 100;

@@ -1,4 +1,4 @@
-// Where judgements go: a table, JSON lines, or the samples with their verdicts.
+// Sinks of judgements: a table, JSON lines, or the samples with their verdicts.
 #pragma once
 
 #include <optional>

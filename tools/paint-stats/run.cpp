@@ -36,7 +36,7 @@ struct Figures {
   std::optional<bool> inferred;  // with --classify: whether the class follows from the readings
 };
 
-// Where a class comes from.
+// The origin of a class, in one word.
 const char* class_source(const paint::Paint& paint, const Figures& figures) {
   return paint.paint_class == paint::PaintClass::kUnknown ? "-" : *figures.inferred ? "inferred" : "stated";
 }

@@ -29,7 +29,7 @@ bool has_exponent(const std::vector<double>& exponents, double exponent) {
   return std::ranges::any_of(exponents, [&](double of) { return std::abs(of - exponent) <= 1e-6 * of; });
 }
 
-// Whether a map of the environment is looked up by one picture of these paints, by its exponent; null where all may be.
+// Tells by exponent whether one picture of these paints looks up a map of the environment; null if it may use all.
 std::function<bool(double)> looked_up_maps(const Options& options, const Request& request, const Stage& stage) {
   const bool sums = request.engine != nullptr && (request.engine->needs_texels || request.engine->traces_rays);
   if (is_stream(options) || !options.textures.empty() || options.check > 0 || request.transport || sums) return {};
@@ -135,7 +135,7 @@ Result<envmap::PrefilteredEnvironment> light_of_image(const Options& options, co
   return std::move(filtered.env);
 }
 
-// Whether the image holds the light of the environment, which may have been turned, brightened or cut since: their
+// True if the image holds the light of the environment, which may have been turned, brightened or cut since: their
 // irradiance agrees about the middle of each face.
 bool is_same_light(const envmap::Environment& image, const envmap::PrefilteredEnvironment& env) {
   constexpr double kApart = 0.03;  // of the largest; the tolerance of the diffuse map is at most a tenth in use

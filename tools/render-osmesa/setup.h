@@ -34,7 +34,7 @@ Result<void> stand_lamps(const mesh::Mesh& mesh, std::vector<render::Light>& lig
 // --camera, which is settled.
 Result<render::Camera> camera_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size);
 
-// What --emit and --floor say, before the mesh is read.
+// The requests of --emit and --floor, before the mesh is read.
 struct FloorRequest {
   enum class Kind { kNone, kShadow, kPaint } kind = Kind::kNone;
   std::string paint;             // with kPaint

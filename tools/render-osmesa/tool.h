@@ -39,7 +39,7 @@ struct Options {
   bool no_cache = false;
   std::string check_source;
 
-  // What settled() takes out of --camera, --check and --engine.
+  // Values that settled() takes out of --camera, --check and --engine.
   std::vector<double> orbit;
   double fov_deg = 30;
   int check = 0;

@@ -14,8 +14,8 @@ namespace goniochrome::render {
 // Samples are counted by fours, which are the fewest that can be traced.
 constexpr int kOfFour = kHalfFan;
 
-// A round of so many fours at a point: as few sequences as tell a variance, each of as many directions as it takes,
-// for the longer a sequence is, the more evenly it covers what the point sees.
+// A round of so many fours at a point. Two sequences tell a variance, and are as long as the round allows, because a
+// longer sequence covers the hemisphere more evenly.
 struct Round {
   static constexpr int kSequences = 2;
   int length = 1;  // of each sequence, in fours: a power of two
@@ -25,10 +25,10 @@ struct Round {
     while (2 * length * kSequences <= fours) length *= 2;
   }
   int fours() const { return kSequences * length; }
-  // What is traced together: fans, but where a sequence is shorter.
+  // Fours that are traced together: a fan, or a whole sequence if that is shorter.
   int together() const { return std::min(length, kFan / kOfFour); }
   int fans() const { return fours() / together(); }
-  // Of which sequence a fan is, and which of its samples is the fan's first.
+  // The sequence that a fan belongs to, and the number of the fan's first sample in it.
   int sequence_of(int fan) const { return fan * together() / length; }
   std::uint32_t first_of(int fan) const { return static_cast<std::uint32_t>(kOfFour * (fan * together() % length)); }
 };
@@ -55,7 +55,7 @@ class Gathered {
   const Halves& halves() const { return halves_; }  // by the sequences of each round
   int fours() const { return fours_; }
   int freedom() const { return freedom_; }  // of the covariance
-  // Of the mean, times fours(): what four samples count.
+  // The covariance of the mean, times fours().
   const Covariance& of_four() const { return of_four_; }
 
  private:

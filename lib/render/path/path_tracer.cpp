@@ -386,12 +386,11 @@ class Picture {
     return worse_percentile([this](std::size_t i) { return points_[i].noise_de00; });
   }
 
-  // Whether all samples of a pixel show one piece of surface.
+  // True if all samples of a pixel show one piece of surface.
   bool is_even(const ShownPoint& shown) const {
-    constexpr float kSameTurn = 0.96F;  // cosine
     return shown.pieces.empty() ||
            (shown.pieces.size() == count_ && std::ranges::all_of(shown.pieces, [&](const auto& p) {
-              return p.part == shown.piece.part && rays::dot(p.normal, shown.piece.normal) > kSameTurn;
+              return p.part == shown.piece.part && rays::dot(p.normal, shown.piece.normal) > kSamePiece;
             }));
   }
 

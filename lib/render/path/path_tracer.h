@@ -31,7 +31,7 @@ struct PathRequest {
   std::uint64_t seed = 1;
   // Of a pixel, as sample_shifts() has them; with 1 the pixel centers are seen. Paths are spread over them.
   int pixel_samples = 1;
-  // Whether the light is smoothed along the surface, as reconstruction() does; noise is then the error that is left.
+  // If set, reconstruction() smooths the light along the surface, and the noise is the error that it measures.
   bool reconstruct = false;
   // Told after each round: the noise so far, and the seconds.
   std::function<void(double noise_de00, double seconds)> progress = {};

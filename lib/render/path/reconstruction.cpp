@@ -33,9 +33,10 @@ constexpr std::size_t kChoices = kFilters.size() + 1;
 constexpr Filter kErrorMean = {1, {5, 0.25F, 0.5F, kNoSlopes}};
 // Choices are mixed by this power of one over their squared error.
 constexpr int kSharpness = 4;
-// A filter is off at a point where it differs from its reference by more than this part of their common variance.
+// A squared difference of a filter from its reference above this multiple of their common variance counts as bias.
 constexpr float kSurprise = 6;
-// The variance of a point itself, of two halves, counts by this part: few rare samples are not in the mean around them.
+// The own variance of a point, divided by this, bounds its error from below: the mean over a neighborhood dilutes rare
+// bright samples.
 constexpr float kSpike = 4;
 constexpr std::size_t kPointsAtOnce = 4096;
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
@@ -68,7 +69,6 @@ SurfaceImage image_of(int width, int height, const std::vector<ShownPoint>& poin
 
 // An element of the coarser image is the mean of those of its four that lie on one piece of surface.
 SurfaceImage coarser(const SurfaceImage& fine) {
-  constexpr float kSameTurn = 0.96F;  // cosine
   SurfaceImage image((fine.width + 1) / 2, (fine.height + 1) / 2);
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
@@ -86,7 +86,7 @@ SurfaceImage coarser(const SurfaceImage& fine) {
         const float weight = fine.weight[j];
         float turn = 0;
         for (std::size_t c = 0; c < 3; ++c) turn += fine.normal[c][j] * fine.normal[c][pivot];
-        if (!(weight > 0) || fine.part[j] != fine.part[pivot] || turn < kSameTurn) continue;
+        if (!(weight > 0) || fine.part[j] != fine.part[pivot] || turn < kSamePiece) continue;
         sum += weight;
         image.shift[0][i] += weight * (static_cast<float>(k % 2) - 0.5F + fine.shift[0][j]) / 2;
         image.shift[1][i] += weight * (static_cast<float>(k / 2) - 0.5F + fine.shift[1][j]) / 2;
@@ -202,7 +202,7 @@ std::vector<Predicted> predictions(const Filter& filter, const SurfaceImage& ima
   return result;
 }
 
-// Of the mean of two halves, whose difference is noise alone.
+// The variance of the mean of two halves, whose difference is noise alone.
 double variance(const SeenRows& seen, const Predicted& halves) {
   return 0.25 * seen.square(half(halves, 0) - half(halves, 1));
 }
@@ -233,7 +233,7 @@ std::vector<ShownPoint> by_kind(std::vector<ShownPoint> points) {
   return points;
 }
 
-// What the light by all choices tells of their errors at each point.
+// Measurements at each point from which the errors of all choices follow.
 struct Measured {
   std::vector<SeenRows> seen;
   std::vector<Values> variances, mean_variances, mean_biases;
@@ -269,7 +269,7 @@ std::vector<Values> neighborhood_means(int width, int height, const std::vector<
   return result;
 }
 
-// How visible an error is depends on the light that a filter tells, which is less noisy than its samples.
+// Measures all choices. The visibility of an error is taken at filtered light, which has less noise than its samples.
 Measured measured(int width, int height, const std::vector<ShownPoint>& points, const Predictions& predicted,
                   const std::vector<color::Rgb>& beside, double white_luminance) {
   Measured result;

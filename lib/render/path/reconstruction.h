@@ -11,6 +11,9 @@
 
 namespace goniochrome::render {
 
+// Points whose normals have at least this cosine, and the same part, lie on one piece of surface.
+constexpr float kSamePiece = 0.96F;
+
 // A piece of surface that a pixel shows.
 struct ShownPiece {
   int part = 0;  // Pieces of different parts are never mixed.
@@ -26,7 +29,7 @@ struct ShownPoint {
   std::vector<ShownPiece> pieces = {};  // at edges
 };
 
-// The same light by two halves of its samples, which are independent.
+// Two independent estimates of one light, from either half of its samples.
 using Halves = std::array<color::Rgb, 2>;
 
 struct Reconstruction {

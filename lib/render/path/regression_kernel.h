@@ -34,7 +34,7 @@ struct SurfaceImage {
   }
 };
 
-// Which elements count in a fit around another one, by weights that fall to 0 at these distances.
+// The elements that count in a fit around another one. Their weights fall to 0 at these distances.
 struct RegressionWindow {
   int reach = SurfaceImage::kBorder;  // elements to each side, at most kBorder
   float normal = 0.1F;                // length of the difference of the normals

@@ -50,7 +50,7 @@ class ShadedGround {
   // At a place of the floor, local, as a picture shows it. Soft light is interpolated; the brightest texels and lamps
   // that are discs get the more rays the more of them the edge of their shadow needs. There is no randomness in it.
   GroundLight seen(const rays::Float3& place) const;
-  // The same where a path meets the floor, with one ray to the brightest texels and to each lamp, which `number` in
+  // The light where a path meets the floor, with one ray to the brightest texels and to each lamp, which `number` in
   // [0,1) draws.
   GroundLight met(const rays::Float3& place, double number) const;
 
