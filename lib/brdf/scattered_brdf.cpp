@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "math/elementary.h"
 
 namespace goniochrome::brdf {
 
@@ -18,17 +19,17 @@ struct Offset {
   double toward = 0, across = 0;
 };
 double distance(const Offset& a, const Offset& b) {
-  return std::hypot(a.toward - b.toward, a.across - b.across);
+  return math::hypot(a.toward - b.toward, a.across - b.across);
 }
 
 Offset aspecular_offset(const Vec3& light, const Vec3& view) {
-  const double sine = std::hypot(light.x, light.y);
+  const double sine = math::hypot(light.x, light.y);
   const Vec3 ahead = sine > 0 ? Vec3{light.x / sine, light.y / sine, 0} : Vec3{1, 0, 0};
   const Vec3 mirror = {-light.x, -light.y, light.z};
   const Vec3 toward = light.z * ahead + Vec3{0, 0, sine};
-  const double angle_deg = std::atan2(length(cross(mirror, view)), dot(mirror, view)) / kDegree;
+  const double angle_deg = math::atan2(length(cross(mirror, view)), dot(mirror, view)) / kDegree;
   const double along = dot(view, toward), beside = std::abs(dot(view, cross({0, 0, 1}, ahead)));
-  const double size = std::hypot(along, beside);
+  const double size = math::hypot(along, beside);
   if (size == 0) return {angle_deg, 0};
   const double across = angle_deg * beside / size;
   constexpr double kInPlane_deg = 1e-3;  // angles in the file are rounded to 1e-6 rad
@@ -67,7 +68,7 @@ std::vector<Share> delaunay_shares(const std::vector<Offset>& points, const Offs
       return {x, y, x * x + y * y};
     }
     const double turn = 2 * kPi / 3 * static_cast<double>(i - n) + 0.1;
-    return {kFar_deg * std::cos(turn), kFar_deg * std::sin(turn), kFarCost};
+    return {kFar_deg * math::cos(turn), kFar_deg * math::sin(turn), kFarCost};
   };
   std::array<std::size_t, 3> basis = {n, n + 1, n + 2};
   std::array<double, 3> weight{};
@@ -179,7 +180,7 @@ class ScatteredBrdf final : public MeasuredBrdf {
       const ScatteredRow& row = rows_[i];
       const Offset offset = aspecular_offset(row.pair.light, row.pair.view);
       const double steepest = std::max(polar_angle(row.pair.light), polar_angle(row.pair.view));
-      if (std::hypot(offset.toward, offset.across) > 15 && steepest < 75 * kDegree) result.push_back(row.pair);
+      if (math::hypot(offset.toward, offset.across) > 15 && steepest < 75 * kDegree) result.push_back(row.pair);
     }
     return result;
   }
@@ -215,8 +216,8 @@ MeasuredPointer scattered_brdf(MeasuredTraits traits, std::vector<ScatteredRow> 
 }
 
 Vec3 direction(double polar_rad, double azimuth_rad) {
-  return {std::sin(polar_rad) * std::cos(azimuth_rad), std::sin(polar_rad) * std::sin(azimuth_rad),
-          std::cos(polar_rad)};
+  return {math::sin(polar_rad) * math::cos(azimuth_rad), math::sin(polar_rad) * math::sin(azimuth_rad),
+          math::cos(polar_rad)};
 }
 
 }  // namespace goniochrome::brdf
