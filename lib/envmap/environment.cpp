@@ -43,6 +43,35 @@ Result<Environment> Environment::scaled(double factor) const {
   return brighter;
 }
 
+Vec3 Environment::blended(const Vec3& direction) const {
+  const bool cube = layout() == Layout::kCube;
+  const auto texel = [&](int column, int row) {
+    const float* rgb = radiance(column, row);
+    return Vec3{rgb[0], rgb[1], rgb[2]};
+  };
+  if (!cube && layout() != Layout::kLatLong) {
+    const float* rgb = lookup(direction);
+    return {rgb[0], rgb[1], rgb[2]};
+  }
+  const int rows = cube ? width() : height();
+  double column = 0, row = 0;
+  int top = 0;
+  if (cube) {
+    const CubePosition at = cube_position(direction, width());
+    column = std::clamp(at.column - 0.5, 0.0, width() - 1.0), row = at.row, top = at.face * width();
+  } else {
+    const GridPosition at = grid().position(direction);
+    column = at.column - 0.5, row = at.row;
+  }
+  row = std::clamp(row - 0.5, 0.0, rows - 1.0);
+  const double left = std::floor(column);
+  const int x = (static_cast<int>(left) + width()) % width(), y = static_cast<int>(row);
+  const int x1 = cube ? std::min(x + 1, width() - 1) : (x + 1) % width(), y1 = std::min(y + 1, rows - 1);
+  const double s = column - left, t = row - y;
+  return (1 - t) * ((1 - s) * texel(x, top + y) + s * texel(x1, top + y)) +
+         t * ((1 - s) * texel(x, top + y1) + s * texel(x1, top + y1));
+}
+
 Environment Environment::above(double elevation_rad, const Rotation& turn) const {
   Environment upper = *this;
   for (int row = 0; row < height(); ++row)

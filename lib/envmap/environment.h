@@ -103,10 +103,14 @@ class Environment {
   }
   double largest_texel_rad() const { return grid_.largest_texel_rad(); }
 
-  // The texel that a direction falls in: the mirror lobe and the reference integrator.
+  // The texel that a direction falls in.
   const float* lookup(const Vec3& direction) const {
     return &rgb_[3 * static_cast<std::size_t>(grid_.texel(direction))];
   }
+
+  // Radiance bilinear between the centers of texels, as a mirror shows it. The texels at the edges of a cube's faces and
+  // those of an angular map are not blended.
+  Vec3 blended(const Vec3& direction) const;
 
   // With single texels scaled: by column and row, and a factor of 0 or more.
   struct Dimmed {

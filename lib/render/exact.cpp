@@ -73,10 +73,7 @@ std::vector<color::Rgb> reference_radiance(const std::vector<SurfacePoint>& poin
     for (std::size_t i = begin; i < end; ++i) {
       Gatherer& gatherer = gatherers[i - begin];
       for (const Light& light : lights) gatherer.add_light(light_at(light, points[i].position));
-      if (env != nullptr) {
-        const float* texel = env->lookup(gatherer.reflected());
-        gatherer.add_mirror({texel[0], texel[1], texel[2]});
-      }
+      if (env != nullptr) gatherer.add_mirror(env->blended(gatherer.reflected()));
       radiance[i] = gatherer.sum();
     }
   });

@@ -124,13 +124,13 @@ TEST(ReferenceRadiance, NothingComesFromBelowTheHorizon) {
   EXPECT_GT(below, 0.1);
 }
 
-TEST(ReferenceRadiance, MirrorIsFresnelTimesTheTexelSeen) {
+TEST(ReferenceRadiance, MirrorIsFresnelTimesTheLightSeen) {
   const envmap::Environment env = lat_long(8, 4, [](int column, int row) { return Vec3{1.0 * column, 1.0 * row, 1}; });
   const Vec3 n{0, 0, 1}, wo = normalized({0.4, 0.2, 0.7});
-  const float* texel = env.lookup(2 * dot(n, wo) * n - wo);
+  const Vec3 mirrored = env.blended(2 * dot(n, wo) * n - wo);
   const double fresnel = brdf::fresnel_dielectric(wo.z, brdf::kCoatIndex);
   const color::Rgb seen = at(only_mirror(0.5), n, wo, env);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], 0.5 * fresnel * texel[c], 1e-15);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], 0.5 * fresnel * mirrored[c], 1e-15);
 }
 
 TEST(ReferenceRadiance, LightsAreIrradianceOverPi) {

@@ -172,9 +172,4 @@ LightSample EnvironmentTable::at(const Float3& direction) const {
   return light(direction, column, row, density);
 }
 
-color::Rgb EnvironmentTable::radiance(const Float3& direction) const {
-  const float* rgb = environment_->lookup(rays::vec3(direction));
-  return {rgb[0], rgb[1], rgb[2]};
-}
-
 }  // namespace goniochrome::render

@@ -51,7 +51,6 @@ class EnvironmentTable {
   // The probability density by which drawn() gives this direction, and the radiance that comes from there: that of the
   // texel that the direction falls in.
   LightSample at(const rays::Float3& direction) const;
-  color::Rgb radiance(const rays::Float3& direction) const;
 
   bool dark() const { return !(total_ > 0); }
   // With at least this chance of a direction from below, where any light comes from there.

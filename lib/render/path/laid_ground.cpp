@@ -82,34 +82,6 @@ bool is_fine(const envmap::Environment& environment) {
 
 }  // namespace
 
-color::Rgb smooth_radiance(const envmap::Environment& environment, const Vec3& direction) {
-  const int width = environment.width(), height = environment.height();
-  if (environment.layout() == envmap::Environment::Layout::kCube) {
-    const envmap::CubePosition at = envmap::cube_position(direction, width);
-    const double column = std::clamp(at.column - 0.5, 0.0, width - 1.0),
-                 row = std::clamp(at.row - 0.5, 0.0, width - 1.0);
-    const int x = std::min(static_cast<int>(column), std::max(0, width - 2)),
-              y = std::min(static_cast<int>(row), std::max(0, width - 2));
-    const double s = column - x, t = row - y;
-    const int x1 = std::min(x + 1, width - 1), y1 = std::min(y + 1, width - 1), top = at.face * width;
-    return (1 - t) * ((1 - s) * texel(environment, x, top + y) + s * texel(environment, x1, top + y)) +
-           t * ((1 - s) * texel(environment, x, top + y1) + s * texel(environment, x1, top + y1));
-  }
-  const envmap::GridPosition at = environment.grid().position(direction);
-  if (environment.layout() != envmap::Environment::Layout::kLatLong) {
-    const float* rgb = environment.lookup(direction);
-    return {rgb[0], rgb[1], rgb[2]};
-  }
-  const double column = at.column - 0.5, row = std::clamp(at.row - 0.5, 0.0, height - 1.0);
-  const double left = std::floor(column);
-  const double s = column - left;
-  const int x = (static_cast<int>(left) % width + width) % width, x1 = (x + 1) % width;
-  const int y = std::min(static_cast<int>(row), std::max(0, height - 2)), y1 = std::min(y + 1, height - 1);
-  const double t = row - y;
-  return (1 - t) * ((1 - s) * texel(environment, x, y) + s * texel(environment, x1, y)) +
-         t * ((1 - s) * texel(environment, x, y1) + s * texel(environment, x1, y1));
-}
-
 Result<LaidGround> LaidGround::create(const Ground& ground, const envmap::Environment& environment,
                                       const std::vector<Light>& lights) {
   if (!(ground.probe_eye.y > ground.height))
@@ -408,7 +380,7 @@ double LaidGround::density(const Window& window, const Vec3& direction) const {
 color::Rgb LaidGround::open_radiance(const Vec3& position) const {
   const Vec3 seen = position - eye_;
   const double distance = length(seen);
-  return distance > 0 ? smooth_radiance(*environment_, (1 / distance) * seen) : color::Rgb{};
+  return distance > 0 ? environment_->blended((1 / distance) * seen) : color::Rgb{};
 }
 
 color::Rgb LaidGround::paint(const color::Rgb& open_radiance) const {

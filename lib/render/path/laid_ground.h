@@ -13,10 +13,6 @@
 
 namespace goniochrome::render {
 
-// The radiance of an environment in a direction, bilinear between the centers of its texels (of texels of a cube's
-// edges and of an angular map: that of the nearest). Working space.
-color::Rgb smooth_radiance(const envmap::Environment& environment, const Vec3& direction);
-
 // A floor that shows what a probe saw of the ground it stood on. Where nothing takes light from it, a point of the
 // floor has the radiance of the environment in the direction in which the probe saw that point. It is matt: shaded
 // points have that radiance times the share of their irradiance that is left, channel by channel.

@@ -355,7 +355,7 @@ TEST(LobeTransport, HoldsAFloorThatShowsTheEnvironment) {
         of_floor.push_back(off);
         const Vec3 at = stage.transport->rays().world(
             spot_at(stage.transport->rays(), surface, truth.points[i].x, truth.points[i].y).position);
-        in_the_open.push_back(seen_difference(smooth_radiance(*stage.environment, normalized(at - ground.probe_eye)),
+        in_the_open.push_back(seen_difference(stage.environment->blended(normalized(at - ground.probe_eye)),
                                               truth.points[i].radiance, 1));
         continue;
       }

@@ -120,7 +120,7 @@ void PathEngine::draw_background(const Rays& rays, int samples, image::Image& rg
           if (effects_.background == Background::kColor) {
             sum += share * scene_.background_color;
           } else if (effects_.background == Background::kEnvironment && scene_.texels != nullptr) {
-            sum += share * smooth_radiance(scene_.texels->environment(), direction);
+            sum += share * scene_.texels->environment().blended(direction);
           }
         }
         const auto count = static_cast<double>(shifts.size());

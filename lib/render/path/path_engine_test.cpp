@@ -102,7 +102,7 @@ TEST(LaidGround, InTheOpenItShowsWhatTheProbeSaw) {
       const Vec3 direction = through.direction(x + 0.5, y + 0.5);
       if (direction.y > -0.05) continue;
       const Vec3 point = world.view.camera.eye + ((-1 - 4.0) / direction.y) * direction;
-      const color::Rgb wanted = smooth_radiance(world.source, normalized(point - Vec3{0, 1, 0}));
+      const color::Rgb wanted = world.source.blended(normalized(point - Vec3{0, 1, 0}));
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(at(frame.picture, x, y)[c], wanted[c], 2e-4);
       ++compared;
     }
@@ -140,13 +140,13 @@ TEST(LaidGround, AWhiteBallOnAWhiteFloorInEvenLightIsNotSeen) {
 TEST(LaidGround, InterpolatesBetweenTexelCenters) {
   const auto light = environment_of(16, 8, [](int column, int row) { return color::Rgb{1.0 + column, 1.0 + row, 2}; });
   for (const auto& [column, row] : {std::pair{3, 4}, {0, 0}, {15, 7}}) {
-    const color::Rgb there = smooth_radiance(light, light.direction(column, row));
+    const color::Rgb there = light.blended(light.direction(column, row));
     EXPECT_NEAR(there.x, 1 + column, 1e-6);
     EXPECT_NEAR(there.y, 1 + row, 1e-6);
   }
-  const color::Rgb between = smooth_radiance(light, light.grid().direction_at(4.0, 4.5));
+  const color::Rgb between = light.blended(light.grid().direction_at(4.0, 4.5));
   EXPECT_NEAR(between.x, 1 + 3.5, 1e-6);
-  const color::Rgb across = smooth_radiance(light, light.grid().direction_at(16.0, 4.5));
+  const color::Rgb across = light.blended(light.grid().direction_at(16.0, 4.5));
   EXPECT_NEAR(across.x, (1 + 16) / 2.0, 1e-6);
 }
 

@@ -42,7 +42,7 @@ constexpr double kStopShare = 0.5;
 color::Rgb Backdrop::at(const rays::Float3& direction) const {
   if (background == Background::kColor) return color;
   if (background == Background::kNone || environment == nullptr) return {};
-  return smooth_radiance(*environment, rays::vec3(direction));
+  return environment->blended(rays::vec3(direction));
 }
 
 double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Backdrop& backdrop,

@@ -81,7 +81,7 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
                                  ? path_scene.table
                                  : std::make_shared<const EnvironmentTable>(*path_scene.environment);
     if (transport.environment_->dark()) transport.environment_.reset();
-    transport.mirrored_ = path_scene.mirrored;
+    transport.mirrored_ = path_scene.mirrored != nullptr ? path_scene.mirrored : path_scene.environment;
     if (ground && ground->kind == Ground::Kind::kShadow) {
       GONIO_ASSIGN(transport.ground_, LaidGround::create(*ground, *path_scene.environment, scene.lights));
       transport.ground_eye_ = transport.rays_->local(ground->probe_eye);
@@ -250,9 +250,7 @@ Transport::LampSample Transport::drawn_lamp(const Float3& from, double choice, d
 }
 
 color::Rgb Transport::mirrored_environment(const Float3& direction) const {
-  if (mirrored_ == nullptr) return environment_->radiance(direction);
-  const float* texel = mirrored_->lookup(rays::vec3(direction));
-  return {texel[0], texel[1], texel[2]};
+  return mirrored_->blended(rays::vec3(direction));
 }
 
 color::Rgb Transport::mirrored_lamps(const Float3& from, const Float3& toward, const Hit& hit) const {
