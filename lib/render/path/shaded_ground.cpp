@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 #include "base/angles.h"
 #include "base/parallel.h"
@@ -22,7 +23,7 @@ constexpr std::uint32_t kFew = 8, kMany = 64;
 // far as so many lengths.
 constexpr double kGridMargin = 0.1, kGridGrowth = 1.15, kGridReach = 16;
 constexpr std::size_t kBounceStep = 4;
-// A steep cell is divided into so many, each way.
+// A cell in which light bends is divided into so many, each way.
 constexpr std::size_t kDivisions = 4, kFineNodes = kDivisions + 1;
 constexpr std::uint32_t kWhole = std::numeric_limits<std::uint32_t>::max();
 
@@ -91,18 +92,18 @@ ShadedGround::Cone ShadedGround::cone(const Float3& start) const {
   return cone;
 }
 
-bool ShadedGround::Grid::find(const Float3& place, std::size_t& column, std::size_t& row, float& right,
-                              float& down) const {
+std::optional<ShadedGround::Place> ShadedGround::Grid::find(const Float3& place) const {
   if (values.empty() || !(place.x >= x.front() && place.x <= x.back() && place.z >= z.front() && place.z <= z.back()))
-    return false;
-  const auto interval = [](const std::vector<float>& lines, float at, std::size_t& i, float& part) {
-    const auto above = std::upper_bound(lines.begin() + 1, lines.end() - 1, at);
+    return {};
+  Place at;
+  const auto interval = [](const std::vector<float>& lines, float value, std::size_t& i, float& part) {
+    const auto above = std::upper_bound(lines.begin() + 1, lines.end() - 1, value);
     i = static_cast<std::size_t>(above - lines.begin()) - 1;
-    part = (at - lines[i]) / (lines[i + 1] - lines[i]);
+    part = (value - lines[i]) / (lines[i + 1] - lines[i]);
   };
-  interval(x, place.x, column, right);
-  interval(z, place.z, row, down);
-  return true;
+  interval(x, place.x, at.column, at.right);
+  interval(z, place.z, at.row, at.down);
+  return at;
 }
 
 // Directions that lie together are traced together: sectors of azimuth, and within each from the horizon up.
@@ -163,7 +164,7 @@ void ShadedGround::add_lamp(const Light& light, const color::Rgb& irradiance) {
 ShadedGround::ShadedGround(std::shared_ptr<const rays::RayScene> scene, const LaidGround& ground,
                            const std::vector<Light>& lights, const mesh::Box& box, float mesh_radius,
                            const GroundRequest& request)
-    : scene_(std::move(scene)), mesh_radius_(mesh_radius), steep_(static_cast<float>(request.steep)) {
+    : scene_(std::move(scene)), mesh_radius_(mesh_radius), bent_(static_cast<float>(request.bent)) {
   height_ = scene_->spot({rays::kFloor, 0, 0, 0}, {}, {0, -1, 0}).position.y;
   soft_ = directions(ground.soft_rays(static_cast<std::uint32_t>(request.directions)));
   if (ground.has_bright()) sources_.push_back(source([&](std::uint32_t count) { return ground.bright_rays(count); }));
@@ -192,7 +193,7 @@ void ShadedGround::shade(const std::vector<float>& x, const std::vector<float>& 
   blocked_.x = x, blocked_.z = z;
   fill(blocked_, [&](const Float3& start, std::size_t) { return blocked(soft_, start); });
   divide();
-  for (Source& source : sources_) mark(source);
+  for (Source& source : sources_) mark(source), smooth(source);
 }
 
 // Marks the cells that the shadows of boxes about neighboring triangles meet, so that no place in shadow is missed.
@@ -200,63 +201,112 @@ void ShadedGround::mark(Source& source) const {
   constexpr std::size_t kBoxes = 4096;
   const std::size_t columns = blocked_.x.size() - 1, triangles = scene_->triangles(),
                     each = std::max<std::size_t>(1, triangles / kBoxes);
-  source.may_be_taken.assign(columns * (blocked_.z.size() - 1), false);
-  const auto cells = [](const std::vector<float>& lines, float low, float high) {
-    const auto begin = std::upper_bound(lines.begin() + 1, lines.end() - 1, low);
-    const auto end = std::lower_bound(begin, lines.end() - 1, high);
-    return std::pair(static_cast<std::size_t>(begin - lines.begin()) - 1,
-                     static_cast<std::size_t>(end - lines.begin()));
-  };
+  std::vector<mesh::Box> boxes;
   for (std::size_t first = 0; first < triangles; first += each) {
-    Float3 low{HUGE_VALF, HUGE_VALF, HUGE_VALF}, high = -low;
+    mesh::Box box{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
     for (std::size_t t = first; t < std::min(triangles, first + each); ++t) {
       for (const Float3& corner : scene_->corners(static_cast<std::uint32_t>(t))) {
-        low = {std::min(low.x, corner.x), std::min(low.y, corner.y), std::min(low.z, corner.z)};
-        high = {std::max(high.x, corner.x), std::max(high.y, corner.y), std::max(high.z, corner.z)};
+        const Vec3 at = rays::vec3(corner);
+        for (int c = 0; c < 3; ++c)
+          box.low[c] = std::min(box.low[c], at[c]), box.high[c] = std::max(box.high[c], at[c]);
       }
     }
-    const float bottom = std::max(0.0F, low.y - height_), top = high.y - height_;
-    if (!(top > 0)) continue;
-    for (const rays::Fan& fan : source.many.fans) {
-      for (unsigned i = 0; i < kFanRays; ++i) {
-        if ((fan.wanted >> i & 1U) == 0) continue;
-        const float x = fan.x[i] / fan.y[i], z = fan.z[i] / fan.y[i];
-        const auto [left, right] =
-            cells(blocked_.x, low.x - std::max(bottom * x, top * x), high.x - std::min(bottom * x, top * x));
-        const auto [back, front] =
-            cells(blocked_.z, low.z - std::max(bottom * z, top * z), high.z - std::min(bottom * z, top * z));
-        for (std::size_t row = back; row < front; ++row)
-          for (std::size_t column = left; column < right; ++column) source.may_be_taken[row * columns + column] = true;
-      }
+    if (box.high.y > height_) boxes.push_back(box);
+  }
+  source.states.assign(columns * (blocked_.z.size() - 1), Source::kFree);
+  std::mutex mutex;
+  parallel_for(source.many.fans.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<bool> marked(source.states.size(), false);
+    for (std::size_t fan = begin; fan < end; ++fan) mark(source.many.fans[fan], boxes, marked);
+    const std::lock_guard lock(mutex);
+    for (std::size_t i = 0; i < marked.size(); ++i)
+      if (marked[i]) source.states[i] = Source::kAsked;
+  });
+}
+
+void ShadedGround::mark(const rays::Fan& fan, const std::vector<mesh::Box>& boxes, std::vector<bool>& marked) const {
+  const auto cells = [](const std::vector<float>& lines, double low, double high) {
+    const auto begin = std::upper_bound(lines.begin() + 1, lines.end() - 1, static_cast<float>(low));
+    const auto end = std::lower_bound(begin, lines.end() - 1, static_cast<float>(high));
+    return std::pair(begin - lines.begin() - 1, end - lines.begin());
+  };
+  const auto columns = static_cast<std::ptrdiff_t>(blocked_.x.size()) - 1;
+  for (const mesh::Box& box : boxes) {
+    const double bottom = std::max(0.0, box.low.y - height_), top = box.high.y - height_;
+    for (unsigned i = 0; i < kFanRays; ++i) {
+      if ((fan.wanted >> i & 1U) == 0) continue;
+      const double x = fan.x[i] / fan.y[i], z = fan.z[i] / fan.y[i];
+      const auto [left, right] =
+          cells(blocked_.x, box.low.x - std::max(bottom * x, top * x), box.high.x - std::min(bottom * x, top * x));
+      const auto [back, front] =
+          cells(blocked_.z, box.low.z - std::max(bottom * z, top * z), box.high.z - std::min(bottom * z, top * z));
+      for (std::ptrdiff_t row = back; row < front; ++row)
+        std::fill(marked.begin() + row * columns + left, marked.begin() + row * columns + right, true);
     }
   }
 }
 
-bool ShadedGround::may_be_taken(const Source& source, const Float3& place) const {
-  std::size_t column = 0, row = 0;
-  float right = 0, down = 0;
-  return !blocked_.find(place, column, row, right, down) || source.may_be_taken[row * (blocked_.x.size() - 1) + column];
+// Where a source is hidden in part at all nodes of a cell, and its light does not bend, the nodes tell it.
+void ShadedGround::smooth(Source& source) const {
+  const std::size_t columns = blocked_.x.size() - 1;
+  std::vector<bool> wanted(blocked_.values.size(), false);
+  for (std::size_t cell = 0; cell < source.states.size(); ++cell) {
+    if (source.states[cell] == Source::kFree) continue;
+    const std::size_t node = cell / columns * (columns + 1) + cell % columns;
+    for (const std::size_t corner : {node, node + 1, node + columns + 1, node + columns + 2}) wanted[corner] = true;
+  }
+  source.nodes = {blocked_.x, blocked_.z, {}};
+  fill(source.nodes,
+       [&](const Float3& start, std::size_t node) { return wanted[node] ? blocked(source, start) : Float3{}; });
+  const float least = 0.01F * mean_of(source.share), most = mean_of(source.share) - least;
+  for (std::size_t cell = 0; cell < source.states.size(); ++cell) {
+    if (source.states[cell] == Source::kFree) continue;
+    const std::size_t column = cell % columns, row = cell / columns;
+    const auto part = [&](std::size_t c, std::size_t r) {
+      const float value = mean_of(source.nodes.at(c, r));
+      return value > least && value < most;
+    };
+    if (part(column, row) && part(column + 1, row) && part(column, row + 1) && part(column + 1, row + 1) &&
+        bent(source.nodes, column, row) <= bent_)
+      source.states[cell] = Source::kSmooth;
+  }
 }
 
-// The edges of shadows lie in few cells, which have nodes of their own.
+// What a line between two nodes misses of a curve through them and the nodes beside them, at most.
+float ShadedGround::bent(const Grid& grid, std::size_t column, std::size_t row, bool across) {
+  const std::size_t last = (across ? grid.x : grid.z).size() - 1;
+  const auto value = [&](std::size_t of_column, std::size_t of_row) { return mean_of(grid.at(of_column, of_row)); };
+  const auto second = [&](std::size_t c, std::size_t r) {
+    const std::size_t i = across ? c : r;
+    if (i == 0 || i == last) return 0.0F;
+    return std::abs(value(across ? c - 1 : c, across ? r : r - 1) - 2 * value(c, r) +
+                    value(across ? c + 1 : c, across ? r : r + 1));
+  };
+  return std::max(
+             {second(column, row), second(column + 1, row), second(column, row + 1), second(column + 1, row + 1)}) /
+         8;
+}
+
+float ShadedGround::bent(const Grid& grid, std::size_t column, std::size_t row) {
+  return std::max(bent(grid, column, row, true), bent(grid, column, row, false));
+}
+
+// Light bends at the edges of shadows, which lie in few cells: these have nodes of their own.
 void ShadedGround::divide() {
   const std::size_t columns = blocked_.x.size() - 1, rows = blocked_.z.size() - 1;
   divided_.assign(columns * rows, kWhole);
-  std::vector<std::size_t> steep;
+  std::vector<std::size_t> curved;
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t column = 0; column < columns; ++column) {
-      const auto [least, most] =
-          std::minmax({mean_of(blocked_.at(column, row)), mean_of(blocked_.at(column + 1, row)),
-                       mean_of(blocked_.at(column, row + 1)), mean_of(blocked_.at(column + 1, row + 1))});
-      if (most - least <= steep_) continue;
-      divided_[row * columns + column] = static_cast<std::uint32_t>(steep.size());
-      steep.push_back(row * columns + column);
+      if (bent(blocked_, column, row) <= bent_) continue;
+      divided_[row * columns + column] = static_cast<std::uint32_t>(curved.size());
+      curved.push_back(row * columns + column);
     }
   }
-  fine_.resize(steep.size() * kFineNodes * kFineNodes);
-  parallel_for(steep.size(), 16, [&](std::size_t begin, std::size_t end) {
+  fine_.resize(curved.size() * kFineNodes * kFineNodes);
+  parallel_for(curved.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const std::size_t column = steep[k] % columns, row = steep[k] / columns;
+      const std::size_t column = curved[k] % columns, row = curved[k] / columns;
       for (std::size_t node = 0; node < kFineNodes * kFineNodes; ++node) {
         const float right = static_cast<float>(node % kFineNodes) / kDivisions,
                     down = static_cast<float>(node / kFineNodes) / kDivisions;
@@ -341,18 +391,18 @@ Float3 ShadedGround::blocked(const Source& source, const Float3& start) const {
   return mean_of(few) >= kAll * mean_of(source.share) ? source.share : blocked(source.many, start);
 }
 
-namespace {
-
 // Between four values, of which the second pair is the lower one.
-Float3 between(const Float3* upper, const Float3* lower, float right, float down) {
+static Float3 between_four(const Float3* upper, const Float3* lower, float right, float down) {
   return (1 - down) * ((1 - right) * upper[0] + right * upper[1]) + down * ((1 - right) * lower[0] + right * lower[1]);
 }
 
-}  // namespace
+Float3 ShadedGround::between(const Grid& grid, const Place& at) {
+  return between_four(&grid.at(at.column, at.row), &grid.at(at.column, at.row + 1), at.right, at.down);
+}
 
 Float3 ShadedGround::soft_blocked(std::size_t column, std::size_t row, float right, float down) const {
   const std::uint32_t divided = divided_[row * (blocked_.x.size() - 1) + column];
-  if (divided == kWhole) return between(&blocked_.at(column, row), &blocked_.at(column, row + 1), right, down);
+  if (divided == kWhole) return between_four(&blocked_.at(column, row), &blocked_.at(column, row + 1), right, down);
   const auto cell = [](float& part) {
     part *= kDivisions;
     const std::size_t i = std::min(kDivisions - 1, static_cast<std::size_t>(part));
@@ -361,17 +411,14 @@ Float3 ShadedGround::soft_blocked(std::size_t column, std::size_t row, float rig
   };
   const std::size_t x = cell(right), z = cell(down);
   const Float3* upper = &fine_[(divided * kFineNodes + z) * kFineNodes + x];
-  return between(upper, upper + kFineNodes, right, down);
+  return between_four(upper, upper + kFineNodes, right, down);
 }
 
-GroundLight ShadedGround::light(const Float3& place) const {
+GroundLight ShadedGround::light(const Float3& place, const Place* at) const {
   GroundLight light;
-  std::size_t column = 0, row = 0;
-  float right = 0, down = 0;
-  if (!blocked_.find(place, column, row, right, down)) return light;
-  light.left = color::Rgb{1, 1, 1} - rays::vec3(soft_blocked(column, row, right, down));
-  if (bounced_.find(place, column, row, right, down))
-    light.bounced = rays::vec3(between(&bounced_.at(column, row), &bounced_.at(column, row + 1), right, down));
+  if (at == nullptr) return light;
+  light.left = color::Rgb{1, 1, 1} - rays::vec3(soft_blocked(at->column, at->row, at->right, at->down));
+  if (const auto beside = bounced_.find(place); beside) light.bounced = rays::vec3(between(bounced_, *beside));
   return light;
 }
 
@@ -388,15 +435,20 @@ void keep_positive(GroundLight& light) {
 }  // namespace
 
 GroundLight ShadedGround::seen(const Float3& place) const {
-  GroundLight shown = light(place);
-  for (const Source& source : sources_)
-    if (may_be_taken(source, place)) take(blocked(source, start_at(place.x, place.z)), shown);
+  const auto at = blocked_.find(place);
+  GroundLight shown = light(place, at ? &*at : nullptr);
+  for (const Source& source : sources_) {
+    const auto state = at ? source.states[at->row * (blocked_.x.size() - 1) + at->column] : Source::kAsked;
+    if (state == Source::kFree) continue;
+    take(state == Source::kSmooth ? between(source.nodes, *at) : blocked(source, start_at(place.x, place.z)), shown);
+  }
   keep_positive(shown);
   return shown;
 }
 
 GroundLight ShadedGround::met(const Float3& place, double number) const {
-  GroundLight shown = light(place);
+  const auto at = blocked_.find(place);
+  GroundLight shown = light(place, at ? &*at : nullptr);
   const Float3 start = start_at(place.x, place.z);
   for (const Source& source : sources_) {
     const std::size_t count = source.many.fans.size() * kFanRays;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "color/color.h"
@@ -25,7 +26,7 @@ struct GroundLight {
 struct GroundRequest {
   int directions = 256;          // at each node, a power of two
   double cell = 1.0 / 96;        // of the grid about the mesh, in lengths of the mesh; farther away cells grow
-  double steep = 0.03;           // cells whose nodes differ by more are divided
+  double bent = 0.004;           // cells in which lines between nodes miss more of the light are divided
   int bounced_directions = 256;  // at each fourth node, a power of two
   std::uint64_t seed = 1;
   // The radiance that the mesh sends along a ray from the floor that meets it there, for the numbers of a sample; none:
@@ -60,18 +61,26 @@ class ShadedGround {
     std::vector<rays::Fan> fans;
     std::vector<rays::Float3> shares;  // of each direction; 0 for those that fill the last fan
   };
-  // A lamp, or the brightest texels together.
-  struct Source {
-    Directions few, many;
-    rays::Float3 share;              // of all of it
-    std::vector<bool> may_be_taken;  // of each cell of blocked_: whether the mesh lies between it and the source
+  // A place in a cell of a grid.
+  struct Place {
+    std::size_t column = 0, row = 0;
+    float right = 0, down = 0;
   };
   // Values at the crossings of lines; beyond the last line there are none.
   struct Grid {
     std::vector<float> x, z;
     std::vector<rays::Float3> values;
-    bool find(const rays::Float3& place, std::size_t& column, std::size_t& row, float& right, float& down) const;
+    std::optional<Place> find(const rays::Float3& place) const;
     const rays::Float3& at(std::size_t column, std::size_t row) const { return values[row * x.size() + column]; }
+  };
+  // A lamp, or the brightest texels together.
+  struct Source {
+    // Of a cell of blocked_: nothing is in the way of the source, or rays tell how much is, or the nodes do.
+    enum State : std::uint8_t { kFree, kAsked, kSmooth };
+    Directions few, many;
+    rays::Float3 share;  // of all of it
+    std::vector<State> states;
+    Grid nodes;  // what is blocked of it; 0 at those that are free
   };
   static Directions directions(const std::vector<LaidGround::SharedRay>& rays);
   static Source source(const std::function<std::vector<LaidGround::SharedRay>(std::uint32_t count)>& drawn);
@@ -79,22 +88,26 @@ class ShadedGround {
   void shade(const std::vector<float>& x, const std::vector<float>& z);
   static void smooth(Grid& grid);
   void divide();
+  static float bent(const Grid& grid, std::size_t column, std::size_t row);
+  static float bent(const Grid& grid, std::size_t column, std::size_t row, bool across);
+  void smooth(Source& source) const;
   void mark(Source& source) const;
+  void mark(const rays::Fan& fan, const std::vector<mesh::Box>& boxes, std::vector<bool>& marked) const;
   void gather(const std::vector<float>& x, const std::vector<float>& z, const GroundRequest& request,
               const color::Rgb& irradiance);
   template <class Value>
   void fill(Grid& grid, const Value& value) const;
   rays::Float3 soft_blocked(std::size_t column, std::size_t row, float right, float down) const;
-  GroundLight light(const rays::Float3& place) const;
+  static rays::Float3 between(const Grid& grid, const Place& at);
+  GroundLight light(const rays::Float3& place, const Place* at) const;
   struct Cone;
   Cone cone(const rays::Float3& start) const;
   rays::Float3 blocked(const Directions& directions, const rays::Float3& start) const;
   rays::Float3 blocked(const Source& source, const rays::Float3& start) const;
-  bool may_be_taken(const Source& source, const rays::Float3& place) const;
   rays::Float3 start_at(float x, float z) const { return {x, height_ + rays::kLift, z}; }
 
   std::shared_ptr<const rays::RayScene> scene_;
-  float mesh_radius_ = 0, steep_ = 0, height_ = 0;
+  float mesh_radius_ = 0, bent_ = 0, height_ = 0;
   Directions soft_;
   std::vector<Source> sources_;
   Grid blocked_, bounced_;              // of the soft light; of the open irradiance
