@@ -41,8 +41,6 @@ Effects united(const Effects& a, const Effects& b) {
   all.tolerance_de00 = std::min(a.tolerance_de00, b.tolerance_de00);
   all.ray_noise_de00 = std::min(a.ray_noise_de00, b.ray_noise_de00);
   all.most_ray_samples = std::max(a.most_ray_samples, b.most_ray_samples);
-  const bool limited = a.most_samples_in_all > 0 && b.most_samples_in_all > 0;
-  all.most_samples_in_all = limited ? std::max(a.most_samples_in_all, b.most_samples_in_all) : 0;
   if (all.background == Background::kNone) all.background = b.background;
   return all;
 }

@@ -65,7 +65,6 @@ struct Effects {
   RayEffects rays = {};  // effects_of() leaves them out, since no engine with prefiltered maps draws them by itself
   double ray_noise_de00 = 0.25;    // of the picture, one standard deviation at 95 of 100 points
   int most_ray_samples = 1 << 16;  // of a visible point, in all samples of its pixel
-  double most_samples_in_all = 0;  // of rays, of a whole picture, beyond those of a first round; 0: no limit
   Background background = Background::kNone;
 
   // What engines of maps sum one by one: lamps, and bright spots of the environment as discs.

@@ -34,14 +34,9 @@ struct RayContext {
   bool has_environment = false;               // whether the light is at hand of which sums are made
 };
 
-// What a picture may cost for which nobody asked how accurate it is to be, nor how long it may take: so many samples of
-// rays. A sample of a white teapot under a sun took 0.9 us of processor, built with -O1, so that two cores take
-// some 7 s for them.
-constexpr double kMostUnaskedInAll = 16e6;
-
 struct PlanRequest {
   double tolerance_de00 = 0.5;        // what leaving effects out may change, p95 over visible pixels, all together
-  double most_ray_samples = 0;        // of all points of a picture; 0 is no limit
+  bool quick = false;                 // the noise of rays that nobody named may be the whole tolerance
   std::string effects = "auto";       // auto, all or none, then +NAME and -NAME, separated by commas
   std::optional<std::string> engine;  // by name; none: the first that draws by prefiltered maps
   double white_luminance = 1;         // what color differences are relative to

@@ -42,7 +42,7 @@ struct Drawn {
   Frame frame;
 };
 
-Drawn drawn(const World& world, const std::string& effects, bool rays, int samples = 1, double most_in_all = 0,
+Drawn drawn(const World& world, const std::string& effects, bool rays, int samples = 1,
             double tolerance_de00 = PlanRequest{}.tolerance_de00) {
   auto renderer = Renderer::create();
   EXPECT_TRUE(renderer.ok());
@@ -56,7 +56,6 @@ Drawn drawn(const World& world, const std::string& effects, bool rays, int sampl
   PlanRequest request;
   request.effects = effects;
   request.samples = samples;
-  request.most_ray_samples = most_in_all;
   request.tolerance_de00 = tolerance_de00;
   auto plan = renderer->load(world.scene, {*seen}, request);
   EXPECT_TRUE(plan.ok()) << plan.error().message;

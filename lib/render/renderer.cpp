@@ -73,6 +73,7 @@ struct Renderer::State : Sight {
   bool sums_may_stop = false;
   std::optional<Error> ray_failure;  // of load_paints(), which cannot tell it
   double white_luminance = 1, tolerance_de00 = 0.5;
+  std::optional<Deadline> deadline;  // of the picture that is loaded or drawn
   const mesh::Mesh* uploaded = nullptr;
   std::size_t uploaded_triangles = 0;
 
@@ -303,40 +304,41 @@ Result<void> Renderer::State::add_seen_through(int sample, float gain, image::Im
     add_behind(behind, shown, gain, picture);
     if (!effects.rays.floor || !transport) continue;
     std::fill(shown.data.begin(), shown.data.end(), 0.0F);
-    add_surroundings(*transport, behind.gbuffer, {effects.background, scene.background_color, ray_setup->environment},
-                     effects.rays, 1, shown);
+    add_surroundings(*transport, {&behind.gbuffer},
+                     {effects.background, scene.background_color, ray_setup->environment}, effects.rays, 1, shown);
     add_behind(behind, shown, gain, picture);
   }
   return {};
 }
 
-// Each sample of a pixel is corrected as the surface that it shows, a few of them together.
+// Each sample of a pixel is corrected as the surface that it shows, as many together as there is memory for.
 CorrectionNoise Renderer::State::correct(int first, int count, image::Image& picture) {
-  constexpr int kTogether = 4;
+  constexpr double kMostBytes = 4e8, kBytesOfPixel = sizeof(rays::Hit) + 4 * sizeof(float) + sizeof(std::uint32_t);
+  const int together =
+      std::clamp(static_cast<int>(kMostBytes / (kBytesOfPixel * picture.width * picture.height)), 4, 16);
   CorrectionNoise all;
   if (!effects.rays.any() || !transport) return all;
-  const int groups = (count + kTogether - 1) / kTogether;
+  const int groups = (count + together - 1) / together;
   CorrectionRequest request;
   request.effects = effects.rays;
   request.bounces = effort_asked.bounces;
   request.tolerance_de00 = effects.ray_noise_de00 * std::sqrt(groups);
   request.white_luminance = white_luminance;
   request.most_samples = std::max(2 * kBatch, effects.most_ray_samples / groups);
-  request.most_in_all = effects.most_samples_in_all / groups;
   request.progress = effort_asked.progress;
   const Backdrop backdrop{effects.background, scene.background_color, ray_setup->environment};
   const image::Image before = picture;
-  const Deadline deadline(effort_asked.time_limit_s);
   for (int group = 0; group < groups; ++group) {
     // What is left is shared by the samples of the pixels that are left.
-    if (effort_asked.time_limit_s > 0) request.time_limit_s = std::max(1e-3, deadline.left_s()) / (groups - group);
-    const int begin = first + group * kTogether, end = std::min(first + count, begin + kTogether);
+    if (effort_asked.time_limit_s > 0) request.time_limit_s = std::max(1e-3, deadline->left_s()) / (groups - group);
+    const int begin = first + group * together, end = std::min(first + count, begin + together);
     request.seed = mixed(effort_asked.seed, static_cast<std::uint64_t>(begin));
     std::vector<VisibleSurface> samples;
-    for (int i = begin; i < end; ++i) {
-      samples.push_back(drawn_surface(*scene.mesh, *gbuffer(i)));
-      if (!effects.rays.floor) continue;
-      add_surroundings(*transport, *gbuffer(i), backdrop, effects.rays, 1.0F / static_cast<float>(count), picture);
+    for (int i = begin; i < end; ++i) samples.push_back(drawn_surface(*scene.mesh, *gbuffer(i)));
+    if (effects.rays.floor) {
+      std::vector<const Gbuffer*> seen;
+      for (const VisibleSurface& sample : samples) seen.push_back(&sample.gbuffer);
+      add_surroundings(*transport, seen, backdrop, effects.rays, 1.0F / static_cast<float>(count), picture);
     }
     const float gain = static_cast<float>(end - begin) / static_cast<float>(count);
     const CorrectionNoise one = add_correction(*transport, samples, request, before, gain, picture);
@@ -382,6 +384,7 @@ Result<Transport> Renderer::State::traced_light(bool over_floor) const {
   if (over_floor) {
     GroundRequest request;
     request.directions = ground_directions(tolerance_de00), request.bounced_directions = 4 * request.directions;
+    request.bent = 1.0 / request.directions;  // shadows come in steps of this size
     request.seed = effort_asked.seed;
     created.shade_ground(request, effort_asked.bounces);
   }
@@ -492,6 +495,7 @@ Result<void> Renderer::load(const Scene& scene, const Effects& effects, const st
 Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
                             const PlanRequest& request) {
   State& s = *state_;
+  s.deadline.emplace(s.effort_asked.time_limit_s);
   s.tolerance_de00 = request.tolerance_de00;
   const EngineInfo* asked = nullptr;
   if (request.engine) {
@@ -569,6 +573,7 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   if (s.ray_failure) return *s.ray_failure;
   s.begin();
   const Stopwatch whole;
+  if (!s.deadline) s.deadline.emplace(s.effort_asked.time_limit_s);
   frame.gbuffer.reset();
   GONIO_TRY(s.look_at(view));
   frame.gbuffer = s.gbuffer(0);
@@ -588,6 +593,7 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   frame.noise.reset();
   if (s.engine->noise() != nullptr) frame.noise = *s.engine->noise();
   frame.frame_ms = 1000 * whole.elapsed_s();
+  s.deadline.reset();
   return s.open_gl ? s.open_gl->context.status("drawing") : Result<void>();
 }
 

@@ -139,14 +139,14 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
               "effects to draw: auto, all or none, and then +NAME and -NAME")
       .more("auto draws what the scene calls for, but what changes too little. The names are:" + effect_items() +
             "\nRays that are not named take at most 1024 samples of a point. auto,-rays is faster.");
-  o.common.tolerance = 0.5;
+  o.common.tolerance = 1;
   cli::add_tolerance(spec, o.common, "DE00", "what the finished picture may miss of the truth, at 95 of 100 pixels")
       .more(
           "What is approximate keeps to it; --check measures it:\n- Lobes and look-ups are left out where all together "
           "change less; --explain prints the table.\n- Rays are traced to half of it as one standard deviation, and "
           "the engine path to all of it.\n- The engine integral sums blocks as coarse as it allows.\nWithout "
           "--tolerance, --time-limit and --check, a picture takes seconds: its noise may be the whole tolerance, and "
-          "its rays take at most 16 million samples, or 8 of each point.");
+          "rays end after 5 s, or 8 samples of each point.");
   spec.option("bounces", "N", "8", &o.bounces, "surfaces that may pass light on to what is seen")
       .from(0, 4096)
       .more(
@@ -236,8 +236,8 @@ void add_report(cli::ToolSpec& spec) {
   spec.report = {
       {"plan[]: effect, needed, reason, de00_p95, decision, truth_de00_p95",
        "what each effect changes, and whether it is drawn; the truth with --check and --explain"},
-      {"plan_de00_p95, plan_ms, plan_most_samples",
-       "what all that is left out of maps changes, the time of the plan, and the most samples of rays"},
+      {"plan_de00_p95, plan_ms, plan_quick",
+       "what all that is left out of maps changes, the time of the plan, and whether rays end after 5 s"},
       {"filtering: was_kept, time_s", "with an image as --env: whether an earlier run filtered it, else the time"},
       {"rays: noise_de00_p95, samples, free_share, reached, ms",
        "noise of the picture, samples of a point, and the share of points that needed none"},

@@ -33,10 +33,6 @@ std::string plan_table(const render::Plan& plan) {
     text += fmt::format("{:<20} {:<6} {:>7} {} {:<16} {}\n", label_of(item.effect), item.needed ? "yes" : "no",
                         item.needed ? known(item.de00_p95) : "-", exact, spelled(item.decision), item.reason);
   }
-  if (plan.effects.most_samples_in_all > 0)
-    text += fmt::format(
-        "no tolerance, time limit or check is asked for: rays take at most {:.0f} million samples a picture\n",
-        1e-6 * plan.effects.most_samples_in_all);
   return text + fmt::format("left out of the maps together: dE00 {:.2f} (p95); planned in {:.1f} ms\nengine {}: {}\n",
                             plan.de00_p95, plan.time_ms, plan.engine, plan.engine_reason);
 }

@@ -100,7 +100,8 @@ class Shooting {
   }
   render::Scene over_floor(bool wanted) const;
   void leave_out_hidden_floor();
-  double most_ray_samples() const;
+  // Nobody asked how accurate the picture is to be, nor how long it may take.
+  bool is_quick() const;
   void tell_noise();
   void tell_rays();
   Result<void> look(render::Renderer& renderer);
@@ -170,12 +171,13 @@ Result<render::Plan> Shooting::load(render::Renderer& renderer, const DressedMes
 void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
   Json& results = session_.results();
   results["plan_de00_p95"] = json_number(plan.de00_p95);
-  results["plan_most_samples"] =
-      plan.effects.most_samples_in_all > 0 ? json_number(plan.effects.most_samples_in_all) : Json(nullptr);
+  results["plan_quick"] = request_.plan.quick;
   results["plan_ms"] = plan.time_ms;
   results["engine"] = plan.engine;
   results["engine_reason"] = plan.engine_reason;
   session_.explain(plan_table(plan));
+  if (request_.plan.quick && plan.effects.rays.any())
+    session_.explain("no tolerance, time limit or check is asked for: rays end after 5 s\n");
   if (options_.print_shader) std::fputs((shader_gaps(plan) + shader).c_str(), stdout);
   plan_ = std::move(plan);
 }
@@ -293,12 +295,10 @@ void Shooting::tell_rays() {
       rays.reached ? "" : fmt::format(", stopped before it was within {}", shortest(plan_.effects.ray_noise_de00))));
 }
 
-// A picture for which nobody asked how accurate it is to be, nor how long it may take, is to cost no more than that.
-double Shooting::most_ray_samples() const {
+bool Shooting::is_quick() const {
   const cli::CommonOptions& common = session_.common();
-  const bool asked = common.tolerance_given || common.time_limit_s > 0 || options_.check > 0 || request_.transport ||
-                     (request_.engine != nullptr && request_.engine->traces_rays);
-  return asked ? 0 : render::kMostUnaskedInAll;
+  return !common.tolerance_given && !(common.time_limit_s > 0) && options_.check == 0 && !request_.transport &&
+         (request_.engine == nullptr || !request_.engine->traces_rays);
 }
 
 void Shooting::tell_noise() {
@@ -306,7 +306,7 @@ void Shooting::tell_noise() {
   const render::Noise& noise = *frame_.noise;
   all_reached_ = all_reached_ && noise.reached;
   const bool by_time_alone = session_.common().time_limit_s > 0 && !session_.common().tolerance_given;
-  stopped_ |= !noise.reached && plan_.effects.most_samples_in_all == 0 && !by_time_alone;
+  stopped_ |= !noise.reached && !request_.plan.quick && !by_time_alone;
   Json& results = session_.results();
   results["noise_de00_p95"] = json_number(noise.de00_p95);
   results["noise_de00_mean"] = json_number(noise.de00_mean);
@@ -330,13 +330,13 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
   if (request_.transport) GONIO_TRY(can_trace_view(stage_.scene));
   GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, stage_.scene.lights));
   leave_out_hidden_floor();
+  request_.plan.quick = is_quick();
   GONIO_ASSIGN(render::Renderer renderer, make_renderer(options_, request_, stage_, session_));
   GONIO_TRY(look(renderer));
   tell_visibility(*looks_.front(), stage_.mesh, session_);
   white_ = render::diffuse_white(stage_.scene.env, stage_.scene.lights);
   request_.plan.white_luminance = white_.luminance;
   request_.plan.tolerance_de00 = session_.common().tolerance;
-  request_.plan.most_ray_samples = most_ray_samples();
   session_.explain(explanation(options_, stage_.mesh, stage_.dresses.front()));
   tell_opengl(renderer, session_);
   const render::Rays& through = looks_.front()->rays;

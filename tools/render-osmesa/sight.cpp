@@ -12,13 +12,16 @@ namespace {
 // times for a picture of 4 samples a pixel.
 constexpr std::size_t kTracedFrom = 1000000;
 
+// A picture of which nothing is asked ends after these seconds.
+constexpr double kQuick_s = 5;
+
 }  // namespace
 
 Result<render::Renderer> make_renderer(const Options& options, const Request& request, const Stage& stage,
                                        cli::Session& session) {
   render::Effort effort;
   effort.bounces = options.bounces;
-  effort.time_limit_s = session.common().time_limit_s;
+  effort.time_limit_s = request.plan.quick ? kQuick_s : session.common().time_limit_s;
   effort.seed = session.common().seed;
   effort.progress = [&session](double noise, double seconds) {
     session.progress(fmt::format("noise {:.2f} dE00 after {:.1f} s", noise, seconds));

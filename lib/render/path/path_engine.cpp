@@ -149,7 +149,7 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   const double search_s = clock.elapsed_s();
   PathRequest request;
   request.options.bounces = effort.bounces;
-  request.tolerance_de00 = effects_.tolerance_de00, request.most_in_all = effects_.most_samples_in_all;
+  request.tolerance_de00 = effects_.tolerance_de00;
   if (effort.time_limit_s > 0) request.time_limit_s = std::max(effort.time_limit_s - search_s, kLeastTime_s);
   request.seed = effort.seed;
   request.progress = effort.progress;

@@ -28,6 +28,14 @@ constexpr double kLeastRound = 1.0 / 16;
 // A point's own variance counts by its freedom, that of its neighborhood as so many.
 constexpr double kNeighborhood = 4;
 constexpr int kPixelReach = 2;  // pixels to each side of the neighborhood
+// The samples of a pixel are first looked at, which took about as long as so many fours of a car in two probes.
+constexpr double kFoursOfLook = 2;
+// A first round of a reconstructed picture takes samples of about so many points, and of all at edges.
+constexpr std::size_t kFirstPoints = 50000;
+// Points whose normals have at least this cosine tell the first round of each other.
+constexpr double kToldByNeighbor = 0.998;
+// Samples of a pixel that rays look at where all of them show one piece of surface.
+constexpr unsigned kOfOnePiece = 4;
 // Points at which the shares of the first round are compared.
 constexpr std::size_t kCompared = 4096;
 
@@ -70,18 +78,20 @@ class Picture {
   }
 
   PathPicture draw() {
-    std::vector<int> more(points_.size(), kFirstFours);
+    std::vector<int> more = first_fours();
     double noise = 0;
     bool reached = false;
     if (request_.stop_de00 > 0) first_.resize(points_.size());
     while (true) {
       const double before = drawn();
       pace_.start();
-      sample(more);
-      pace_.end(drawn() - before);
+      sample(more, first_round_);
+      pace_.end(drawn() - before + (first_round_ ? kFoursOfLook * static_cast<double>(points_.size()) : 0));
       if (first_round_ && request_.stop_de00 > 0) stop_shares();
       first_round_ = false;  // which no time limit cuts, so that every point is seen
+      const Stopwatch judging;
       noise = judge();
+      judging_s_ = judging.elapsed_s();
       if (request_.progress) request_.progress(std::hypot(noise, found_.stopped_de00), clock_.elapsed_s());
       reached = request_.tolerance_de00 > 0 && noise <= tolerance();
       if (reached || deadline_.passed() || !plan(noise, more) || !cut(more)) break;
@@ -95,7 +105,7 @@ class Picture {
       point.needed_samples = kOfFour * states_[i].needed;
       picture.noise_mean_de00 += point.noise_de00;
       picture.samples_mean += point.samples;
-      picture.free_share += point.samples == 0 ? 1 : 0;
+      picture.free_share += states_[i].certain && point.samples == 0 ? 1 : 0;
       picture.dark = picture.dark && point.radiance == color::Rgb{};
     }
     picture.noise_mean_de00 /= count, picture.samples_mean /= count, picture.free_share /= count;
@@ -112,23 +122,88 @@ class Picture {
       for (int x = 0; x < g.width; ++x) add_point(x, y);
     states_.resize(points_.size());
     if (request_.reconstruct) shown_.assign(points_.size(), {0, 0, {-1, {}, {}}});
+    if (seen_ != nullptr) find_even();
     options_ = whole_ = request_.options;
     whole_.correction = false;
+    first_whole_ = whole_;
     const bool given = seen_ != nullptr || count_ == 1;  // the surfaces of all samples
     if (request_.options.correction && base_ != nullptr && given) find_hidden();
   }
 
-  // Where the mesh takes most of the light, what is left has less noise than what is taken.
+  // Rays look at every sample of a pixel at an edge, and at some of them where all show one piece.
+  void find_even() {
+    each_point([&](std::size_t i) {
+      const PathPoint& point = points_[i];
+      states_[i].even = std::ranges::all_of(*seen_, [&](const VisibleSurface& seen) {
+        return are_one_piece(seen.gbuffer, surface_.gbuffer, place(point.x, point.y), place(point.x, point.y),
+                             kSamePiece);
+      });
+      if (states_[i].even && count_ > kOfOnePiece) states_[i].step = static_cast<unsigned>(count_) / kOfOnePiece + 1;
+    });
+  }
+
+  static bool are_one_piece(const Gbuffer& a, const Gbuffer& b, std::size_t at_a, std::size_t at_b, double cosine) {
+    const float *p = &a.data[4 * at_a], *q = &b.data[4 * at_b];
+    return p[3] != 0 && p[3] == q[3] && p[0] * q[0] + p[1] * q[1] + p[2] * q[2] > cosine;
+  }
+
+  // A first round leaves out points that stand beside one of the same piece of surface, the more the finer the picture
+  // is: light on a surface does not change with its resolution.
+  std::vector<int> first_fours() const {
+    std::vector<int> fours(points_.size(), kFirstFours);
+    if (!request_.reconstruct || seen_ == nullptr) return fours;
+    int spacing = 1;
+    while (points_.size() > 4 * kFirstPoints * static_cast<std::size_t>(spacing * spacing)) spacing *= 2;
+    each_point([&](std::size_t i) {
+      const PathPoint& point = points_[i];
+      const std::size_t own = place(point.x, point.y),
+                        first = place(point.x - point.x % spacing, point.y - point.y % spacing);
+      const std::int32_t other = number_[first];
+      if (first == own || other < 0 || !states_[i].even || !states_[static_cast<std::size_t>(other)].even) return;
+      if (are_one_piece(surface_.gbuffer, surface_.gbuffer, own, first, kToldByNeighbor)) fours[i] = 0;
+    });
+    return fours;
+  }
+
+  // Points that were left out and of which no neighbor tells get samples, which they show as they are.
+  void fill_gaps() {
+    std::vector<int> more(points_.size(), 0);
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (std::isinf(points_[i].noise_de00)) more[i] = kFirstFours;
+    sample(more, true);
+    each_point([&](std::size_t i) {
+      if (more[i] == 0) return;
+      show_own(i);
+      Covariance covariance = states_[i].sums.of_four();
+      for (double& element : covariance) element /= std::max(1, states_[i].sums.fours());
+      points_[i].noise_de00 = noise_of(i, points_[i].radiance, covariance);
+    });
+  }
+
+  // Where the mesh takes most of the light, what is left has less noise than what is taken. Both have the same mean, so
+  // that one pixel of a block may decide for the others.
   void find_hidden() {
-    parallel_for(points_.size(), kTogether, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const PathPoint& point = points_[i];
-        const unsigned covered = seen_ != nullptr ? coverage_.any[place(point.x, point.y)] : 1;
-        const VisibleSurface& surface = seen_ != nullptr ? (*seen_)[std::countr_zero(covered)] : surface_;
-        if (shows_pane(point.x, point.y)) continue;  // the picture has there what is behind as well
-        const rays::Spot spot = spot_at(transport_.rays(), surface, point.x, point.y);
-        states_[i].hidden = transport_.open_share(spot) < kMostlyHidden;
-      }
+    constexpr int kBlock = 2;
+    const auto is_hidden = [&](std::size_t i) {
+      const PathPoint& point = points_[i];
+      if (shows_pane(point.x, point.y)) return false;  // the picture has there what is behind as well
+      const unsigned covered = seen_ != nullptr ? coverage_.any[place(point.x, point.y)] : 1;
+      const VisibleSurface& surface = seen_ != nullptr ? (*seen_)[std::countr_zero(covered)] : surface_;
+      return transport_.open_share(spot_at(transport_.rays(), surface, point.x, point.y)) < kMostlyHidden;
+    };
+    const auto decides = [&](const PathPoint& point) { return point.x % kBlock == 0 && point.y % kBlock == 0; };
+    each_point([&](std::size_t i) {
+      if (decides(points_[i])) states_[i].hidden = is_hidden(i);
+    });
+    each_point([&](std::size_t i) {
+      const PathPoint& point = points_[i];
+      if (decides(point)) return;
+      const std::size_t first = place(point.x - point.x % kBlock, point.y - point.y % kBlock);
+      const std::int32_t other = number_[first];
+      const bool same =
+          other >= 0 && surface_.gbuffer.data[4 * first + 3] == surface_.gbuffer.data[4 * place(point.x, point.y) + 3];
+      states_[i].hidden =
+          same && !shows_pane(point.x, point.y) ? states_[static_cast<std::size_t>(other)].hidden : is_hidden(i);
     });
   }
 
@@ -140,7 +215,15 @@ class Picture {
                                [&](const VisibleSurface& seen) { return transport_.meets_pane(seen.hits[at]); });
   }
 
-  const PathOptions& options_of(std::size_t i) const { return states_[i].hidden ? whole_ : options_; }
+  // The first samples of a point are of all shares.
+  const PathOptions& options_of(std::size_t i) const {
+    const bool first = states_[i].sums.fours() == 0;
+    if (states_[i].hidden) return first ? first_whole_ : whole_;
+    return first ? request_.options : options_;
+  }
+
+  // Light that samples tell, of which there are none yet.
+  bool is_unknown(std::size_t i) const { return !states_[i].certain && states_[i].sums.fours() == 0; }
 
   void add_point(int x, int y) {
     const std::size_t at = place(x, y);
@@ -167,22 +250,26 @@ class Picture {
     bool certain = false;
     bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
     std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
+    unsigned step = 1;            // from one sample of the pixel that rays look at to the next
+    bool even = false;            // all samples of the pixel show one piece of surface
+    bool looked = false;          // what is seen and known without samples is known
   };
 
   std::size_t place(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(surface_.gbuffer.width) + static_cast<std::size_t>(x);
   }
 
-  // Chunks are taken in a scattered order, so that a picture that time cut short is noisy evenly.
-  void sample(const std::vector<int>& more) {
+  // Chunks are taken in a scattered order, so that a picture that time cut short is noisy evenly. No clock ends a round
+  // that is needed.
+  void sample(const std::vector<int>& more, bool is_needed) {
     std::vector<std::uint32_t> wanted;
     for (std::size_t i = 0; i < more.size(); ++i)
-      if (more[i] > 0) wanted.push_back(static_cast<std::uint32_t>(i));
+      if (more[i] > 0 || !states_[i].looked) wanted.push_back(static_cast<std::uint32_t>(i));
     const std::size_t chunks = (wanted.size() + kTogether - 1) / kTogether;
     const std::size_t step = scattering(chunks);
     parallel_for(chunks, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        if (!first_round_ && deadline_.passed()) return;
+        if (!is_needed && deadline_.passed()) return;
         const std::size_t chunk = i * step % chunks;
         for (std::size_t k = chunk * kTogether; k < std::min(wanted.size(), (chunk + 1) * kTogether); ++k)
           sample(wanted[k], more[wanted[k]]);
@@ -233,7 +320,9 @@ class Picture {
 
   void add_round(std::size_t i, const Round& round, const LightShares (&means)[Round::kSequences]) {
     color::Rgb drawn[Round::kSequences];
-    for (int k = 0; k < Round::kSequences; ++k) drawn[k] = sum_of(means[k], drawn_);
+    for (std::size_t k = 0; k < Round::kSequences; ++k) drawn[k] = sum_of(means[k], drawn_);
+    if (!kept_.empty() && states_[i].sums.fours() == 0)
+      for (std::size_t k = 0; k < Round::kSequences; ++k) kept_[i][k] = sum_of(means[k], kAllShares & ~drawn_);
     states_[i].sums.add(round, drawn);
     if (first_.empty()) return;
     for (std::size_t k = 0; k < first_[i].size(); ++k) {
@@ -267,6 +356,7 @@ class Picture {
     SharedPoint sum;
     int count = 0;
     visit_neighborhood(point, [&](std::size_t i) {
+      if (is_unknown(i)) return;
       sum.shares += first_shares(i);
       if (base_ != nullptr) sum.base += base_at(points_[i]);
       ++count;
@@ -278,6 +368,8 @@ class Picture {
     std::vector<SharedPoint> own, smooth;
     const std::size_t step = points_.size() / kCompared | 1;
     for (std::size_t i = step / 2; i < points_.size(); i += step) {
+      while (i < points_.size() && is_unknown(i)) ++i;
+      if (i == points_.size()) break;
       own.push_back({first_shares(i), base_ != nullptr ? base_at(points_[i]) : color::Rgb{}});
       smooth.push_back(mean_around(points_[i]));
     }
@@ -340,16 +432,18 @@ class Picture {
   void sample_spread(std::size_t i, int fours) {
     State& state = states_[i];
     const Round round(fours);
-    const auto count = static_cast<unsigned>(count_);
+    const unsigned step = state.step, count = (static_cast<unsigned>(count_) + step - 1) / step;
     const unsigned covered = coverage_.any[place(points_[i].x, points_[i].y)];
-    const bool first_time = state.sums.fours() == 0;
+    const bool first_time = !state.looked;
+    state.looked = true;
     if (first_time) state.uncertain = 0, state.sure = {};
     const unsigned first =
         (static_cast<unsigned>(mixed(request_.seed, i) >> 32) + static_cast<unsigned>(state.sums.fours())) % count;
     LightShares means[Round::kSequences];
-    for (unsigned sample = 0; sample < count; ++sample) {
+    for (unsigned k = 0; k < count; ++k) {
+      const unsigned sample = k * step;
       if ((covered >> sample & 1U) == 0) continue;
-      auto fan = static_cast<int>((sample + count - first) % count);
+      auto fan = static_cast<int>((k + count - first) % count);
       if (!first_time && (fan >= round.fans() || (state.uncertain >> sample & 1U) == 0)) continue;
       rays::Spot spot;
       rays::Float3 to_viewer;
@@ -359,37 +453,46 @@ class Picture {
         show(i, spot, 1.0 / count, at.sure(), to_viewer);
         if (!at.certain()) state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);
       }
-      if (at.certain()) continue;
+      if (at.certain() || fours == 0) continue;
       for (; fan < round.fans(); fan += static_cast<int>(count)) add_fan(at, i, round, fan, means);
     }
     state.certain = state.uncertain == 0;
-    if (!state.certain) add_round(i, round, means);
+    if (!state.certain && fours > 0) add_round(i, round, means);
+  }
+
+  template <class Visit>
+  void each_point(const Visit& visit) const {
+    parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) visit(i);
+    });
+  }
+
+  // By its own samples.
+  void show_own(std::size_t i) {
+    points_[i].radiance = states_[i].sure + states_[i].sums.mean();
+    if (states_[i].hidden) points_[i].radiance += -1.0 * base_at(points_[i]);
+    if (!kept_.empty()) points_[i].radiance += 0.5 * (kept_[i][0] + kept_[i][1]);
+    points_[i].samples = kOfFour * states_[i].sums.fours();
   }
 
   // Radiance, error and noise of every point from its sums; the 95th percentile of the noise.
   double judge() {
-    parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        points_[i].radiance = states_[i].sure + states_[i].sums.mean();
-        if (states_[i].hidden) points_[i].radiance += -1.0 * base_at(points_[i]);
-        if (!kept_.empty()) points_[i].radiance += 0.5 * (kept_[i][0] + kept_[i][1]);
-        points_[i].samples = kOfFour * states_[i].sums.fours();
-      }
-    });
+    each_point([&](std::size_t i) { show_own(i); });
     if (request_.reconstruct) {
       reconstruct();
+      fill_gaps();
     } else {
-      parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) judge(i);
-      });
+      each_point([this](std::size_t i) { judge(i); });
     }
     return worse_percentile([this](std::size_t i) { return points_[i].noise_de00; });
   }
 
-  // True if all samples of a pixel show one piece of surface.
-  bool is_even(const ShownPoint& shown) const {
+  // True if all samples of a pixel that rays looked at show one piece of surface.
+  bool is_even(std::size_t i) const {
+    const ShownPoint& shown = shown_[i];
+    const std::size_t count = (count_ + states_[i].step - 1) / states_[i].step;
     return shown.pieces.empty() ||
-           (shown.pieces.size() == count_ && std::ranges::all_of(shown.pieces, [&](const auto& p) {
+           (shown.pieces.size() == count && std::ranges::all_of(shown.pieces, [&](const auto& p) {
               return p.part == shown.piece.part && rays::dot(p.normal, shown.piece.normal) > kSamePiece;
             }));
   }
@@ -399,7 +502,7 @@ class Picture {
   void reconstruct() {
     std::vector<Halves> halves(points_.size());
     std::vector<color::Rgb> beside(points_.size());
-    for (std::size_t i = 0; i < points_.size(); ++i) {
+    each_point([&](std::size_t i) {
       const State& state = states_[i];
       const color::Rgb base = base_ != nullptr ? base_at(points_[i]) : color::Rgb{};
       beside[i] = base + state.sharp;
@@ -407,19 +510,18 @@ class Picture {
         halves[i][k] = state.sums.halves()[k];
         if (state.hidden) halves[i][k] += state.sure - base - state.sharp;
         if (!kept_.empty()) halves[i][k] += kept_[i][k];
+        if (is_unknown(i)) halves[i][k] = kUnknown;
       }
-    }
-    for (ShownPoint& shown : shown_)
-      if (is_even(shown)) shown.pieces.clear();
-    const Gbuffer& g = surface_.gbuffer;
-    const Reconstruction found = reconstruction(g.width, g.height, shown_, halves, beside, request_.white_luminance);
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const bool sampled = states_[i].sums.fours() > 0;
-      points_[i].radiance = states_[i].sharp + (sampled ? found.light[i] : halves[i][0]);
-      points_[i].noise_de00 = sampled ? found.error_de00[i] : 0;
+      if (is_even(i)) shown_[i].pieces.clear();
+    });
+    const Reconstruction found = reconstruction(shown_, halves, beside, request_.white_luminance);
+    each_point([&](std::size_t i) {
+      const bool certain = states_[i].certain && states_[i].sums.fours() == 0;
+      points_[i].radiance = states_[i].sharp + (certain ? halves[i][0] : found.light[i]);
+      points_[i].noise_de00 = certain ? 0 : found.error_de00[i];
       const double excess = points_[i].noise_de00 / tolerance();
-      states_[i].needed = states_[i].sums.fours() * excess * excess;
-    }
+      states_[i].needed = certain ? 0 : counted(i) * excess * excess;
+    });
   }
 
   // The larger of the 95th percentiles over the mesh and over the floor.
@@ -475,6 +577,9 @@ class Picture {
     state.needed = excess * excess;
   }
 
+  // The fours of a point. Where its neighbors tell its light, it has as many as they got at first.
+  int counted(std::size_t i) const { return is_unknown(i) ? kFirstFours : states_[i].sums.fours(); }
+
   double noise_of(std::size_t i, color::Rgb radiance, const Covariance& covariance) const {
     if (base_ != nullptr) radiance += base_at(points_[i]);
     return noise_de00(radiance, covariance, request_.white_luminance);
@@ -508,10 +613,10 @@ class Picture {
       double asked = 0;
       bool limited = true;
       for (std::size_t i = 0; i < points_.size(); ++i) {
-        const double n = states_[i].sums.fours(), wanted = std::min(std::ceil(scale * states_[i].needed), most) - n;
+        const double n = counted(i), wanted = std::min(std::ceil(scale * states_[i].needed), most) - n;
         more[i] = static_cast<int>(std::clamp(wanted, 0.0, kRoundGrowth * n));
         asked += more[i];
-        limited = limited && (n == 0 || states_[i].needed == 0 || n >= limit);
+        limited = limited && (states_[i].certain || states_[i].needed == 0 || n >= limit);
       }
       if (asked >= least && asked > 0) return true;
       if (in_vain) return false;
@@ -525,16 +630,15 @@ class Picture {
     return fours;
   }
 
-  // No more samples in all than may be, and no more than there is time for; whether any.
+  // No more samples than there is time for; whether any.
   bool cut(std::vector<int>& more) const {
-    const double may = request_.most_in_all > 0 ? request_.most_in_all / kOfFour - drawn() : HUGE_VAL;
-    return cut_round(std::min(may, pace_.left()), more,
+    return cut_round(pace_.left(judging_s_), more,
                      [](int fours) { return fours >= Round::kSequences ? Round(fours).fours() : 0; });
   }
 
   const Transport& transport_;
   const VisibleSurface& surface_;
-  PathOptions options_, whole_;                        // of what is drawn; the second without correction
+  PathOptions options_, whole_, first_whole_;  // of what is drawn and, of a first round; the others without correction
   const std::vector<VisibleSurface>* seen_ = nullptr;  // of each sample of a pixel; null: rays find what is seen
   const image::Image* base_;
   const PathRequest& request_;
@@ -542,6 +646,7 @@ class Picture {
   Pace pace_{deadline_};
   Stopwatch clock_;
   bool first_round_ = true;
+  double judging_s_ = 0;                       // after the last round
   std::size_t count_ = 1;                      // of the pixels' samples
   std::vector<std::array<double, 2>> shifts_;  // of these, where rays find what is seen
   Coverage coverage_;                          // empty where the centers alone are seen

@@ -26,7 +26,6 @@ struct PathRequest {
   double stop_de00 = 0;
   double time_limit_s = 0;     // 0: none
   int most_samples = 1 << 16;  // of a pixel
-  double most_in_all = 0;      // of all pixels together, but no less than a first round of 8; 0: no limit
   double white_luminance = 1;  // what noise is seen before
   std::uint64_t seed = 1;
   // Of a pixel, as sample_shifts() has them; with 1 the pixel centers are seen. Paths are spread over them.

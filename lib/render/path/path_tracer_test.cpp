@@ -213,31 +213,6 @@ TEST(PathPicture, TakesFewRounds) {
   }
 }
 
-// Nobody waits for a picture longer than its samples may take, whatever the tolerance is, and all points have their
-// share of them. The control has no such limit.
-TEST(PathPicture, TakesNoMoreSamplesInAllThanItMay) {
-  const auto stage = ball_in_a_cup();
-  const VisibleSurface surface = seen_from_above(*stage, 32, 24);
-  PathRequest request;
-  request.tolerance_de00 = 1;
-  std::array<double, 2> drawn{};
-  for (const bool limited : {false, true}) {
-    request.most_in_all = limited ? 0.3 * drawn[0] : 0;
-    const PathPicture picture = path_picture(*stage->transport, surface, nullptr, request);
-    double sum = 0, least = 1e9;
-    for (const PathPoint& point : picture.points) {
-      sum += point.samples;
-      if (point.noise_de00 > request.tolerance_de00) least = std::min<double>(least, point.samples);
-    }
-    drawn[limited ? 1 : 0] = sum;
-    EXPECT_EQ(picture.reached, !limited);
-    if (!limited) continue;
-    EXPECT_LE(sum, request.most_in_all);
-    EXPECT_GT(sum, 0.8 * request.most_in_all) << "it is made use of";
-    EXPECT_GT(least, 16) << "what is noisy got more than the first round has";
-  }
-}
-
 // Where light grazes a smooth ball of few triangles its facets would shade each other, and the border of light and
 // shadow would be jagged. Over a plane that is there twice, at three sizes, every pixel of the lit side shows the
 // cosine of its smooth normal. The control starts its rays on the flat triangles.

@@ -23,7 +23,6 @@ struct CorrectionRequest {
   double white_luminance = 1;
   std::uint64_t seed = 1;
   int most_samples = 1 << 16;  // of rays, at each point
-  double most_in_all = 0;      // at all points together, as PathRequest has it
   double time_limit_s = 0;     // 0: none
   std::function<void(double noise_de00, double seconds)> progress = {};
 };
@@ -53,9 +52,10 @@ struct Backdrop {
 double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Backdrop& backdrop,
                     const RayEffects& effects, double white_luminance);
 
-// Adds `gain` times what the pixels show beside the mesh: the floor, whose ground is shaded, or, above the horizon, the
-// background. Where these points are the floor, it adds their coverage.
-void add_surroundings(const Transport& transport, const Gbuffer& gbuffer, const Backdrop& backdrop,
+// Adds `gain` times what each of these samples of the pixels shows beside the mesh: the floor, whose ground is shaded,
+// or, above the horizon, the background. Where these points are the floor, it adds their coverage. A pixel that shows
+// no edge counts by its first sample.
+void add_surroundings(const Transport& transport, const std::vector<const Gbuffer*>& samples, const Backdrop& backdrop,
                       const RayEffects& effects, float gain, image::Image& picture);
 
 // Adds `gain` times the correction, the mean over these samples of each pixel, to the first three channels of the

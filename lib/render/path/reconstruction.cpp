@@ -21,20 +21,18 @@ struct Filter {
 };
 constexpr std::array<Filter, 5> kFilters = {{
     {0, {2, 0.1F, 0.5F}},
-    {0, {5, 0.1F, 0.5F}},
-    {1, {5, 0.1F, 0.5F}},
-    {2, {5, 0.15F, 0.5F}},
+    {1, {2, 0.1F, 0.5F}},
+    {2, {2, 0.1F, 0.5F}},
+    {3, {2, 0.15F, 0.5F}},
     {3, {5, 0.25F, 0.5F}},
 }};
 constexpr int kLevels = 4;
 // The light as it was sampled, and by each filter.
 constexpr std::size_t kChoices = kFilters.size() + 1;
 // Errors are means over this neighborhood.
-constexpr Filter kErrorMean = {1, {5, 0.25F, 0.5F, kNoSlopes}};
-// Choices are mixed by this power of one over their squared error.
-constexpr int kSharpness = 4;
+constexpr Filter kErrorMean = {2, {2, 0.25F, 0.5F, kNoSlopes}};
 // A squared difference of a filter from its reference above this multiple of their common variance counts as bias.
-constexpr float kSurprise = 6;
+constexpr float kSurprise = 25;
 // The own variance of a point, divided by this, bounds its error from below: the mean over a neighborhood dilutes rare
 // bright samples.
 constexpr float kSpike = 4;
@@ -55,54 +53,57 @@ color::Rgb half(const Predicted& p, std::size_t which) {
 SurfaceImage image_of(int width, int height, const std::vector<ShownPoint>& points,
                       const std::vector<Predicted>& values) {
   SurfaceImage image(width, height);
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    if (!points[n].pieces.empty()) continue;
+  each_point(points.size(), [&](std::size_t n) {
+    if (!points[n].pieces.empty() || std::isnan(values[n][0])) return;
     const ShownPiece& p = points[n].piece;
     const std::size_t i = image.at(points[n].x, points[n].y);
     image.weight[i] = 1, image.part[i] = static_cast<float>(p.part);
     image.normal[0][i] = p.normal.x, image.normal[1][i] = p.normal.y, image.normal[2][i] = p.normal.z;
     image.position[0][i] = p.position.x, image.position[1][i] = p.position.y, image.position[2][i] = p.position.z;
     for (std::size_t c = 0; c < kHalvesChannels; ++c) image.value[c][i] = values[n][c];
-  }
+  });
   return image;
 }
 
 // An element of the coarser image is the mean of those of its four that lie on one piece of surface.
+void average(const SurfaceImage& fine, int x, int y, SurfaceImage& image) {
+  std::size_t pivot = fine.at(2 * x, 2 * y);
+  for (int k = 1; k < 4; ++k) {
+    const std::size_t j = fine.at(2 * x + k % 2, 2 * y + k / 2);
+    if (fine.weight[j] > fine.weight[pivot]) pivot = j;
+  }
+  if (!(fine.weight[pivot] > 0)) return;
+  const std::size_t i = image.at(x, y);
+  image.part[i] = fine.part[pivot];
+  float sum = 0;
+  for (int k = 0; k < 4; ++k) {
+    const std::size_t j = fine.at(2 * x + k % 2, 2 * y + k / 2);
+    const float weight = fine.weight[j];
+    float turn = 0;
+    for (std::size_t c = 0; c < 3; ++c) turn += fine.normal[c][j] * fine.normal[c][pivot];
+    if (!(weight > 0) || fine.part[j] != fine.part[pivot] || turn < kSamePiece) continue;
+    sum += weight;
+    image.shift[0][i] += weight * (static_cast<float>(k % 2) - 0.5F + fine.shift[0][j]) / 2;
+    image.shift[1][i] += weight * (static_cast<float>(k / 2) - 0.5F + fine.shift[1][j]) / 2;
+    for (std::size_t c = 0; c < 3; ++c)
+      image.normal[c][i] += weight * fine.normal[c][j], image.position[c][i] += weight * fine.position[c][j];
+    for (std::size_t c = 0; c < kHalvesChannels; ++c) image.value[c][i] += weight * fine.value[c][j];
+  }
+  image.weight[i] = sum;
+  float length = 0;
+  for (std::size_t c = 0; c < 3; ++c) length += image.normal[c][i] * image.normal[c][i];
+  length = std::sqrt(length);
+  for (std::size_t c = 0; c < 3; ++c) image.normal[c][i] /= length, image.position[c][i] /= sum;
+  for (auto& plane : image.shift) plane[i] /= sum;
+  for (auto& plane : image.value) plane[i] /= sum;
+}
+
 SurfaceImage coarser(const SurfaceImage& fine) {
   SurfaceImage image((fine.width + 1) / 2, (fine.height + 1) / 2);
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      std::size_t pivot = fine.at(2 * x, 2 * y);
-      for (int k = 1; k < 4; ++k) {
-        const std::size_t j = fine.at(2 * x + k % 2, 2 * y + k / 2);
-        if (fine.weight[j] > fine.weight[pivot]) pivot = j;
-      }
-      if (!(fine.weight[pivot] > 0)) continue;
-      const std::size_t i = image.at(x, y);
-      image.part[i] = fine.part[pivot];
-      float sum = 0;
-      for (int k = 0; k < 4; ++k) {
-        const std::size_t j = fine.at(2 * x + k % 2, 2 * y + k / 2);
-        const float weight = fine.weight[j];
-        float turn = 0;
-        for (std::size_t c = 0; c < 3; ++c) turn += fine.normal[c][j] * fine.normal[c][pivot];
-        if (!(weight > 0) || fine.part[j] != fine.part[pivot] || turn < kSamePiece) continue;
-        sum += weight;
-        image.shift[0][i] += weight * (static_cast<float>(k % 2) - 0.5F + fine.shift[0][j]) / 2;
-        image.shift[1][i] += weight * (static_cast<float>(k / 2) - 0.5F + fine.shift[1][j]) / 2;
-        for (std::size_t c = 0; c < 3; ++c)
-          image.normal[c][i] += weight * fine.normal[c][j], image.position[c][i] += weight * fine.position[c][j];
-        for (std::size_t c = 0; c < kHalvesChannels; ++c) image.value[c][i] += weight * fine.value[c][j];
-      }
-      image.weight[i] = sum;
-      float length = 0;
-      for (std::size_t c = 0; c < 3; ++c) length += image.normal[c][i] * image.normal[c][i];
-      length = std::sqrt(length);
-      for (std::size_t c = 0; c < 3; ++c) image.normal[c][i] /= length, image.position[c][i] /= sum;
-      for (auto& plane : image.shift) plane[i] /= sum;
-      for (auto& plane : image.value) plane[i] /= sum;
-    }
-  }
+  parallel_for(static_cast<std::size_t>(image.height), 8, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+      for (int x = 0; x < image.width; ++x) average(fine, x, y, image);
+  });
   return image;
 }
 
@@ -110,21 +111,27 @@ SurfaceImage coarser(const SurfaceImage& fine) {
 class Fits {
  public:
   Fits(const SurfaceImage& image, const Filter& filter) : image_(image), filter_(filter) {
-    row_ = (static_cast<std::size_t>(image.width) + SurfaceImage::kLanes - 1) / SurfaceImage::kLanes *
-           SurfaceImage::kLanes;
-    plane_ = row_ * static_cast<std::size_t>(image.height);
-    coefficients_.resize(kCoefficients * plane_);
+    const auto width = static_cast<std::size_t>(image.width);
+    const std::size_t row = (width + SurfaceImage::kLanes - 1) / SurfaceImage::kLanes * SurfaceImage::kLanes;
+    coefficients_.resize(kCoefficients * width * static_cast<std::size_t>(image.height));
     parallel_for(static_cast<std::size_t>(image.height), 1, [&](std::size_t begin, std::size_t end) {
+      std::vector<float> planes(kCoefficients * row);
+      std::array<float*, kCoefficients> plane{};
+      for (std::size_t k = 0; k < kCoefficients; ++k) plane[k] = &planes[k * row];
       for (std::size_t y = begin; y < end; ++y) {
-        std::array<float*, kCoefficients> at{};
-        for (std::size_t k = 0; k < kCoefficients; ++k) at[k] = &coefficients_[k * plane_ + y * row_];
-        fit_row(image, filter.window, static_cast<int>(y), at.data());
+        fit_row(image, filter.window, static_cast<int>(y), plane.data());
+        float* at = &coefficients_[kCoefficients * width * y];
+        for (std::size_t x = 0; x < width; ++x)
+          for (std::size_t k = 0; k < kCoefficients; ++k) *at++ = plane[k][x];
       }
     });
   }
 
   Predicted at(const ShownPoint& point) const {
-    if (point.pieces.empty()) return filter_.level == 0 ? own(point) : about(point.x, point.y, point.piece);
+    if (point.pieces.empty()) {
+      const bool own_fit = filter_.level == 0 && image_.weight[image_.at(point.x, point.y)] > 0;
+      return own_fit ? own(point) : about(point.x, point.y, point.piece);
+    }
     Predicted sum{};
     for (const ShownPiece& piece : point.pieces) {
       const Predicted one = about(point.x, point.y, piece);
@@ -136,27 +143,30 @@ class Fits {
  private:
   static constexpr std::size_t kCoefficients = kSurfaceFeatures * kHalvesChannels;
 
-  float coefficient(std::size_t k, int x, int y) const {
-    return coefficients_[k * plane_ + static_cast<std::size_t>(y) * row_ + static_cast<std::size_t>(x)];
+  // By feature and channel.
+  const float* coefficients(int x, int y) const {
+    const auto width = static_cast<std::size_t>(image_.width);
+    return &coefficients_[kCoefficients * (static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x))];
   }
   Predicted own(const ShownPoint& point) const {
     Predicted result;
-    for (std::size_t c = 0; c < kHalvesChannels; ++c) result[c] = coefficient(c, point.x, point.y);
+    std::copy_n(coefficients(point.x, point.y), kHalvesChannels, result.begin());
     return result;
   }
 
   // The mean of what the elements about a pixel tell of a piece of surface in it; not a number where none does.
   Predicted about(int pixel_x, int pixel_y, const ShownPiece& piece) const {
-    constexpr float kReach = 1.5F;  // elements
+    const float reach = filter_.level == 0 ? 1.5F : 1.0F;  // elements
+    const int count = filter_.level == 0 ? 3 : 2;
     const auto size = static_cast<float>(1 << filter_.level);
     const float u = (static_cast<float>(pixel_x) + 0.5F) / size - 0.5F,
                 v = (static_cast<float>(pixel_y) + 0.5F) / size - 0.5F;
-    const int left = static_cast<int>(std::ceil(u - kReach)), top = static_cast<int>(std::ceil(v - kReach));
+    const int left = static_cast<int>(std::ceil(u - reach)), top = static_cast<int>(std::ceil(v - reach));
     Predicted sum{};
     float weights = 0;
-    for (int y = std::max(0, top); y < std::min(image_.height, top + 3); ++y)
-      for (int x = std::max(0, left); x < std::min(image_.width, left + 3); ++x)
-        weights += add(x, y, u - static_cast<float>(x), v - static_cast<float>(y), piece, kReach, sum);
+    for (int y = std::max(0, top); y < std::min(image_.height, top + count); ++y)
+      for (int x = std::max(0, left); x < std::min(image_.width, left + count); ++x)
+        weights += add(x, y, u - static_cast<float>(x), v - static_cast<float>(y), piece, reach, sum);
     for (float& value : sum) value = weights > 1e-3F ? value / weights : kNowhere;
     return sum;
   }
@@ -182,16 +192,15 @@ class Fits {
     for (std::size_t t = 0; t < 2; ++t)
       feature[3 + t] =
           (turned.x * tangents[t][0] + turned.y * tangents[t][1] + turned.z * tangents[t][2]) / window.normal;
+    const float* fitted = coefficients(x, y);
     for (std::size_t f = 0; f < kSurfaceFeatures; ++f)
-      for (std::size_t c = 0; c < kHalvesChannels; ++c)
-        sum[c] += weight * feature[f] * coefficient(f * kHalvesChannels + c, x, y);
+      for (std::size_t c = 0; c < kHalvesChannels; ++c) sum[c] += weight * feature[f] * *fitted++;
     return weight;
   }
 
   const SurfaceImage& image_;
   const Filter& filter_;
-  std::size_t row_, plane_;
-  std::vector<float> coefficients_;  // feature and channel, y, x
+  std::vector<float> coefficients_;  // by element
 };
 
 std::vector<Predicted> predictions(const Filter& filter, const SurfaceImage& image,
@@ -264,7 +273,7 @@ std::vector<Values> neighborhood_means(int width, int height, const std::vector<
   for (int level = 0; level < kErrorMean.level; ++level) image = coarser(image);
   std::vector<Values> result = predictions(kErrorMean, image, kinds);
   each_point(kinds.size(), [&](std::size_t n) {
-    if (std::isnan(result[n][0])) result[n] = of[n];
+    if (std::isnan(result[n][0])) result[n] = of[n];  // which is not known either where there are no samples
   });
   return result;
 }
@@ -276,7 +285,9 @@ Measured measured(int width, int height, const std::vector<ShownPoint>& points, 
   result.seen.resize(points.size()), result.variances.resize(points.size());
   std::vector<Values> biases(points.size());
   each_point(points.size(), [&](std::size_t n) {
-    const Predicted& smooth = std::isnan(predicted[2][n][0]) ? predicted[0][n] : predicted[2][n];
+    std::size_t finest = 2;  // of the filters that tell this point
+    while (finest < kChoices && std::isnan(predicted[finest][n][0])) ++finest;
+    const Predicted& smooth = predicted[finest < kChoices ? finest : 0][n];
     const color::Rgb shown = beside[n] + 0.5 * (half(smooth, 0) + half(smooth, 1));
     const SeenRows seen({std::max(0.0, shown.x), std::max(0.0, shown.y), std::max(0.0, shown.z)}, white_luminance);
     for (std::size_t k = 0; k < kChoices; ++k) {
@@ -284,6 +295,13 @@ Measured measured(int width, int height, const std::vector<ShownPoint>& points, 
       const bool known = !std::isnan(one[0]) && !std::isnan(reference[0]);
       result.variances[n][k] = static_cast<float>(variance(seen, known ? one : predicted[0][n]));
       biases[n][k] = known ? static_cast<float>(squared_bias(seen, reference, one)) : 0;
+    }
+    // A point without samples is no part of neighborhoods. Its filters have variances that neighbors tell.
+    if (std::isnan(predicted[0][n][0])) {
+      result.variances[n][0] = biases[n][0] = kNowhere;
+      for (std::size_t k = 1; k < kChoices; ++k)
+        if (!std::isnan(predicted[k][n][0]))
+          result.variances[n][k] = static_cast<float>(variance(seen, predicted[k][n]));
     }
     result.seen[n] = seen;
   });
@@ -295,7 +313,9 @@ Measured measured(int width, int height, const std::vector<ShownPoint>& points, 
 
 // The squared error of a choice at a point, where it is a number.
 float squared_error(const Predictions& predicted, const Measured& measured, std::size_t n, std::size_t choice) {
-  const Values &own = measured.variances[n], &mean = measured.mean_variances[n];
+  const Values& mean = measured.mean_variances[n];
+  if (std::isnan(mean[0])) return HUGE_VALF;
+  const Values& own = measured.variances[n];
   const std::size_t reference = reference_of(choice);
   float bias = std::max(0.0F, measured.mean_biases[n][choice]);
   if (reference > 0) bias += std::max(0.0F, measured.mean_biases[n][reference]);
@@ -308,11 +328,20 @@ float squared_error(const Predictions& predicted, const Measured& measured, std:
   return std::max({mean[choice], own[choice] / kSpike, 1e-6F}) + bias;
 }
 
+// Moves points to the least coordinates that an image of them can have, and returns the size of that.
+std::array<int, 2> moved_to_corner(std::vector<ShownPoint>& points) {
+  if (points.empty()) return {0, 0};
+  const auto [left, right] = std::ranges::minmax(points, {}, &ShownPoint::x);
+  const int x = left.x, y = points.front().y, width = right.x - x + 1, height = points.back().y - y + 1;
+  for (ShownPoint& point : points) point.x -= x, point.y -= y;
+  return {width, height};
+}
+
 }  // namespace
 
-Reconstruction reconstruction(int width, int height, const std::vector<ShownPoint>& points,
-                              const std::vector<Halves>& halves, const std::vector<color::Rgb>& beside,
-                              double white_luminance) {
+Reconstruction reconstruction(std::vector<ShownPoint> points, const std::vector<Halves>& halves,
+                              const std::vector<color::Rgb>& beside, double white_luminance) {
+  const auto [width, height] = moved_to_corner(points);
   const Predictions predicted = all_predictions(width, height, points, halves);
   const Measured errors = measured(width, height, points, predicted, beside, white_luminance);
   Reconstruction result;
@@ -322,10 +351,14 @@ Reconstruction reconstruction(int width, int height, const std::vector<ShownPoin
     for (std::size_t k = 0; k < kChoices; ++k)
       error[k] = std::isnan(predicted[k][n][0]) ? HUGE_VALF : squared_error(predicted, errors, n, k);
     const float least = *std::ranges::min_element(error);
+    if (std::isinf(least)) {
+      result.error_de00[n] = HUGE_VALF;
+      return;
+    }
     double weights = 0, squared = 0;
     for (std::size_t k = 0; k < kChoices; ++k) {
       if (std::isinf(error[k])) continue;
-      const double weight = std::pow(least / error[k], kSharpness);
+      const double ratio = least / error[k], weight = ratio * ratio * ratio * ratio;
       weights += weight, squared += weight * error[k];
       result.light[n] += weight * 0.5 * (half(predicted[k][n], 0) + half(predicted[k][n], 1));
     }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "color/color.h"
@@ -31,16 +32,18 @@ struct ShownPoint {
 
 // Two independent estimates of one light, from either half of its samples.
 using Halves = std::array<color::Rgb, 2>;
+// Both of a point without samples, which its neighbors tell.
+constexpr color::Rgb kUnknown{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
+                              std::numeric_limits<double>::quiet_NaN()};
 
 struct Reconstruction {
   std::vector<color::Rgb> light;  // of each point
-  std::vector<float> error_de00;  // its standard error, over the neighborhood of each point
+  std::vector<float> error_de00;  // its standard error, over the neighborhood; infinite where nothing tells a point
 };
 
 // `beside` is what each point shows beside the light that is reconstructed; with it, errors are seen before a white of
 // this luminance. Points come row by row, at most one for each pixel. Bit-identical for any number of threads.
-Reconstruction reconstruction(int width, int height, const std::vector<ShownPoint>& points,
-                              const std::vector<Halves>& halves, const std::vector<color::Rgb>& beside,
-                              double white_luminance);
+Reconstruction reconstruction(std::vector<ShownPoint> points, const std::vector<Halves>& halves,
+                              const std::vector<color::Rgb>& beside, double white_luminance);
 
 }  // namespace goniochrome::render

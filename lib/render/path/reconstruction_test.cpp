@@ -26,7 +26,7 @@ struct Stage {
   std::vector<Halves> halves;
   std::vector<color::Rgb> beside;
 
-  Reconstruction reconstructed() const { return reconstruction(kWidth, kHeight, points, halves, beside, 1); }
+  Reconstruction reconstructed() const { return reconstruction(points, halves, beside, 1); }
 };
 
 // A bent sheet of two parts that meet at a third of the picture. Each half has noise of this standard deviation, which
@@ -177,7 +177,7 @@ TEST(HardCase, ReconstructionOfRareSamplesIsNoWorseThanTheirMean) {
 
 // One point alone, none at all, and points that show no surface beside them.
 TEST(HardCase, ReconstructionOfAFewPointsIsTheirMean) {
-  EXPECT_TRUE(reconstruction(4, 4, {}, {}, {}, 1).light.empty());
+  EXPECT_TRUE(reconstruction({}, {}, {}, 1).light.empty());
   Stage stage = sheet(smooth, 0.05);
   stage.points = {stage.points[100], stage.points[500]};
   stage.halves = {stage.halves[100], stage.halves[500]};

@@ -16,7 +16,10 @@ class Pace {
   explicit Pace(const Deadline& deadline) : deadline_(deadline) {}
   void start() { round_ = Stopwatch(); }
   void end(double drawn) { per_s_ = drawn / std::max(round_.elapsed_s(), 1e-9); }
-  double left() const { return deadline_.limit_s() > 0 ? per_s_ * deadline_.left_s() : HUGE_VAL; }
+  // Beside what takes `reserved_s` after a round.
+  double left(double reserved_s = 0) const {
+    return deadline_.limit_s() > 0 ? per_s_ * (deadline_.left_s() - reserved_s) : HUGE_VAL;
+  }
 
  private:
   const Deadline& deadline_;

@@ -89,9 +89,8 @@ std::vector<PlanItem> ray_items(const Words& words, const RayContext& rays, cons
     items.push_back(std::move(item));
   }
   const bool limited = words.start == Start::kAuto && !named;
-  effects.ray_noise_de00 = (limited && request.most_ray_samples > 0 ? 1 : kRayNoiseShare) * request.tolerance_de00;
+  effects.ray_noise_de00 = (limited && request.quick ? 1 : kRayNoiseShare) * request.tolerance_de00;
   if (limited) effects.most_ray_samples = kMostUnaskedSamples;
-  effects.most_samples_in_all = limited && effects.rays.any() ? request.most_ray_samples : 0;
   return items;
 }
 
