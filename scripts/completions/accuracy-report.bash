@@ -11,7 +11,7 @@ _accuracy_report() {
     --scene) COMPREPLY=($(compgen -f -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--help --generate --output --quick --bin --paints --probe --mesh --target-de00 --scene" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--help --generate --version --output --quick --bin --paints --probe --mesh --target-de00 --scene" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -1,7 +1,7 @@
 _paint_batch() {
   local word=${COMP_WORDS[COMP_CWORD]} words
   if [ "$COMP_CWORD" -eq 1 ]; then
-    COMPREPLY=($(compgen -W "plan list shard merge slurm book --help --generate" -- "$word"))
+    COMPREPLY=($(compgen -W "plan list shard merge slurm book --help --generate --version" -- "$word"))
     return
   fi
   case ${COMP_WORDS[1]} in

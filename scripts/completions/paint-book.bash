@@ -17,7 +17,7 @@ _paint_book() {
     --bin) COMPREPLY=($(compgen -f -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--help --generate --output --variations --palette --title --mesh --chips --env --basis --fitted --gloss --size --beside --page-paints --orbit --studio --pictures --jobs --bin --quiet" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--help --generate --version --output --variations --palette --title --mesh --chips --env --basis --fitted --gloss --size --beside --page-paints --orbit --studio --pictures --jobs --bin --quiet" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

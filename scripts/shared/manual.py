@@ -2,6 +2,10 @@
 
 import argparse
 import dataclasses
+import os
+import shutil
+import subprocess
+import sys
 import textwrap
 
 WIDTH = 100
@@ -27,6 +31,19 @@ class Generate(argparse.Action):
         parser.exit()
 
 
+class Version(argparse.Action):
+    """Prints the version, which is that of the tools beside the script or in PATH, and exits."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        beside = os.path.dirname(os.path.realpath(sys.argv[0]))
+        tool = shutil.which("fit-paint", path=f"{beside}:{os.environ.get('PATH', os.defpath)}")
+        if tool is None:
+            parser.exit(3, f"{parser.prog}: its version is that of the tools, of which none is in PATH: add their folder to it\n")
+        said = subprocess.run([tool, "--version"], capture_output=True, text=True, check=True).stdout
+        print(parser.prog, said.split()[-1])
+        parser.exit()
+
+
 def parser_of(manual):
     """A parser with the texts of the manual and the option --generate; the options of the script are then added to it."""
     examples = "\n".join(f"  {command}\n{textwrap.indent(textwrap.fill(sentence(effect), WIDTH - 6), ' ' * 6)}"
@@ -38,6 +55,7 @@ def parser_of(manual):
         epilog=f"examples:\n{examples}\n\n{status}\n\nThe whole story: man {manual.name}")
     parser.add_argument("--generate", action=Generate, const=manual, choices=("man", "completion"), metavar="TEXT",
                         help="print a text made from the options, which is one of man, completion")
+    parser.add_argument("--version", action=Version, nargs=0, help="print the version")
     return parser
 
 
