@@ -130,11 +130,12 @@ class Fits {
   Predicted at(const ShownPoint& point) const {
     if (point.pieces.empty()) {
       const bool own_fit = filter_.level == 0 && image_.weight[image_.at(point.x, point.y)] > 0;
-      return own_fit ? own(point) : about(point.x, point.y, point.piece);
+      if (own_fit) return own(point);
+      return about(point.x, point.y, point.piece, filter_.level == 0 ? kFarReach : kNearReach);
     }
     Predicted sum{};
     for (const ShownPiece& piece : point.pieces) {
-      const Predicted one = about(point.x, point.y, piece);
+      const Predicted one = about(point.x, point.y, piece, kFarReach);
       for (std::size_t c = 0; c < kHalvesChannels; ++c) sum[c] += piece.share * one[c];
     }
     return sum;
@@ -154,10 +155,13 @@ class Fits {
     return result;
   }
 
+  // Elements that lie nearer, each way, tell a pixel, and those that lie further off where the nearest may be of
+  // another piece or without samples.
+  static constexpr float kNearReach = 1, kFarReach = 1.5F;
+
   // The mean of what the elements about a pixel tell of a piece of surface in it; not a number where none does.
-  Predicted about(int pixel_x, int pixel_y, const ShownPiece& piece) const {
-    const float reach = filter_.level == 0 ? 1.5F : 1.0F;  // elements
-    const int count = filter_.level == 0 ? 3 : 2;
+  Predicted about(int pixel_x, int pixel_y, const ShownPiece& piece, float reach) const {
+    const int count = static_cast<int>(2 * reach);
     const auto size = static_cast<float>(1 << filter_.level);
     const float u = (static_cast<float>(pixel_x) + 0.5F) / size - 0.5F,
                 v = (static_cast<float>(pixel_y) + 0.5F) / size - 0.5F;
