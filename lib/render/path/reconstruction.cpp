@@ -237,15 +237,6 @@ std::size_t reference_of(std::size_t choice) {
   return choice > 1 ? 1 : 0;
 }
 
-// Errors at edges are no mean of those beside them: edges are parts of their own.
-std::vector<ShownPoint> by_kind(std::vector<ShownPoint> points) {
-  for (ShownPoint& point : points) {
-    if (point.pieces.empty()) continue;
-    point.pieces.clear(), point.piece.part = -2 - point.piece.part;
-  }
-  return points;
-}
-
 // Measurements at each point from which the errors of all choices follow.
 struct Measured {
   std::vector<SeenRows> seen;
@@ -271,14 +262,26 @@ Predictions all_predictions(int width, int height, const std::vector<ShownPoint>
   return predicted;
 }
 
-std::vector<Values> neighborhood_means(int width, int height, const std::vector<ShownPoint>& kinds,
+// Means over the neighborhoods of points. Errors at edges are no mean of those beside them, so that each kind has an
+// image of its own, in which the few points at edges are not lost among the others.
+std::vector<Values> neighborhood_means(int width, int height, const std::vector<ShownPoint>& points,
                                        const std::vector<Values>& of) {
-  SurfaceImage image = image_of(width, height, kinds, of);
-  for (int level = 0; level < kErrorMean.level; ++level) image = coarser(image);
-  std::vector<Values> result = predictions(kErrorMean, image, kinds);
-  each_point(kinds.size(), [&](std::size_t n) {
-    if (std::isnan(result[n][0])) result[n] = of[n];  // which is not known either where there are no samples
-  });
+  std::vector<Values> result = of;
+  for (const bool at_edges : {false, true}) {
+    std::vector<std::size_t> numbers;
+    std::vector<ShownPoint> kind;
+    std::vector<Values> values;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      if (points[n].pieces.empty() == at_edges) continue;
+      numbers.push_back(n), values.push_back(of[n]);
+      kind.push_back({points[n].x, points[n].y, points[n].piece});
+    }
+    SurfaceImage image = image_of(width, height, kind, values);
+    for (int level = 0; level < kErrorMean.level; ++level) image = coarser(image);
+    const std::vector<Values> means = predictions(kErrorMean, image, kind);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      if (!std::isnan(means[i][0])) result[numbers[i]] = means[i];
+  }
   return result;
 }
 
@@ -309,9 +312,8 @@ Measured measured(int width, int height, const std::vector<ShownPoint>& points, 
     }
     result.seen[n] = seen;
   });
-  const std::vector<ShownPoint> kinds = by_kind(points);
-  result.mean_variances = neighborhood_means(width, height, kinds, result.variances);
-  result.mean_biases = neighborhood_means(width, height, kinds, biases);
+  result.mean_variances = neighborhood_means(width, height, points, result.variances);
+  result.mean_biases = neighborhood_means(width, height, points, biases);
   return result;
 }
 
