@@ -17,7 +17,8 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr int kFirst = 16;  // batches of a point
+constexpr int kFirst = 16;        // batches of a point
+constexpr int kBareBatches = 64;  // without the floor, which tell its worth and are no part of the truth
 // Points whose noise is still above what is allowed are traced on, with a fifth more than they seem to need.
 constexpr int kMoreRounds = 8;
 constexpr double kSpare = 1.2;
@@ -99,7 +100,7 @@ class Judge {
     for (int count = kFirst; count <= request_.batches && !is_sharp(); count *= 4) {
       std::ranges::fill(batches, count);
       trace(transport, mesh, batches, truth_);
-      if (bare != nullptr) trace(*bare, mesh, batches, bare_);
+      if (bare != nullptr && count <= kBareBatches) trace(*bare, mesh, batches, bare_);
       judge();
     }
     // By now every point has met its bright paths, so that its noise tells what it needs: that falls with the root of

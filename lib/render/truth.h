@@ -41,7 +41,7 @@ struct TruthRequest {
   int bounces = 8;
   std::uint64_t seed = 1;
   // Batches of 16 directions: of every pixel, and of those that are noisier than they may be.
-  int batches = 1024, most_batches = 262144;
+  int batches = 256, most_batches = 262144;
   // The picture was drawn by paths alone, which have the mesh in the way from the beginning: all of its error is noise.
   bool whole = false;
 };
