@@ -101,7 +101,7 @@ TEST(RayEffects, APictureWithThemIsTheTruth) {
     EXPECT_EQ(item(without.plan, name).decision, Decision::kForcedOff) << name;
   }
   const TruthError good = against_truth(world, with), bad = against_truth(world, without);
-  // The noise is half of the tolerance; the maps err by less than the tolerance here.
+  // The errors of rays are within .7 of the tolerance; the maps err by less than the tolerance here.
   EXPECT_LT(good.total.de00_p95, 2 * PlanRequest{}.tolerance_de00);
   EXPECT_EQ(good.shares.occlusion, 0);
   EXPECT_EQ(good.shares.bounce, 0);

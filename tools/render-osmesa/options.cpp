@@ -143,8 +143,9 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
   cli::add_tolerance(spec, o.common, "DE00", "what the finished picture may miss of the truth, at 95 of 100 pixels")
       .more(
           "What is approximate keeps to it; --check measures it:\n- Lobes and look-ups are left out where all together "
-          "change less; --explain prints the table.\n- Rays are traced to half of it as one standard deviation, and "
-          "the engine path to all of it.\n- The engine integral sums blocks as coarse as it allows.\nWithout "
+          "change less; --explain prints the table.\n- Rays are traced until their errors are within .7 of it, and the "
+          "engine path to all of it as one standard deviation.\n- The engine integral sums blocks as coarse as it "
+          "allows.\nWithout "
           "--tolerance, --time-limit and --check, a picture takes seconds: its noise may be the whole tolerance, and "
           "rays end after 5 s, or 8 samples of each point.");
   spec.option("bounces", "N", "8", &o.bounces, "surfaces that may pass light on to what is seen")

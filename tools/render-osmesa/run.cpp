@@ -291,7 +291,7 @@ void Shooting::tell_rays() {
                                 {"reached", rays.reached},
                                 {"ms", rays.ms}};
   session_.say(fmt::format(
-      "rays: {:.0f} samples a point in {:.0f} ms, noise dE00 {:.2f} (p95){}", rays.samples, rays.ms, rays.de00_p95,
+      "rays: {:.0f} samples a point in {:.0f} ms, errors dE00 {:.2f} (p95){}", rays.samples, rays.ms, rays.de00_p95,
       rays.reached ? "" : fmt::format(", stopped before it was within {}", shortest(plan_.effects.ray_noise_de00))));
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 
 namespace goniochrome::render {
 
@@ -81,6 +83,28 @@ double noise_de00(const color::Rgb& radiance, const Covariance& covariance, doub
   double variance = 0;
   for (const Vec3& row : SeenRows(radiance, white_luminance).rows) variance += variance_along(row, covariance);
   return std::sqrt(std::max(0.0, variance));
+}
+
+// Deviations that differ by less than a fiftieth are taken together.
+double largest_errors(const std::vector<double>& deviations) {
+  constexpr double kExceeded = 0.05, kPerOctave = 36;
+  std::map<int, double> counts;  // by the logarithm
+  for (const double deviation : deviations)
+    if (deviation > 0) ++counts[static_cast<int>(std::lround(kPerOctave * std::log2(deviation)))];
+  const auto exceeding = [&](double size) {
+    double sum = 0;
+    for (const auto& [bin, count] : counts)
+      sum += count * std::erfc(size / (std::numbers::sqrt2 * std::exp2(bin / kPerOctave)));
+    return sum / static_cast<double>(deviations.size());
+  };
+  if (deviations.empty() || exceeding(0) <= kExceeded) return 0;
+  double low = 0, high = 1;
+  while (exceeding(high) > kExceeded) high *= 2;
+  for (int step = 0; step < 30; ++step) {
+    const double middle = 0.5 * (low + high);
+    (exceeding(middle) > kExceeded ? low : high) = middle;
+  }
+  return high;
 }
 
 }  // namespace goniochrome::render

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "color/color.h"
 
@@ -53,5 +54,9 @@ struct SeenRows {
 // The root mean square CIEDE2000 difference between a radiance and the same with a small random error of this
 // covariance, by SeenRows.
 double noise_de00(const color::Rgb& radiance, const Covariance& covariance, double white_luminance);
+
+// The size that errors exceed at 5 of 100 points, where the errors of each are normal with such a standard deviation,
+// along one direction of color as those of light mostly are.
+double largest_errors(const std::vector<double>& deviations);
 
 }  // namespace goniochrome::render

@@ -28,6 +28,8 @@ constexpr double kLeastRound = 1.0 / 16;
 // A point's own variance counts by its freedom, that of its neighborhood as so many.
 constexpr double kNeighborhood = 4;
 constexpr int kPixelReach = 2;  // pixels to each side of the neighborhood
+// The largest errors of a picture are about so many standard deviations of its noisiest points, in four pictures.
+constexpr double kDeviations = 1.4;
 // The samples of a pixel are first looked at, which took about as long as so many fours of a car in two probes.
 constexpr double kFoursOfLook = 2;
 // A first round of a reconstructed picture takes samples of about so many points, and of all at edges.
@@ -475,7 +477,8 @@ class Picture {
     points_[i].samples = kOfFour * states_[i].sums.fours();
   }
 
-  // Radiance, error and noise of every point from its sums; the 95th percentile of the noise.
+  // Radiance, error and noise of every point from its sums; the 95th percentile of the noise or, of a reconstructed
+  // picture, of its errors.
   double judge() {
     each_point([&](std::size_t i) { show_own(i); });
     if (request_.reconstruct) {
@@ -484,7 +487,10 @@ class Picture {
     } else {
       each_point([this](std::size_t i) { judge(i); });
     }
-    return worse_percentile([this](std::size_t i) { return points_[i].noise_de00; });
+    if (!request_.reconstruct) return worse_percentile([this](std::size_t i) { return points_[i].noise_de00; });
+    std::vector<double> mesh, floor;
+    for (const PathPoint& point : points_) (point.floor ? floor : mesh).push_back(point.noise_de00);
+    return std::max(largest_errors(mesh), largest_errors(floor));
   }
 
   // True if all samples of a pixel that rays looked at show one piece of surface.
@@ -519,7 +525,7 @@ class Picture {
       const bool certain = states_[i].certain && states_[i].sums.fours() == 0;
       points_[i].radiance = states_[i].sharp + (certain ? halves[i][0] : found.light[i]);
       points_[i].noise_de00 = certain ? 0 : found.error_de00[i];
-      const double excess = points_[i].noise_de00 / tolerance();
+      const double excess = kDeviations * points_[i].noise_de00 / tolerance();
       states_[i].needed = certain ? 0 : counted(i) * excess * excess;
     });
   }

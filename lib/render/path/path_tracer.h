@@ -53,7 +53,8 @@ struct PathPoint {
 struct PathPicture {
   std::vector<PathPoint> points;  // of the visible surface, row by row
   // The 95th percentile over the points of the mesh or over those of the floor, whichever is larger: a large floor that
-  // is easy to draw does not hide the mesh.
+  // is easy to draw does not hide the mesh. Of the noise, one standard deviation, or, of a reconstructed picture, of
+  // the size of its errors.
   double noise_p95_de00 = 0;
   double noise_mean_de00 = 0;
   double samples_mean = 0;  // of all points

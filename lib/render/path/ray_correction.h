@@ -19,7 +19,7 @@ VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer);
 struct CorrectionRequest {
   RayEffects effects;
   int bounces = 8;
-  double tolerance_de00 = 0.5;  // of the picture's noise, 95th percentile over the visible points
+  double tolerance_de00 = 0.5;  // of the picture's errors, 95th percentile over the visible points
   double white_luminance = 1;
   std::uint64_t seed = 1;
   int most_samples = 1 << 16;  // of rays, at each point
@@ -29,7 +29,7 @@ struct CorrectionRequest {
 
 // How the effects were drawn; of several samples the means.
 struct CorrectionNoise {
-  double de00_p95 = 0;  // of the picture, one standard deviation
+  double de00_p95 = 0;  // of the size of the picture's errors
   double samples = 0;   // rays' samples of a visible point, in all
   double free_share = 0;
   double ms = 0;

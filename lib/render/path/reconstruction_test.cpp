@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -106,6 +107,23 @@ TEST(Reconstruction, TellsNoLessThanItsError) {
     EXPECT_LT(of.told, 3.2 * of.error);
     EXPECT_LT(of.error, 0.6 * of.sampled);
   }
+}
+
+// Two kinds of points, drawn: the size that 5 of 100 errors exceed is found. The control is the 95th percentile of the
+// standard deviations, which is far from it.
+TEST(Reconstruction, LargestErrorsAreThoseOfNormalNumbers) {
+  constexpr std::size_t kPoints = 200000;
+  std::mt19937 numbers(3);
+  std::normal_distribution<double> normal;
+  std::vector<double> deviations(kPoints), sizes(kPoints);
+  for (std::size_t n = 0; n < kPoints; ++n)
+    deviations[n] = n % 3 == 0 ? 2 : 0.5, sizes[n] = std::abs(deviations[n] * normal(numbers));
+  std::ranges::sort(sizes);
+  const double drawn = sizes[kPoints * 95 / 100];
+  EXPECT_NEAR(largest_errors(deviations), drawn, 0.02 * drawn);
+  EXPECT_GT(drawn, 1.4 * 2);
+  EXPECT_EQ(largest_errors({}), 0);
+  EXPECT_EQ(largest_errors({0, 0}), 0);
 }
 
 // Light without noise stays what it is, edges and all.

@@ -12,10 +12,10 @@ namespace goniochrome::render {
 
 namespace {
 
-// The part of the tolerance that the noise of these effects may take, as one standard deviation at 95 of 100 points.
-// The error of a point may be several times its standard deviation, so that this alone does not keep the whole picture
-// within the tolerance: --check N,truth tells. A picture for which nobody asks how accurate it is may take all.
-constexpr double kRayNoiseShare = 0.5;
+// The part of the tolerance that the errors of these effects may take at 95 of 100 points; as much is left for what
+// maps leave out, since both add as the roots of squares. A picture for which nobody asks how accurate it is may take
+// all.
+constexpr double kRayNoiseShare = 0.7;
 // The most samples of a point that are drawn for effects that nobody asked for by name. Most points get far fewer.
 constexpr int kMostUnaskedSamples = 1024;
 
