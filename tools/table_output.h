@@ -2,8 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/text.h"
@@ -53,10 +56,13 @@ inline int decimals_of(const std::vector<color::Lab>& colors) {
   int decimals = kFewest;
   for (const color::Lab& lab : colors)
     for (const double value : {lab.L, lab.a, lab.b}) {
-      const std::string digits = shortest(value);
+      std::array<char, 32> buffer;
+      const char* const first = buffer.data();
+      const char* const end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+      const std::string_view digits(first, end);
       const auto point = digits.find('.');
-      const int own = point == std::string::npos ? 0 : static_cast<int>(digits.size() - point) - 1;
-      if (own <= kMost && digits.find('e') == std::string::npos) decimals = std::max(decimals, own);
+      const int own = point == std::string_view::npos ? 0 : static_cast<int>(digits.size() - point) - 1;
+      if (own <= kMost && digits.find('e') == std::string_view::npos) decimals = std::max(decimals, own);
     }
   return decimals;
 }
@@ -65,7 +71,10 @@ inline int decimals_of(const std::vector<color::Lab>& colors) {
 inline std::string table_number(double value, int decimals) {
   if (std::isnan(value)) return "n/a";
   if (std::isinf(value)) return value < 0 ? "-inf" : "inf";
-  std::string text = fmt::format("{:.{}f}", value, decimals);
+  std::array<char, 400> buffer;  // the largest number has 309 digits before the point
+  char* const first = buffer.data();
+  char* const end = std::to_chars(first, first + buffer.size(), value, std::chars_format::fixed, decimals).ptr;
+  std::string text(first, end);
   text.erase(text.find_last_not_of('0') + 1);
   if (text.ends_with('.')) text.pop_back();
   return text == "-0" ? "0" : text;

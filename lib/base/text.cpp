@@ -65,6 +65,7 @@ constexpr std::array kInvisible = {Invisible{"\xc2\xa0", "<U+00A0>"},     Invisi
                                    Invisible{"\xef\xbb\xbf", "<U+FEFF>"}};
 
 const Invisible* invisible_at_front(std::string_view text) {
+  if (text.empty() || static_cast<unsigned char>(text.front()) < 0x80) return nullptr;
   const auto found = std::ranges::find_if(kInvisible, [&](const Invisible& c) { return text.starts_with(c.bytes); });
   return found == kInvisible.end() ? nullptr : &*found;
 }
@@ -115,6 +116,7 @@ std::string_view trimmed(std::string_view text) {
   }
   for (;;) {
     text = text.substr(0, text.find_last_not_of(kSpace) + 1);
+    if (text.empty() || static_cast<unsigned char>(text.back()) < 0x80) return text;
     const auto last = std::ranges::find_if(kInvisible, [&](const Invisible& c) { return text.ends_with(c.bytes); });
     if (last == kInvisible.end()) return text;
     text.remove_suffix(last->bytes.size());

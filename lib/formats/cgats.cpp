@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "color/illuminant.h"
 #include "formats/internal/spectral_records.h"
+#include "paint/date.h"
 
 namespace goniochrome::formats {
 
@@ -70,7 +71,7 @@ struct ColorColumns {
 struct Columns {
   std::vector<std::string> fields;
   int name = kNone, id = kNone, geometry = kNone, illuminant = kNone, observer = kNone;
-  int instrument = kNone, paint_class = kNone, code = kNone, date = kNone;
+  int instrument = kNone, paint_class = kNone, code = kNone, date = kNone, serial = kNone;
   std::vector<ColorColumns> colors;
   std::vector<WavelengthColumn> wavelengths;  // five or more, or none
   std::vector<std::pair<double, int>> gloss;  // angle, column
@@ -204,6 +205,7 @@ class CgatsParser {
       if (field == "ILLUMINANT") columns_.illuminant = i;
       if (field == "OBSERVER") columns_.observer = i;
       if (field == "INSTRUMENT") columns_.instrument = i;
+      if (field == "INSTRUMENT_SERIAL" || field == "SERIAL") columns_.serial = i;
       if (field == "PAINT_CLASS") columns_.paint_class = i;
       if (field == "PAINT_CODE") columns_.code = i;
       if (field == "DATE" || field == "DATETIME" || field == "MEASUREMENT_DATE" || field == "SAMPLE_DATE")
@@ -219,8 +221,8 @@ class CgatsParser {
     if (columns_.wavelengths.size() < kFewestWavelengths) columns_.wavelengths.clear();
     if (const auto steps = sort_wavelengths(columns_.wavelengths); !steps.ok()) return error(steps.error().message);
     for (const WavelengthColumn& column : columns_.wavelengths) {
-      const Scale scale = scale_in(columns_.fields[static_cast<std::size_t>(column.at)]);
-      if (scale != Scale::kUnstated) stated_scale_ = scale;
+      const auto taken = take_scale(columns_.fields[static_cast<std::size_t>(column.at)], stated_scale_);
+      if (!taken.ok()) return error(taken.error().message);
     }
     if (columns_.colors.empty() && columns_.wavelengths.empty())
       return error(
@@ -341,13 +343,14 @@ class CgatsParser {
     const bool is_again = cell(columns_.date) != open_date_ && has_any_of(readings);
     if (columns_.geometry == kNone || name != open_.paint.name || is_other || is_again) {
       finish_paint();
-      open_date_ = cell(columns_.date);
+      open_.date = open_date_ = cell(columns_.date), open_.serial = cell(columns_.serial);
       open_.paint.name = std::move(name);
       open_.paint.gloss = std::move(gloss);
       open_.paint.code = cell(columns_.code);
       open_.paint.paint_class = paint::paint_class_of(cell(columns_.paint_class)).value_or(paint::PaintClass::kUnknown);
       open_.instrument = columns_.instrument == kNone ? instrument_ : cell(columns_.instrument);
     }
+    open_.date = paint::span_of_dates(paint::plain_date(open_.date), paint::plain_date(cell(columns_.date)));
     open_.readings.insert(open_.readings.end(), readings.begin(), readings.end());
     if (measured) open_.spectra.push_back(std::move(*measured));
     return {};
@@ -530,13 +533,14 @@ Result<void> CgatsWriter::write(const paint::Paint& paint, const std::vector<pai
 Result<void> CgatsWriter::finish() {
   std::set<double> angles;
   std::size_t rows = 0;
-  bool classes = false, codes = false, instruments = false, one_condition = true;
+  bool classes = false, codes = false, instruments = false, serials = false, dates = false, one_condition = true;
   for (const paint::Paint& paint : paints_) {
     rows += paint.measurement->rows.size();
     for (const paint::GlossReading& gloss : paint.gloss) angles.insert(gloss.angle_deg);
     classes = classes || paint.paint_class != paint::PaintClass::kUnknown;
     codes = codes || !paint.code.empty();
     instruments = instruments || !paint.measurement->instrument.empty();
+    serials = serials || !paint.measurement->serial.empty(), dates = dates || !paint.measurement->date.empty();
     one_condition = one_condition && paint::condition_of(paint) == paint::condition_of(paints_.front());
   }
   std::vector<std::string> own = {"GEOMETRY", "ILLUMINANT", "OBSERVER"};
@@ -544,6 +548,8 @@ Result<void> CgatsWriter::finish() {
   if (classes) own.push_back("PAINT_CLASS");
   if (codes) own.push_back("PAINT_CODE");
   if (instruments) own.push_back("INSTRUMENT");
+  if (serials) own.push_back("INSTRUMENT_SERIAL");
+  if (dates) own.push_back("DATE");
   const bool origins = std::ranges::any_of(from_curve_, [](const auto& geometries) { return !geometries.empty(); });
   if (origins) own.push_back("ORIGIN");
 
@@ -572,6 +578,8 @@ Result<void> CgatsWriter::finish() {
     if (classes) tail += fmt::format("\t{}", paint::paint_class_name(paint.paint_class));
     if (codes) tail += '\t' + cgats_text(paint.code);
     if (instruments) tail += '\t' + cgats_text(paint.measurement->instrument);
+    if (serials) tail += '\t' + cgats_text(paint.measurement->serial);
+    if (dates) tail += '\t' + cgats_text(paint.measurement->date);
     for (const paint::LabReading& row : paint.measurement->rows) {
       const bool curve = std::ranges::find(from_curve, row.geometry) != from_curve.end();
       const char* origin = origins ? curve ? "\tcurve" : "\trow" : "";

@@ -129,6 +129,7 @@ TEST_F(Cgats, CodesAndDatesTellPaintsOfOneNameApart) {
                                  "p A 1 45as15 1 2 3\np A 2 45as25 2 2 3\np B 2 45as15 3 2 3\np B 3 45as15 4 2 3"));
   ASSERT_EQ(paints.paints.size(), 3u);
   EXPECT_EQ(paints.paints[0].measurement->rows.size(), 2u);
+  EXPECT_EQ(paints.paints[0].measurement->date, "1..2");
   EXPECT_EQ(paints.paints[1].name, "p (2)");
   EXPECT_EQ(paints.paints[1].code, "B");
   EXPECT_EQ(paints.paints[2].measurement->rows[0].lab.L, 4);

@@ -11,6 +11,7 @@
 #include "formats/internal/csv_records.h"
 #include "formats/internal/spectral_rows.h"
 #include "formats/xml.h"
+#include "paint/date.h"
 
 namespace goniochrome::formats {
 
@@ -64,7 +65,7 @@ struct CsvPaintReader::State {
   CsvHeader header;
   std::vector<std::string> cells, warnings;
   Remarks remarks;
-  NameLedger names;
+  PaintLedger names;
   SpectralMeter meter;
   Scale asked_scale;
   double unit = 1;  // of the reflectances: 1, or .01 for percent
@@ -132,9 +133,10 @@ Result<void> CsvPaintReader::State::begin_rows() {
   if (!found) {
     cells.clear();
   } else if (is_row_of_units()) {
-    for (const WavelengthColumn& column : header.wavelengths)
-      if (const Scale stated = scale_in(cells[static_cast<std::size_t>(column.at)]); stated != Scale::kUnstated)
-        header.scale = stated;
+    for (const WavelengthColumn& column : header.wavelengths) {
+      const auto taken = take_scale(cells[static_cast<std::size_t>(column.at)], header.scale);
+      if (!taken.ok()) return error(taken.error().message);
+    }
     cells.clear();
   }
   return header.wavelengths.empty() ? Result<void>() : find_scale();
@@ -256,6 +258,8 @@ Result<paint::Paint> CsvPaintReader::State::described() const {
   if (paint.name.empty()) return error("sample is empty: name every row");
   GONIO_ASSIGN(color::ViewingCondition viewing, condition());
   paint.measurement = paint::Measurement{std::move(viewing), std::string(text(header.column[kInstrument])), {}};
+  paint.measurement->serial = text(header.column[kSerial]);
+  paint.measurement->date = paint::plain_date(text(header.column[kDate]));
   paint.code = text(header.column[kCode]);
   if (const auto name = text(header.column[kClass]); !name.empty()) {
     const auto paint_class = class_in(lower(name));
@@ -271,19 +275,13 @@ Result<paint::Paint> CsvPaintReader::State::described() const {
   return paint;
 }
 
-// Gives the paint of the first of its rows a name of its own. Paints of one name and several dates or codes have a
-// number behind it.
+// Gives the paint of the first of its rows a name of its own.
 Result<void> CsvPaintReader::State::take_name(paint::Paint& paint) {
-  const std::string stated = paint.name, date(text(header.column[kDate]));
-  const bool is_told_apart = !date.empty() || !paint.code.empty();
-  const auto before = names.note(is_told_apart ? stated + '\n' + date + '\n' + paint.code : stated, records.line());
-  if (before)
-    return error(fmt::format("sample \"{}\" is already at line {}: {}", shown(stated), *before,
-                             header.is_wide() ? "rename one of them" : "put its rows together, or rename it"));
-  if (!is_told_apart) return {};
-  for (int k = 2; names.note(paint.name, records.line()); ++k) paint.name = fmt::format("{} ({})", stated, k);
-  if (paint.name != stated) remarks.note("samples with another date or code than before got a number", paint.name);
-  return {};
+  const std::string stated = paint.name;
+  const auto before = names.note(paint, records.line(), remarks);
+  if (!before) return {};
+  return error(fmt::format("sample \"{}\" is already at line {}: {}", shown(stated), *before,
+                           header.is_wide() ? "rename one of them" : "put its rows together, or rename it"));
 }
 
 Result<std::optional<paint::Paint>> CsvPaintReader::State::next_wide() {
@@ -354,6 +352,7 @@ Result<void> CsvPaintReader::State::add_row() {
     remarks.note("rows without a name were taken for rows of the sample above", fmt::format("line {}", records.line()));
   if (open) {
     GONIO_TRY(agree(row));
+    open->measurement->date = paint::span_of_dates(open->measurement->date, row.measurement->date);
   } else {
     const std::string stated = row.name;
     if (const auto taken = take_name(row); !taken.ok()) {
@@ -361,7 +360,7 @@ Result<void> CsvPaintReader::State::add_row() {
       return taken;
     }
     open = std::move(row);
-    open_name = stated, open_date = text(header.column[kDate]);
+    open_name = stated, open_date = open->measurement->date;
     open_line = records.line();
     row_lines.clear();
     from_curve.clear();
@@ -388,7 +387,8 @@ Result<void> CsvPaintReader::State::add_row() {
 bool CsvPaintReader::State::is_measured_again() const {
   const std::string_view code = text(header.column[kCode]);
   if (!code.empty() && code != open->code) return true;
-  if (header.column[kDate] < 0 || text(header.column[kDate]) == open_date) return false;
+  const std::string date = paint::plain_date(text(header.column[kDate]));
+  if (header.column[kDate] < 0 || date == open_date) return false;
   const auto geometry = paint::parse_geometry(without_degree_sign(text(header.column[kGeometry])));
   return geometry.ok() && std::ranges::find(open->measurement->rows, *geometry, &paint::LabReading::geometry) !=
                               open->measurement->rows.end();

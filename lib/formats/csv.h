@@ -49,7 +49,7 @@ class CsvPaintReader {
 struct CsvLayout {
   // The geometries of a wide table, in order. Empty: the table is long.
   std::vector<paint::Geometry> wide;
-  // The table also has the columns class, code, instrument, gloss20, gloss60 and gloss85.
+  // The table also has the columns class, code, instrument, gloss20, gloss60, gloss85, serial and date.
   bool all_columns = false;
   // The table has a last column origin, which marks rows that come from the curve of a paint.
   bool origin = false;

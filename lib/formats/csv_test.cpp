@@ -287,6 +287,21 @@ TEST(PaintCsv, RefusesAScaleThatMayBeEither) {
   EXPECT_EQ(reading_of_text(one_of_four, Scale::kFactor).paints.size(), 4u);
 }
 
+// Half of these paints were read as percent and nearly black.
+TEST(PaintCsv, RefusesPercentBesideFactors) {
+  const std::string mixed = flat_table({{"a,45as45", 30}, {"b,45as45", 25}, {"c,45as45", 0.6}, {"d,45as45", 0.4}});
+  EXPECT_THAT(reading_of_text(mixed).errors,
+              ElementsAre(testing::AllOf(HasSubstr("percent and as factors: \"a\" has 30 at 45as45"),
+                                         HasSubstr("\"c\" has 0.6 at 45as45"), HasSubstr("as 2 of 4 paints are"))));
+  const Reading told = reading_of_text(mixed, Scale::kPercent);
+  EXPECT_EQ(told.paints.size(), 4u);
+  EXPECT_THAT(told.closing, ElementsAre(HasSubstr("2 of 4 paints would reflect 1 percent or less at every angle")));
+  std::string headings = flat_table({{"a,45as45", 30}}, " [%]");
+  headings.replace(headings.find("[%]"), 3, "factor");
+  EXPECT_THAT(reading_of_text(headings).errors,
+              ElementsAre(HasSubstr("says another scale of reflectances than stands before")));
+}
+
 TEST(PaintCsv, HearsTheScaleThatATableStates) {
   const double wanted = lightness(0.009);
   const std::string heading = flat_table({{"jet,45as15", 0.9}}, " [%]");

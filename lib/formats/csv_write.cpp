@@ -10,7 +10,7 @@ namespace goniochrome::formats {
 
 namespace {
 
-constexpr const char* kOtherColumns = ",class,code,instrument,gloss20,gloss60,gloss85";
+constexpr const char* kOtherColumns = ",class,code,instrument,gloss20,gloss60,gloss85,serial,date";
 
 std::string lab_cells(const color::Lab& lab) {
   return fmt::format(",{},{},{}", shortest(lab.L), shortest(lab.a), shortest(lab.b));
@@ -41,7 +41,7 @@ std::string other_cells(const paint::Paint& paint) {
     const auto gloss = std::ranges::find(paint.gloss, angle_deg, &paint::GlossReading::angle_deg);
     text += "," + (gloss == paint.gloss.end() ? "" : shortest(gloss->gloss_units));
   }
-  return text;
+  return text + "," + csv_cell(paint.measurement->serial) + "," + csv_cell(paint.measurement->date);
 }
 
 }  // namespace
@@ -114,7 +114,8 @@ Result<void> CsvPaintWriter::write(const paint::Paint& paint, const std::vector<
   if (!paint.measurement || paint.measurement->rows.empty())
     return input_error("paint \"{}\" has no Lab values: a table cannot hold it", shown(paint.name));
   GONIO_TRY(check_writable(paint));
-  const auto& [condition, instrument, rows, spectra, textures] = *paint.measurement;
+  const color::ViewingCondition& condition = paint.measurement->condition;
+  const std::vector<paint::LabReading>& rows = paint.measurement->rows;
   if (!has_header_) {
     choose_wavelengths(*paint.measurement);
     GONIO_TRY(write_header());

@@ -43,9 +43,9 @@ TEST(PaintCsvWriter, IsWrittenAsTheManualSays) {
   paint.paint_class = paint::PaintClass::kPearl;
   paint.gloss = {{60, 92.1}};
   EXPECT_EQ(written({paint}, {{}, true}),
-            "sample,geometry,illuminant,observer,L,a,b,class,code,instrument,gloss20,gloss60,gloss85\n"
-            "\"a, b\",45as15,D65,10,41.87,-45.99,0.3333333333333333,pearl,,,,92.1,\n"
-            "\"a, b\",45as25az90,D65,10,1,2,3,pearl,,,,92.1,\n");
+            "sample,geometry,illuminant,observer,L,a,b,class,code,instrument,gloss20,gloss60,gloss85,serial,date\n"
+            "\"a, b\",45as15,D65,10,41.87,-45.99,0.3333333333333333,pearl,,,,92.1,,,\n"
+            "\"a, b\",45as25az90,D65,10,1,2,3,pearl,,,,92.1,,,\n");
   const CsvLayout wide{
       {*paint::parse_geometry("-15"), *paint::parse_geometry("15"), *paint::parse_geometry("45as25az90")}, false};
   EXPECT_EQ(written({paint}, wide),
@@ -83,7 +83,7 @@ TEST(PaintCsvWriter, SpectraComeBackAsTheyWere) {
   CsvLayout layout;
   layout.all_columns = layout.spectra = true;
   const std::string text = written(paints, layout);
-  EXPECT_NE(text.find(",gloss85,400.1,400.2,400.3,400.4,400.5\n"), std::string::npos) << text;
+  EXPECT_NE(text.find(",gloss85,serial,date,400.1,400.2,400.3,400.4,400.5\n"), std::string::npos) << text;
   const Reading reading = reading_of_text(text);
   EXPECT_THAT(reading.errors, ElementsAre());
   ASSERT_EQ(reading.paints.size(), 2u);

@@ -124,6 +124,7 @@ class CxfHandler final : public XmlHandler {
     const std::string content(trimmed(text_));
     text_.clear();
     const bool of_object = inside("Object") && object_;
+    if (in("FileInformation", "CreationDate")) file_date_ = content;
     const auto result = of_object && pass_ == Pass::kSpecifications ? survey(content)
                         : of_object                                 ? end_in_object(content)
                         : specification_                            ? end_in_specification(content)
@@ -218,6 +219,7 @@ class CxfHandler final : public XmlHandler {
     CxfObject& object = *object_;
     if (name == "paint") object.joined = value;
     if (name == "code") object.paint.code = value;
+    if (name == "date") object.date = value;
     if (name == "class") object.paint.paint_class = paint::paint_class_of(value).value_or(paint::PaintClass::kUnknown);
   }
 
@@ -253,6 +255,8 @@ class CxfHandler final : public XmlHandler {
 
   Result<void> end_in_object(const std::string& content) {
     CxfObject& object = *object_;
+    // An object that was made with the file tells no date of a reading.
+    if (in("Object", "CreationDate") && content != file_date_) object.date = content;
     if (in("ColorCIELab", "L")) return take(color_.lab.L, "L", content);
     if (in("ColorCIELab", "A")) return take(color_.lab.a, "A", content);
     if (in("ColorCIELab", "B")) return take(color_.lab.b, "B", content);
@@ -337,6 +341,7 @@ class CxfHandler final : public XmlHandler {
     if (in("GeometryChoice", "UnknownGeometry")) specification.other = "unknown";
     if (in("GeometryChoice", "EmissiveMode")) specification.other = "emissive";
     if (in("Device", "Model")) specification.instrument = content;
+    if (in("Device", "SerialNumber")) specification.serial = content;
     if (in("MeasurementSpec", "MeasurementType") && (content.ends_with("ransmittance") || content.ends_with("missive")))
       specification.unlike_reflectance = content;
     if (in("ColorSpecificationCollection", "ColorSpecification")) specification_ = nullptr;
@@ -373,7 +378,7 @@ class CxfHandler final : public XmlHandler {
 
   CxfColor color_;
   double chroma_ = 0, hue_deg_ = 0, measurement_deg_ = 0;
-  std::string gloss_method_, custom_illuminant_, notation_;
+  std::string gloss_method_, custom_illuminant_, notation_, file_date_;
   paint::Geometry angle_;
   CxfSpecification* specification_ = nullptr;  // the one that is open
 

@@ -69,7 +69,7 @@ class CxfWriter {
  private:
   struct Specification {
     color::ViewingCondition condition;
-    std::string instrument;
+    std::string instrument, serial;
     paint::Geometry geometry;
     double from_nm = 0, step_nm = 0;  // of the spectra; 0 where there are none
     friend bool operator==(const Specification&, const Specification&) = default;

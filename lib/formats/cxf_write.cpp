@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "formats/cxf.h"
 #include "formats/internal/xml_stream.h"
+#include "paint/date.h"
 
 namespace goniochrome::formats {
 
@@ -25,6 +26,17 @@ bool allowed(const paint::SpectrumReading& spectrum) {
   return spectrum.from_nm >= 360 && spectrum.from_nm <= 400 && spectrum.from_nm == std::floor(spectrum.from_nm) &&
          std::ranges::find(kSteps_nm, spectrum.step_nm) != kSteps_nm.end() &&
          std::ranges::all_of(spectrum.factors, [](double factor) { return factor > -0.1 && factor < 3; });
+}
+
+// Whether XML Schema takes it for date and time: it has seconds.
+bool is_date_time(std::string_view date) {
+  constexpr std::size_t kWithSeconds = 19, kOffset = 6;
+  if (date.find("..") != std::string_view::npos || !paint::seconds_of_date(date) || date.size() < kWithSeconds ||
+      date[kWithSeconds - 3] != ':')
+    return false;
+  std::string_view zone = date.substr(kWithSeconds);
+  if (zone.starts_with('.')) zone.remove_prefix(std::min(zone.find_first_not_of("0123456789", 1), zone.size()));
+  return zone.empty() || zone == "Z" || zone.size() == kOffset;
 }
 
 }  // namespace
@@ -57,7 +69,7 @@ std::string CxfWriter::color_values(const paint::Measurement& measurement, const
     return candidate.geometry == row.geometry && allowed(candidate);
   });
   const bool spectral = spectrum != measurement.spectra.end();
-  const std::size_t number = number_of({measurement.condition, measurement.instrument, row.geometry,
+  const std::size_t number = number_of({measurement.condition, measurement.instrument, measurement.serial, row.geometry,
                                         spectral ? spectrum->from_nm : 0, spectral ? spectrum->step_nm : 0});
   std::string text = fmt::format(
       "          <cc:ColorCIELab "
@@ -88,11 +100,14 @@ void CxfWriter::note_spectra_left_out(const paint::Paint& paint) {
 // and the names of geometries from the curve. Our tags join the parts again.
 std::string CxfWriter::object(const paint::Paint& paint, const std::vector<paint::LabReading>& rows,
                               const std::string& part, bool first, const std::string& curve) {
+  // The schema wants date and time, and readers take the date of the file for none of a reading.
+  const std::string& date = paint.measurement->date;
+  const bool fits = is_date_time(date) && date != info_.created;
   std::string text = fmt::format(
       "      <cc:Object ObjectType=\"Standard\" Name=\"{}\" Id=\"o{}\">\n        "
       "<cc:CreationDate>{}</cc:CreationDate>\n"
       "        <cc:ColorValues>\n",
-      xml_escaped(paint.name + part), ++objects_, xml_escaped(info_.created));
+      xml_escaped(paint.name + part), ++objects_, xml_escaped(fits ? date : info_.created));
   for (const paint::LabReading& row : rows) text += color_values(*paint.measurement, row);
   text += "        </cc:ColorValues>\n";
 
@@ -104,6 +119,7 @@ std::string CxfWriter::object(const paint::Paint& paint, const std::vector<paint
   if (first && paint.paint_class != paint::PaintClass::kUnknown)
     tag("class", paint::paint_class_name(paint.paint_class));
   if (first && !paint.code.empty()) tag("code", paint.code);
+  if (first && !date.empty() && !fits) tag("date", date);
   if (first && !curve.empty()) tag("curve", curve);
   if (!tags.empty())
     text += "        <cc:TagCollection Name=\"goniochrome\">\n" + tags + "        </cc:TagCollection>\n";
@@ -167,9 +183,13 @@ Result<void> CxfWriter::finish() {
     if (specification.step_nm > 0)
       text += fmt::format("          <cc:WavelengthRange StartWL=\"{}\" Increment=\"{}\"/>\n",
                           shortest(specification.from_nm), shortest(specification.step_nm));
-    if (!specification.instrument.empty())
-      text += fmt::format("          <cc:Device>\n            <cc:Model>{}</cc:Model>\n          </cc:Device>\n",
-                          xml_escaped(specification.instrument));
+    if (!specification.instrument.empty() || !specification.serial.empty()) {
+      text += "          <cc:Device>\n";
+      for (const auto& [element, value] :
+           {std::pair("Model", &specification.instrument), {"SerialNumber", &specification.serial}})
+        if (!value->empty()) text += fmt::format("            <cc:{0}>{1}</cc:{0}>\n", element, xml_escaped(*value));
+      text += "          </cc:Device>\n";
+    }
     text += "        </cc:MeasurementSpec>\n      </cc:ColorSpecification>\n";
   }
   if (objects_) text += "    </cc:ColorSpecificationCollection>\n";

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "color/illuminant.h"
+#include "paint/date.h"
 
 namespace goniochrome::formats {
 
@@ -227,7 +228,8 @@ bool OpenPaint::complete(const ImportOptions& options, Remarks& remarks) {
   }
   paint::Measurement& measurement = paint.measurement.emplace();
   measurement.condition = first->condition;
-  measurement.instrument = instrument;
+  measurement.instrument = instrument, measurement.serial = serial;
+  measurement.date = paint::plain_date(date);
   bool others = false;
   for (const auto& [condition, reading] : readings) {
     if (condition != measurement.condition)
@@ -294,6 +296,17 @@ std::optional<int> NameLedger::note(std::string_view name, int line) {
     for (const Entry& kept : old)
       if (kept.line != 0) slot(kept) = kept;
   }
+  return std::nullopt;
+}
+
+std::optional<int> PaintLedger::note(paint::Paint& paint, int line, Remarks& remarks) {
+  const std::string stated = paint.name, date = paint.measurement ? paint.measurement->date : "";
+  const bool is_told_apart = !date.empty() || !paint.code.empty();
+  if (const auto before = names_.note(is_told_apart ? stated + '\n' + date + '\n' + paint.code : stated, line))
+    return before;
+  if (!is_told_apart) return std::nullopt;
+  for (int k = 2; names_.note(paint.name, line); ++k) paint.name = fmt::format("{} ({})", stated, k);
+  if (paint.name != stated) remarks.note("samples with another date or code than before got a number", paint.name);
   return std::nullopt;
 }
 

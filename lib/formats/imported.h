@@ -99,7 +99,7 @@ struct SeenReading {
 // A paint whose readings are still being gathered.
 struct OpenPaint {
   paint::Paint paint;
-  std::string instrument;
+  std::string instrument, serial, date;  // the date as the file spells it
   std::vector<SeenReading> readings;
   std::vector<paint::SpectrumReading> spectra;  // the first at a geometry counts
   std::vector<paint::TextureReading> textures;
@@ -135,6 +135,17 @@ class NameLedger {
 
   std::vector<Entry> slots_ = std::vector<Entry>(1024);  // open addressing, a power of two, at most half full
   std::size_t used_ = 0;
+};
+
+// The paints of one name, which their dates and codes tell apart.
+class PaintLedger {
+ public:
+  // Gives a paint whose name was noted with another date or code a number behind its name, which is remarked. `line`,
+  // from 1, is where it stands. Returns the line where its name, date and code were noted before, if they were.
+  std::optional<int> note(paint::Paint& paint, int line, Remarks& remarks);
+
+ private:
+  NameLedger names_;
 };
 
 }  // namespace goniochrome::formats

@@ -270,6 +270,7 @@ class JcampParser {
     record.name = block_.text("TITLE");
     record.code = block_.text("$CODE");
     record.instrument = block_.text("SPECTROMETERDATASYSTEM");
+    record.date = block_.text("LONGDATE").empty() ? block_.text("DATE") : block_.text("LONGDATE");
     record.viewing = block_.text("$GEOMETRY").empty() ? block_.text("SAMPLINGPROCEDURE") : block_.text("$GEOMETRY");
     record.scale = *scale_;
     import_.add(std::move(record));

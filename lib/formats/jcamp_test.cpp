@@ -10,7 +10,8 @@ std::string block(const std::string& lines, const std::string& form = "(X++(Y..Y
                   const char* units = "% REFLECTANCE") {
   return fmt::format(
       "##TITLE=Red, glossy $$ made\n##JCAMP-DX=4.24\n##DATA TYPE=UV/VIS SPECTRUM\n##$GEOMETRY=45as15\n"
-      "##SPECTROMETER/DATA SYSTEM=S 1\n##XUNITS=NANOMETERS\n##YUNITS={}\n##XFACTOR=1\n##YFACTOR=1\n##FIRSTX=400\n"
+      "##LONGDATE=2010/10/15 13:04:05\n##SPECTROMETER/DATA SYSTEM=S "
+      "1\n##XUNITS=NANOMETERS\n##YUNITS={}\n##XFACTOR=1\n##YFACTOR=1\n##FIRSTX=400\n"
       "##LASTX=700\n##NPOINTS=31\n##XYDATA={}\n{}##END=\n",
       units, form, lines);
 }
@@ -36,6 +37,7 @@ TEST_F(Jcamp, EveryFormOfOrdinatesSaysTheSame) {
     ASSERT_EQ(paints.paints.size(), 1u) << name;
     EXPECT_EQ(paints.paints[0].name, "Red, glossy");
     EXPECT_EQ(paints.paints[0].measurement->instrument, "S 1");
+    EXPECT_EQ(paints.paints[0].measurement->date, "2010-10-15T13:04:05");
     const paint::SpectrumReading& spectrum = paints.paints[0].measurement->spectra.at(0);
     EXPECT_EQ(spectrum.geometry, geometry("45as15"));
     EXPECT_EQ(spectrum.from_nm, 400);
@@ -89,9 +91,9 @@ TEST_F(Jcamp, RefusalsNameLineAndCount) {
               HasSubstr("the file ends within a spectrum, without ##END=:"));
   std::string lost = kPlain;
   lost.erase(lost.find("510"), lost.find("610") - lost.find("510"));
-  EXPECT_THAT(refusal(block(lost)), HasSubstr(":15: the line begins at 610, and after 11 of 31 values"));
+  EXPECT_THAT(refusal(block(lost)), HasSubstr(":16: the line begins at 610, and after 11 of 31 values"));
   EXPECT_THAT(refusal(block("400A0JJJ\n430A4J\n")),
-              HasSubstr(":15: the line begins with 14, and the line before ends with 13"));
+              HasSubstr(":16: the line begins with 14, and the line before ends with 13"));
   EXPECT_THAT(refusal(block("400 10 ? 12\n")), HasSubstr("\"?"));
   EXPECT_THAT(refusal(block(kPlain, "(R++(I..I))")), HasSubstr("the form \"(R++(I..I))\" is not known"));
   EXPECT_THAT(refusal(block("400A0Z999999999\n")), HasSubstr("is repeated"));

@@ -75,6 +75,7 @@ class MifParser {
       return {};
     }
     if (key == "INST") record_.instrument = lines_.value();
+    if (key == "TIME" && lines_.value() != "0") record_.date = lines_.value();
     if (key != "ANGL") return {};
     const std::string_view value = lines_.value();
     const std::size_t blank = std::min(value.find_first_of(" \t"), value.size());
@@ -82,7 +83,8 @@ class MifParser {
     return add_spectrum(value.substr(blank), ' ');
   }
 
-  // The first key of a section of a sample has its name; description and date follow it.
+  // The first key of a section of a sample has its name; description, day and time follow it. Nothing says what the
+  // numbers of day and time count, here and in MIF: they are kept as they stand.
   Result<void> take_xtf_key() {
     const std::string& key = lines_.key();
     const std::string_view value = lines_.value();
@@ -91,7 +93,10 @@ class MifParser {
     const std::size_t tick = std::min(value.find('`'), value.size());
     const std::string_view first = trimmed(value.substr(0, tick));
     if (key != "REFL") {
-      if (!has_name_ && key != "MEAS") record_.name = first, has_name_ = true;
+      if (has_name_ || key == "MEAS") return {};
+      record_.name = first, has_name_ = true;
+      if (const auto words = split(value, '`'); words.size() > 3)
+        record_.date = trimmed(fmt::format("{} {}", trimmed(words[2]), trimmed(words[3])));
       return {};
     }
     const auto number = parse_integer(first);

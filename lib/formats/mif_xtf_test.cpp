@@ -41,6 +41,7 @@ TEST_F(Mif, AnglesOfAMeasurementAreOnePaint) {
   const paint::Measurement& measurement = *paints.paints[0].measurement;
   EXPECT_EQ(paints.paints[0].name, "Silver");
   EXPECT_EQ(measurement.instrument, "MA68");
+  EXPECT_EQ(measurement.date, "7164914");
   ASSERT_EQ(measurement.spectra.size(), 5u);
   EXPECT_EQ(measurement.spectra[4].geometry, geometry("45as110"));
   EXPECT_EQ(measurement.spectra[4].from_nm, 400);
@@ -85,6 +86,8 @@ TEST_F(Xtf, AnglesAreThoseOfTheInstrument) {
     ASSERT_EQ(paints.paints.size(), 2u) << angles;
     EXPECT_EQ(paints.paints[0].name, "Silver");
     EXPECT_EQ(paints.paints[1].name, "Batch");
+    EXPECT_EQ(paints.paints[0].measurement->date, "731320 5");
+    EXPECT_EQ(paints.paints[1].measurement->date, "");
     const auto& spectra = paints.paints[0].measurement->spectra;
     ASSERT_EQ(spectra.size(), names.size());
     for (std::size_t i = 0; i < names.size(); ++i) {

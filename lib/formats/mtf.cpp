@@ -77,6 +77,7 @@ class MtfParser {
     close_table();
     if (const auto value = behind(text, "Name"); value && has_reference_) record_.name = *value;
     if (const auto value = behind(text, "Designation"); value && has_reference_) record_.name = *value;
+    if (const auto value = behind(text, "Date"); value && has_reference_) record_.date = *value;
     if (const auto value = behind(text, "Status"); value && has_reference_) take_status(*value);
     if (text.starts_with("Reference")) record_ = {}, has_reference_ = true;
     const std::size_t slash = text.find('/');

@@ -11,6 +11,7 @@ const std::string kHead =
     "                     TREEPOINT QTEX Statistics\r\n"
     "    Reference : ID          :STD\r\n"
     "                Name        :ASPEN\r\n"
+    "                Date        :29/07/2003 02:09:31 PM\r\n"
     "                Status      :CM/Reflexion/SCI/N:1\r\n";
 const std::string kColumns = "    nm     0     10     20     30    40     50    60     70     80    90\r\n";
 const std::string kTable = kColumns +
@@ -43,6 +44,8 @@ TEST_F(Mtf, ValuesThatTouchAreThoseOfTheText) {
     EXPECT_DOUBLE_EQ(spectrum.factors[30], .8935);
   }
   EXPECT_EQ(paints.paints[0].measurement->instrument, "CM");
+  EXPECT_EQ(paints.paints[0].measurement->date, "29/07/2003 02:09:31 PM");
+  EXPECT_EQ(paints.paints[1].measurement->date, "");
   EXPECT_THAT(paints.warnings, Contains(HasSubstr("zeros at the ends of spectra are taken as not measured")));
   EXPECT_THAT(paints.warnings, Contains(HasSubstr("the viewing \"SCI\" was taken as 45as45")));
   EXPECT_THAT(good(kHead + kTable).paints, IsEmpty());
@@ -51,10 +54,10 @@ TEST_F(Mtf, ValuesThatTouchAreThoseOfTheText) {
 TEST_F(Mtf, RefusalsNameTheLine) {
   EXPECT_THAT(refusal(kHead), HasSubstr("has no table of wavelengths: the file was cut off"));
   const std::string text = kHead + kTable;
-  EXPECT_THAT(refusal(text.substr(0, text.find(".350") + 2)), HasSubstr(":10: \"89.3\" is no percentage with three"));
+  EXPECT_THAT(refusal(text.substr(0, text.find(".350") + 2)), HasSubstr(":11: \"89.3\" is no percentage with three"));
   std::string missing = text;
   missing.erase(missing.find("    500"), missing.find("    600") - missing.find("    500"));
-  EXPECT_THAT(refusal(missing), HasSubstr(":8: the row of 600 nm has 10 values from 600 nm on, where that of 500 nm"));
+  EXPECT_THAT(refusal(missing), HasSubstr(":9: the row of 600 nm has 10 values from 600 nm on, where that of 500 nm"));
   EXPECT_THAT(refusal(kHead + "    nm     0     10\r\n"),
               HasSubstr("the heads of a table of wavelengths are nm, 0, 10"));
 }

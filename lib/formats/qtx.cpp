@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "base/text.h"
@@ -6,6 +7,7 @@
 #include "formats/importers.h"
 #include "formats/internal/sections.h"
 #include "formats/internal/spectral_records.h"
+#include "paint/date.h"
 
 namespace goniochrome::formats {
 
@@ -94,6 +96,7 @@ class QtxParser {
     record.name = section.text("NAME");
     record.code = section.text("CODE");
     record.viewing = section.text("VIEWING");
+    record.date = paint::date_of_seconds(section.number("DATETIME").value_or(std::nan("")));
     record.scale = Scale::kPercent;
     if (const auto stated = color::condition_in(section.text("CORD_ILLUM"))) record.condition = *stated;
     const auto X = section.number("X"), Y = section.number("Y"), Z = section.number("Z");

@@ -40,6 +40,7 @@ TEST_F(Qtx, SpectraAreThoseOfTheText) {
   for (int i = 0; i < 31; ++i) EXPECT_NEAR(spectrum.factors[static_cast<std::size_t>(i)], .05 + .005 * i, 1e-15);
   EXPECT_EQ(paint.measurement->condition, (color::ViewingCondition{"D65", 10}));
   EXPECT_EQ(paint.measurement->rows.size(), 1u);
+  EXPECT_EQ(paint.measurement->date, "2002-08-11T20:36:02Z");
 }
 
 // A sphere has no aspecular angle: its readings are named, and taken for others only by the user's word.

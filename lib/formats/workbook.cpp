@@ -33,7 +33,7 @@ struct TextureColumn {
 
 // What the columns below a row of headings mean.
 struct Table {
-  int name = kNoColumn, date = kNoColumn, geometry = kNoColumn;
+  int name = kNoColumn, code = kNoColumn, date = kNoColumn, serial = kNoColumn, geometry = kNoColumn;
   std::vector<LabColumns> colors;
   std::vector<WavelengthColumn> wavelengths;
   std::string wavelength_fault;  // why they make no spectrum
@@ -61,6 +61,8 @@ constexpr std::array<std::string_view, 13> kNameHeadings = {"name",   "sample", 
                                                             "color",  "colour",      "id",         "sampleid", "probe",
                                                             "muster", "bezeichnung", "farbe"};
 constexpr std::array<std::string_view, 6> kDateHeadings = {"date", "date/time", "datetime", "time", "datum", "zeit"};
+constexpr std::array<std::string_view, 4> kCodeHeadings = {"code", "paintcode", "colorcode", "farbcode"};
+constexpr std::array<std::string_view, 4> kSerialHeadings = {"serial", "serialnumber", "serialno", "seriennummer"};
 constexpr std::array<std::string_view, 6> kGeometryHeadings = {"geometry", "geometrie",  "angle",
                                                                "winkel",   "messwinkel", "messgeometrie"};
 
@@ -144,7 +146,8 @@ class WorkbookReader {
     return input_error("{}: sheet \"{}\", row {}: {}", file_, shown(sheet.name), row.number, what);
   }
   Table table_below(const Sheet& sheet, std::size_t heading) const;
-  bool is_row_of_units(const SheetRow& row, const Table& table);
+  static bool is_row_of_units(const SheetRow& row, const Table& table);
+  Result<void> state_scale(const Sheet& sheet, const SheetRow& row, Scale scale);
   Result<void> read_row(const Sheet& sheet, const SheetRow& row, const Table& table);
   Result<void> read_lab(const Sheet& sheet, const SheetRow& row, const Table& table, const paint::Geometry& geometry,
                         OpenPaint& open);
@@ -152,7 +155,7 @@ class WorkbookReader {
                              const paint::Geometry& geometry, Gathered& gathered);
   Result<void> read_textures(const Sheet& sheet, const SheetRow& row, const Table& table, std::string_view geometry,
                              OpenPaint& open);
-  Gathered& gathered(const std::string& name, const std::string& date);
+  Gathered& gathered(const std::string& name, const std::string& date, std::string_view code);
   Result<double> unit_of_all();
   Result<void> integrate(Gathered& paint);
 
@@ -161,7 +164,7 @@ class WorkbookReader {
   std::string stated_name_;  // by the sheet that is being read, for tables without a column of names
   color::ViewingCondition stated_{"", 0};
   std::vector<Gathered> paints_;
-  std::map<std::pair<std::string, std::string>, std::size_t> number_of_;
+  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> numbers_of_;
   SpectralMeter meter_;
   Scale stated_scale_ = Scale::kUnstated;
   double unit_ = 1;  // of the reflectances: 1, or .01 for percent
@@ -182,10 +185,13 @@ Table WorkbookReader::table_below(const Sheet& sheet, std::size_t heading) const
     const std::string word = plain_column(cell.text);
     if (table.name == kNoColumn && is_one_of(word, kNameHeadings)) table.name = cell.column;
     if (table.date == kNoColumn && is_one_of(word, kDateHeadings)) table.date = cell.column;
+    if (table.code == kNoColumn && is_one_of(word, kCodeHeadings)) table.code = cell.column;
+    if (table.serial == kNoColumn && is_one_of(word, kSerialHeadings)) table.serial = cell.column;
     if (table.geometry == kNoColumn && is_one_of(word, kGeometryHeadings)) table.geometry = cell.column;
     if (const auto nm = wavelength_in(cell.text)) {
       table.wavelengths.push_back({*nm, cell.column});
-      if (const Scale scale = scale_in(cell.text); scale != Scale::kUnstated) table.scale = scale;
+      if (const auto taken = take_scale(cell.text, table.scale); !taken.ok())
+        table.wavelength_fault = taken.error().message;
     }
     if (auto texture = texture_heading(cell.text, cell.column)) table.textures.push_back(std::move(*texture));
     if (const auto lab = lab_heading(cell.text)) {
@@ -196,7 +202,7 @@ Table WorkbookReader::table_below(const Sheet& sheet, std::size_t heading) const
       columns.at[lab->channel] = cell.column;
     }
   }
-  if (const auto sorted = sort_wavelengths(table.wavelengths); !sorted.ok())
+  if (const auto sorted = sort_wavelengths(table.wavelengths); table.wavelength_fault.empty() && !sorted.ok())
     table.wavelength_fault = sorted.error().message;
   std::erase_if(table.colors, [](const LabColumns& columns) { return std::ranges::count(columns.at, kNoColumn) > 0; });
   if (table.geometry == kNoColumn && table.has_values() && heading + 1 < sheet.rows.size())
@@ -205,10 +211,19 @@ Table WorkbookReader::table_below(const Sheet& sheet, std::size_t heading) const
   return table;
 }
 
-WorkbookReader::Gathered& WorkbookReader::gathered(const std::string& name, const std::string& date) {
-  const auto [found, fresh] = number_of_.try_emplace({name, date}, paints_.size());
-  if (fresh) paints_.emplace_back().open.paint.name = name;
-  return paints_[found->second];
+// The paint of a name and a date. A row without a code is of the first of them, whatever its code is.
+WorkbookReader::Gathered& WorkbookReader::gathered(const std::string& name, const std::string& date,
+                                                   std::string_view code) {
+  std::vector<std::size_t>& numbers = numbers_of_[{name, date}];
+  for (const std::size_t number : numbers) {
+    std::string& known = paints_[number].open.paint.code;
+    if (known.empty()) known = code;
+    if (code.empty() || known == code) return paints_[number];
+  }
+  numbers.push_back(paints_.size());
+  OpenPaint& open = paints_.emplace_back().open;
+  open.paint.name = name, open.paint.code = code, open.date = date;
+  return paints_.back();
 }
 
 Result<void> WorkbookReader::read_lab(const Sheet& sheet, const SheetRow& row, const Table& table,
@@ -282,19 +297,28 @@ Result<void> WorkbookReader::read_textures(const Sheet& sheet, const SheetRow& r
 bool WorkbookReader::is_row_of_units(const SheetRow& row, const Table& table) {
   if (table.wavelengths.size() < kFewestWavelengths) return false;
   const std::string_view cell = row.at(table.wavelengths.front().at);
-  const Scale scale = number_of_cell(cell) ? Scale::kUnstated : scale_in(cell);
-  if (scale != Scale::kUnstated) stated_scale_ = scale;
-  return scale != Scale::kUnstated;
+  return !number_of_cell(cell) && scale_in(cell) != Scale::kUnstated;
+}
+
+// All sheets have one scale. Error: another was stated before.
+Result<void> WorkbookReader::state_scale(const Sheet& sheet, const SheetRow& row, Scale scale) {
+  if (scale == Scale::kUnstated) return {};
+  if (stated_scale_ != Scale::kUnstated && stated_scale_ != scale)
+    return error(sheet, row, "says another scale of reflectances than stands before: write percent or factors in all");
+  stated_scale_ = scale;
+  return {};
 }
 
 Result<void> WorkbookReader::read_row(const Sheet& sheet, const SheetRow& row, const Table& table) {
-  if (is_row_of_units(row, table)) return {};
+  if (is_row_of_units(row, table)) return state_scale(sheet, row, scale_in(row.at(table.wavelengths.front().at)));
   const std::string name(table.name == kNoColumn ? stated_name_ : row.at(table.name));
   const std::string_view geometry_text = table.geometry == kNoColumn ? std::string_view() : row.at(table.geometry);
   if (name.empty() && geometry_text.empty()) return {};  // a remark, a sum
   if (name.empty()) return error(sheet, row, "has no name of a sample: give it one");
   if (geometry_text.empty()) return error(sheet, row, fmt::format("\"{}\" has no geometry: write 45as15", shown(name)));
-  Gathered& paint = gathered(name, std::string(table.date == kNoColumn ? "" : row.at(table.date)));
+  const auto cell = [&](int column) { return column == kNoColumn ? std::string_view() : row.at(column); };
+  Gathered& paint = gathered(name, std::string(cell(table.date)), cell(table.code));
+  if (paint.open.serial.empty()) paint.open.serial = cell(table.serial);
   GONIO_TRY(read_textures(sheet, row, table, geometry_text, paint.open));
   if (table.colors.empty() && table.wavelengths.empty()) return {};  // textures have geometries of their own
   const auto geometry = paint::parse_geometry(geometry_text);
@@ -313,8 +337,7 @@ Result<void> WorkbookReader::read(const Sheet& sheet) {
     const SheetRow& row = sheet.rows[i];
     if (Table below = table_below(sheet, i); below.has_values()) {
       table = std::move(below);
-      if (table.scale != Scale::kUnstated && table.wavelengths.size() >= kFewestWavelengths)
-        stated_scale_ = table.scale;
+      if (table.wavelengths.size() >= kFewestWavelengths) GONIO_TRY(state_scale(sheet, row, table.scale));
       if (table.geometry != kNoColumn) continue;
       remarks_.note("a table without a column of geometries was left out", sheet.name);
       table = {};
@@ -323,7 +346,7 @@ Result<void> WorkbookReader::read(const Sheet& sheet) {
       if (!read.ok() && !options_.keep_going) return read;
       if (!read.ok()) result_.skipped.push_back(read.error().message);
     } else if (states_reflectance(row)) {
-      stated_scale_ = scale_in(row.cells[0].text);
+      GONIO_TRY(state_scale(sheet, row, scale_in(row.cells[0].text)));
     } else if (row.cells.size() >= 2) {  // `STANDARD: | name` and the like
       const std::string word = plain_column(row.cells[0].text);
       if (is_one_of(word, kNameHeadings)) stated_name_ = row.cells[1].text;

@@ -111,6 +111,23 @@ TEST_F(Workbook, ReadsTheLayoutOfAnInstrument) {
   EXPECT_EQ(paints.paints[1].measurement->rows[0].lab, (color::Lab{20, 1, -30}));
 }
 
+// A sheet without the codes of another adds to the paint of that name and date.
+TEST_F(Workbook, DatesAndCodesTellPaintsOfOneNameApart) {
+  const auto paints =
+      good_workbook(parts_of({{"Color Data", data({{"Name", "Code", "Date", "Serial No.", "Geometry", "L*", "a*", "b*"},
+                                                   {"red", "A", "26.11.2021", "S7", "45as15", "1", "0", "0"},
+                                                   {"red", "B", "26.11.2021", "S7", "45as15", "2", "0", "0"},
+                                                   {"red", "B", "27.11.2021", "S7", "45as15", "3", "0", "0"}})},
+                              {"Other angles", data({{"Name", "Date", "Geometry", "L*", "a*", "b*"},
+                                                     {"red", "26.11.2021", "45as45", "4", "0", "0"}})}}));
+  ASSERT_EQ(paints.paints.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(paints.paints[i].code, i == 0 ? "A" : "B");
+  EXPECT_EQ(paints.paints[0].measurement->rows.size(), 2u);
+  EXPECT_EQ(paints.paints[0].measurement->date, "2021-11-26");
+  EXPECT_EQ(paints.paints[2].measurement->date, "2021-11-27");
+  EXPECT_EQ(paints.paints[2].measurement->serial, "S7");
+}
+
 TEST_F(Workbook, KeepsTexturesAsTheyStand) {
   const auto paints = good_workbook(
       parts_of({{"Color Data", data({kHeadings, {"red", "1", "45as15", "41.5", "-1.25", "3"}})},

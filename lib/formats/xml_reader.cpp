@@ -246,6 +246,7 @@ Result<void> PaintHandler::begin_measurement(const XmlValues& values) {
   if (!condition.ok()) return values.error(condition.error().message);
   measurement.condition = *condition;
   measurement.instrument = values.text("instrument");
+  measurement.serial = values.text("serial"), measurement.date = values.text("date");
   return {};
 }
 

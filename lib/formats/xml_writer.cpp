@@ -31,7 +31,9 @@ std::string rgb_attributes(const std::string& prefix, const color::Rgb& rgb) {
 std::string measurement_element(const paint::Measurement& measurement) {
   std::string text = "    <measurement" + attribute("illuminant", measurement.condition.illuminant) +
                      attribute("observer", measurement.condition.observer_deg) +
-                     optional_attribute("instrument", measurement.instrument) + ">\n";
+                     optional_attribute("instrument", measurement.instrument) +
+                     optional_attribute("serial", measurement.serial) + optional_attribute("date", measurement.date) +
+                     ">\n";
   for (const paint::LabReading& row : measurement.rows)
     text += "      <lab" + attribute("geometry", paint::geometry_name(row.geometry)) + lab_attributes(row.lab) + "/>\n";
   for (const paint::SpectrumReading& spectrum : measurement.spectra) {
@@ -103,6 +105,8 @@ Result<void> check_texts(const paint::Paint& paint) {
   const std::string* texts[] = {&paint.name,
                                 &paint.code,
                                 paint.measurement ? &paint.measurement->instrument : nullptr,
+                                paint.measurement ? &paint.measurement->serial : nullptr,
+                                paint.measurement ? &paint.measurement->date : nullptr,
                                 paint.measurement ? &paint.measurement->condition.illuminant : nullptr,
                                 paint.color_map ? &paint.color_map->href : nullptr,
                                 paint.lobes ? &paint.lobes->basis : nullptr,

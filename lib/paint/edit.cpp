@@ -203,8 +203,8 @@ void put_back(Paint& paint, Locus locus) {
   if (!paint.measurement && locus.rows.empty()) return;
   if (!paint.measurement) paint.measurement.emplace();
   paint.measurement->rows = std::move(locus.rows);
-  paint.measurement->instrument.clear();
-  // They are those of the paint before.
+  // The others are those of the paint before.
+  paint.measurement->instrument.clear(), paint.measurement->serial.clear(), paint.measurement->date.clear();
   paint.measurement->spectra.clear();
   paint.measurement->textures.clear();
 }

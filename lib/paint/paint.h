@@ -48,6 +48,8 @@ struct Measurement {
   std::vector<LabReading> rows;
   std::vector<SpectrumReading> spectra = {};
   std::vector<TextureReading> textures = {};
+  std::string date = {};    // paint/date.h; of a mean, the span of its readings
+  std::string serial = {};  // of the instrument
 };
 
 struct GlossReading {

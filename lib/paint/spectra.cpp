@@ -78,7 +78,8 @@ Result<color::Lab> lab_of(const SpectrumReading& spectrum, const color::ViewingC
 Result<Measurement> under_light(const Measurement& measurement, const color::ViewingCondition& stated) {
   const color::ViewingCondition condition = color::condition_of(stated.illuminant, stated.observer_deg);
   GONIO_TRY(check_spectra(measurement, condition));
-  Measurement result{condition, measurement.instrument, {}, measurement.spectra, measurement.textures};
+  Measurement result{condition,        measurement.instrument, {}, measurement.spectra, measurement.textures,
+                     measurement.date, measurement.serial};
   Meter meter(condition);
   for (const SpectrumReading& spectrum : measurement.spectra) {
     GONIO_ASSIGN(const color::Xyz xyz, meter.xyz(spectrum));

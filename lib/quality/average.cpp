@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.h"
 #include "math/statistics.h"
+#include "paint/date.h"
 #include "paint/spectra.h"
 
 namespace goniochrome::quality {
@@ -146,6 +148,17 @@ void average_items(const Readings& readings, std::vector<Item>& mean, double Ite
   });
 }
 
+// The span of the dates, and the serials of all instruments.
+void gather_origins(const Readings& readings, paint::Measurement& mean) {
+  std::vector<std::string> serials;
+  for (const paint::Paint* reading : readings) {
+    const paint::Measurement& one = *reading->measurement;
+    mean.date = paint::span_of_dates(mean.date, one.date);
+    if (!one.serial.empty() && std::ranges::find(serials, one.serial) == serials.end()) serials.push_back(one.serial);
+  }
+  mean.serial = joined(serials, ", ");
+}
+
 Result<void> check_alike(const std::vector<paint::Paint>& readings) {
   for (const paint::Paint& reading : readings) {
     if (!reading.measurement || reading.measurement->rows.empty())
@@ -179,6 +192,8 @@ Result<Average> average(const std::vector<paint::Paint>& readings, bool drop_out
   if (std::ranges::any_of(kept, [&](const paint::Paint* p) { return p->paint_class != mean.paint_class; }))
     mean.paint_class = paint::PaintClass::kUnknown;
   if (readings.size() > 1) mean.appearance.reset(), mean.lobes.reset(), mean.color_map.reset();
+  mean.measurement->date.clear();
+  gather_origins(kept, *mean.measurement);
   GONIO_TRY(average_rows(kept, *mean.measurement));
   average_items(
       kept, mean.gloss, &paint::GlossReading::gloss_units, [](const paint::Paint& p) -> auto& { return p.gloss; },

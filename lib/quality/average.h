@@ -38,7 +38,8 @@ struct Average {
 
 // The mean of one or more readings, whose name, code and foreign elements are those of the first. Where all that have a
 // geometry have a spectrum of it, at the same wavelengths, the spectra are averaged, and Lab is the color of their
-// mean; elsewhere Lab is averaged. Gloss and textures are averaged where all readings have them. Error, which lacks the
+// mean; elsewhere Lab is averaged. Gloss and textures are averaged where all readings have them. The date is the
+// span of all dates, and the serial names all instruments. Error, which lacks the
 // name: a reading without measurement; different illuminants, observers or instruments.
 Result<Average> average(const std::vector<paint::Paint>& readings, bool drop_outliers);
 

@@ -29,7 +29,10 @@ bool is_difference(std::string_view quantity) {
 Result<void> check_quantity(const Limit& limit) {
   const std::string& name = limit.quantity;
   const bool whole = is_one_of(kWholeQuantities, name), angle = is_one_of(kAngleQuantities, name);
-  const bool other = name.starts_with("metamerism_") || name.starts_with("texture:");
+  const auto has_word_behind = [&](std::string_view prefix) {
+    return name.starts_with(prefix) && name.size() > prefix.size();
+  };
+  const bool other = has_word_behind("metamerism_") || has_word_behind("texture:");
   if (!whole && !angle && !other && !is_difference(name))
     return input_error(
         "there is no quantity \"{}\": use dL, da, db, dC, dH, dE, dE_FORMULA, {}, metamerism_ILLUMINANT or "

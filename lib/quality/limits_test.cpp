@@ -93,7 +93,7 @@ TEST(Limits, ComeBackFromTheirTableAndFromAPaint) {
 
 TEST(Limits, AreRefusedWithTheirLine) {
   for (const char* wrong : {"*,dL,1,-1", "*,dQ,1,2", "*,dL,,", "*,dL,x,2", "*,dL,1", "x,dL,1,2", "mean,dL,1,2",
-                            "45as15,gloss60,1,2", "*,dE_cie99,,2", "*,dL,nan,2"}) {
+                            "45as15,gloss60,1,2", "*,dE_cie99,,2", "*,dL,nan,2", "*,texture:,,2", "*,metamerism_,,2"}) {
     const auto result = parse_limits(
         "geometry;quantity;low;high\n\n*;dL;-1;1\n" +
             [&] {

@@ -24,7 +24,7 @@ class Scale {
  public:
   Scale(const Axis& axis, const std::vector<Series>& series, const std::vector<double> Series::*values, double from,
         double to)
-      : logarithmic_(axis.logarithmic), from_(from), to_(to) {
+      : given_(axis.ticks), logarithmic_(axis.logarithmic), from_(from), to_(to) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Series& s : series)
       for (const double v : s.*values)
@@ -41,7 +41,7 @@ class Scale {
                                      : (v - low_) / (high_ - low_);
     return from_ + (to_ - from_) * part;
   }
-  std::vector<double> ticks(int count) const { return goniochrome::report::ticks(low_, high_, logarithmic_, count); }
+  std::vector<Tick> ticks(int count) const;
 
  private:
   // Leaves some space around the data, and makes room if all values are equal.
@@ -58,6 +58,7 @@ class Scale {
     }
   }
 
+  std::vector<Tick> given_;
   bool logarithmic_;
   double from_, to_, low_ = 0, high_ = 1;
 };
@@ -71,6 +72,14 @@ std::string tick_label(double v) {
     if (label[e + 1] == '+') label.erase(e + 1, 1);
   }
   return label;
+}
+
+std::vector<Tick> Scale::ticks(int count) const {
+  if (!given_.empty()) return given_;
+  std::vector<Tick> result;
+  for (const double v : goniochrome::report::ticks(low_, high_, logarithmic_, count))
+    result.push_back({v, tick_label(v)});
+  return result;
 }
 
 // How the points of a series look, and its lines.
@@ -102,13 +111,13 @@ std::string text(double x, double y, const char* anchor, const std::string& word
 
 std::string axes(const Plot& plot, const Scale& x, const Scale& y, double right, double bottom) {
   std::string out;
-  for (const double v : x.ticks(static_cast<int>((right - kLeft) / 70))) {
+  for (const auto& [v, label] : x.ticks(static_cast<int>((right - kLeft) / 70))) {
     out += fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>\n", x.at(v), kTop, bottom);
-    out += text(x.at(v), bottom + 16, "middle", tick_label(v));
+    out += text(x.at(v), bottom + 16, "middle", label);
   }
-  for (const double v : y.ticks(static_cast<int>((bottom - kTop) / 40))) {
+  for (const auto& [v, label] : y.ticks(static_cast<int>((bottom - kTop) / 40))) {
     out += fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n", kLeft, y.at(v), right);
-    out += text(kLeft - 6, y.at(v) + 4, "end", tick_label(v));
+    out += text(kLeft - 6, y.at(v) + 4, "end", label);
   }
   out += fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", kLeft,
                      kTop, right - kLeft, bottom - kTop);

@@ -8,10 +8,16 @@
 
 namespace goniochrome::report {
 
+struct Tick {
+  double at = 0;
+  std::string label;
+};
+
 struct Axis {
   std::string label;                          // with its unit: "aspecular angle (deg)"
   bool logarithmic = false;                   // then only values > 0 are drawn
   std::optional<double> low = {}, high = {};  // taken from the data where they are not given
+  std::vector<Tick> ticks = {};               // none: round numbers
 };
 
 struct Series {

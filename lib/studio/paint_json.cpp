@@ -10,6 +10,8 @@ namespace {
 Json measurement_json(const paint::Measurement& measurement) {
   Json json = {{"illuminant", measurement.condition.illuminant}, {"observer", measurement.condition.observer_deg}};
   if (!measurement.instrument.empty()) json["instrument"] = measurement.instrument;
+  if (!measurement.serial.empty()) json["serial"] = measurement.serial;
+  if (!measurement.date.empty()) json["date"] = measurement.date;
   json["rows"] = Json::array();
   for (const paint::LabReading& row : measurement.rows)
     json["rows"].push_back({{"geometry", paint::geometry_name(row.geometry)}, {"lab", lab_json(row.lab)}});
@@ -33,6 +35,8 @@ Result<paint::Measurement> measurement_of(const Json& json) {
   if (observer_deg != 2 && observer_deg != 10) reader.fail("2 or 10", "observer");
   measurement.condition = color::condition_of(reader.text("illuminant", "D65"), observer_deg == 2 ? 2 : 10);
   measurement.instrument = reader.text("instrument", "");
+  measurement.serial = reader.text("serial", "");
+  measurement.date = reader.text("date", "");
   for (const Json& element : reader.list("rows")) {
     JsonReader row(element);
     GONIO_ASSIGN(const paint::Geometry geometry, paint::parse_geometry(row.text("geometry")));

@@ -8,7 +8,7 @@ _paint_convert() {
     --viewing) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --aperture) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --geometry) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --average) COMPREPLY=($(compgen -W "none name code" -- "$word")); return ;;
+    --average) COMPREPLY=($(compgen -W "none name code date" -- "$word")); return ;;
     --outliers) COMPREPLY=($(compgen -W "keep drop" -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --to) COMPREPLY=($(compgen -W "auto xml csv wide cxf cgats" -- "$word")); return ;;

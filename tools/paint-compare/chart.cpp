@@ -1,6 +1,7 @@
 #include "chart.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -8,6 +9,7 @@
 #include "base/paths.h"
 #include "base/text.h"
 #include "display/paint_view.h"
+#include "paint/date.h"
 #include "paint_drawing.h"
 #include "plots.h"
 
@@ -17,6 +19,8 @@ namespace {
 
 // The most samples that one page shows one by one; those that fail come first.
 constexpr std::size_t kMostSections = 200;
+// The most standards whose limits are drawn.
+constexpr std::size_t kMostFamilies = 12;
 
 constexpr const char* kStyle = R"(
 @page { size: A4; margin: 10mm; }
@@ -25,15 +29,20 @@ body { margin: 0 auto; padding: 12px; max-width: 748px; }
 h1 { font-size: 22px; margin: 0 0 4px; } h2 { font-size: 17px; margin: 20px 0 4px; overflow-wrap: anywhere; }
 p { margin: 3px 0; } .note { color: #555; font-size: 12.5px; }
 .fail { color: #b3261e; font-weight: 600; } .pass { color: #1b6e3c; font-weight: 600; }
-ul { margin: 4px 0; padding-left: 20px; }
+ul { margin: 4px 0; padding-left: 20px; } .failures { columns: 2; font-size: 12.5px; }
 img, svg { display: block; max-width: 100%; height: auto; } .planes { display: flex; flex-wrap: wrap; }
 .planes svg { width: 33.3%; } .top { display: flex; align-items: center; gap: 1%; } .top img { width: 46%; } .top svg { width: 53%; }
 table { border-collapse: collapse; font-size: 12px; font-variant-numeric: tabular-nums; margin: 6px 0; }
 th, td { padding: 2px 7px; text-align: right; border-top: 1px solid #ccc; font-weight: 400; }
 th:first-child, td:first-child { text-align: left; } thead th { color: #555; border: 0; }
+.family { display: grid; grid-template-columns: repeat(3, 1fr); gap: 6px; }
+.family figure { margin: 0; } .family img { width: 100%; } figcaption { font-size: 12px; color: #555; text-align: center; }
 .swatch { display: inline-block; width: 34px; height: 15px; vertical-align: -3px; }
 section, .chart, tr { break-inside: avoid; } section + section { break-before: page; }
-@media print { body { padding: 0; max-width: none; } }
+@media print {
+  body { padding: 0; max-width: none; } h2 { margin-top: 8px; }
+  .planes svg { width: 31%; } th, td { padding: 1px 7px; }
+}
 )";
 
 std::string page_of(const std::string& title, const std::string& body) {
@@ -54,6 +63,13 @@ std::string swatches(const Judgement& judgement, const quality::AngleDifference&
   return text;
 }
 
+// A number with two decimals, whose points stand below each other in a column.
+std::string column_number(double value) {
+  if (!std::isfinite(value)) return table_number(value, 2);
+  const std::string text = fmt::format("{:.2f}", value);
+  return text == "-0.00" ? "0.00" : text;
+}
+
 std::string table_of(const Judgement& judgement, const quality::CompareOptions& compare) {
   std::string text =
       "<table><thead><tr><th>geometry</th><th>standard, sample</th><th>dL*</th><th>da*</th><th>db*</th><th>dC*</th>"
@@ -64,8 +80,8 @@ std::string table_of(const Judgement& judgement, const quality::CompareOptions& 
   const auto row = [&](const std::string& at, const std::string& colors, const quality::AngleDifference& angle) {
     text += fmt::format("<tr><td>{}</td><td>{}</td>", at, colors);
     const color::LabDifference& d = angle.lab;
-    for (const double value : {d.dL, d.da, d.db, d.dC, d.dH}) text += "<td>" + table_number(value, 2) + "</td>";
-    for (const double value : angle.by_formula) text += "<td>" + table_number(value, 2) + "</td>";
+    for (const double value : {d.dL, d.da, d.db, d.dC, d.dH}) text += "<td>" + column_number(value) + "</td>";
+    for (const double value : angle.by_formula) text += "<td>" + column_number(value) + "</td>";
     text += "</tr>\n";
   };
   for (const quality::AngleDifference& angle : judgement.comparison.angles)
@@ -78,6 +94,11 @@ std::string table_of(const Judgement& judgement, const quality::CompareOptions& 
                         "") +
             (&d == &judgement.comparison.others.back() ? "" : "&middot; ");
   return text + "</p>\n";
+}
+
+// The time of a reading, if its date is known.
+std::optional<double> seconds_of(const paint::Paint& paint) {
+  return paint.measurement ? paint::seconds_of_date(paint.measurement->date) : std::nullopt;
 }
 
 class Charts {
@@ -105,6 +126,30 @@ class Charts {
     return text + control_charts();
   }
 
+  // The paints that just keep the limits around their standard, and each split with it.
+  Result<std::string> limit_section(const LimitFamily& family) {
+    constexpr std::size_t kCenter = 4;
+    const paint::Paint& standard = family.front();
+    GONIO_ASSIGN(const image::Image middle, drawing_.image(standard));
+    std::vector<std::string> figures;
+    for (const paint::Paint& paint : family) {
+      const bool is_standard = &paint == &standard;
+      GONIO_ASSIGN(const std::string picture, drawing_.split_png(middle, paint));
+      const std::string caption = is_standard ? "the standard" : paint.name.substr(paint.name.rfind('-') + 1);
+      figures.push_back(
+          fmt::format("<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption>"
+                      "</figure>\n",
+                      caption, base64(picture)));
+    }
+    // The standard stands in the middle of three rows.
+    std::rotate(figures.begin(), figures.begin() + 1, figures.begin() + kCenter + 1);
+    return fmt::format(
+        "<section><h2>The tolerance of {}</h2>\n<p class=\"note\">Each picture shows the standard on the left and, on "
+        "the "
+        "right, a paint that just keeps the limits at every angle.</p>\n<div class=\"family\">\n{}</div></section>\n",
+        xml_escaped(standard.name, ""), joined(figures, ""));
+  }
+
   Result<std::string> section(const ChartedSample& each) {
     const Judgement& judgement = each.judgement;
     const std::string verdict = judgement.verdict();
@@ -113,7 +158,7 @@ class Charts {
                     verdict == "-" ? "" : fmt::format("<span class=\"{0}\">{0}</span> ", verdict),
                     xml_escaped(judgement.comparison.sample, ""), xml_escaped(judgement.comparison.standard, ""));
     if (!judgement.excesses.empty()) {
-      text += "<ul>";
+      text += "<ul class=\"failures\">";
       for (const quality::Excess& excess : judgement.excesses) text += "<li>" + xml_escaped(excess.words, "") + "</li>";
       text += "</ul>\n";
     }
@@ -150,21 +195,30 @@ class Charts {
   // Charts of the geometries that all samples have, in their order.
   std::string control_charts() const {
     constexpr std::size_t kFewest = 3;
-    std::vector<const Judgement*> judgements;
+    std::vector<std::pair<double, const Judgement*>> charted;  // with their dates
+    bool dated = true;
     for (const ChartedSample& each : samples_) {
       const auto same = [](const quality::AngleDifference& x, const quality::AngleDifference& y) {
         return x.geometry == y.geometry;
       };
       if (std::ranges::equal(each.judgement.comparison.angles, samples_.front().judgement.comparison.angles, same))
-        judgements.push_back(&each.judgement);
+        charted.emplace_back(seconds_of(each.sample).value_or(0), &each.judgement),
+            dated = dated && seconds_of(each.sample);
     }
-    if (judgements.size() < kFewest) return "";
+    if (charted.size() < kFewest) return "";
+    std::vector<double> times_s;
+    if (dated) std::ranges::stable_sort(charted, {}, [](const auto& pair) { return pair.first; });
+    std::vector<const Judgement*> judgements;
+    for (const auto& [time_s, judgement] : charted) {
+      judgements.push_back(judgement);
+      if (dated) times_s.push_back(time_s);
+    }
     std::string text = fmt::format(
-        "<h2>Control charts</h2>\n<p class=\"note\">{} samples in their order. Sigma is the mean moving range divided "
-        "by 1.128.</p>\n",
-        judgements.size());
+        "<h2>Control charts</h2>\n<p class=\"note\">{} samples {}. Sigma is the mean moving range divided by "
+        "1.128.</p>\n",
+        judgements.size(), dated ? "by their dates" : "in their order");
     for (std::size_t i = 0; i < judgements.front()->comparison.angles.size(); ++i)
-      text += "<div class=\"chart\">" + report::svg(control_plots(judgements, i), 1) + "</div>\n";
+      text += "<div class=\"chart\">" + report::svg(control_plots(judgements, i, times_s), 1) + "</div>\n";
     return text;
   }
 
@@ -183,7 +237,8 @@ std::vector<const ChartedSample*> in_order(const std::vector<ChartedSample>& sam
   return order;
 }
 
-Result<void> write_folder(const std::string& folder, Charts& charts, const std::vector<const ChartedSample*>& order) {
+Result<void> write_folder(const std::string& folder, Charts& charts, const std::vector<const ChartedSample*>& order,
+                          const std::string& limits) {
   GONIO_TRY(make_folder(folder));
   const auto file = [&](const std::string& name) { return (std::filesystem::path(folder) / name).string(); };
   std::string list = "<ul>";
@@ -195,20 +250,31 @@ Result<void> write_folder(const std::string& folder, Charts& charts, const std::
     list += fmt::format("<li><a href=\"{}\">{}</a> <span class=\"{}\">{}</span></li>\n", name, xml_escaped(sample, ""),
                         verdict, verdict);
   }
-  return write_file(file("index.html"), page_of("Samples", charts.overview() + list + "</ul>\n"));
+  return write_file(file("index.html"), page_of("Samples", charts.overview() + list + "</ul>\n" + limits));
 }
 
 }  // namespace
 
 Result<void> write_charts(const Options& options, const std::vector<ChartedSample>& samples,
-                          const quality::CompareOptions& compare, cli::Session& session) {
+                          const std::vector<LimitFamily>& families, const quality::CompareOptions& compare,
+                          cli::Session& session) {
   if (samples.empty()) return {};
   GONIO_ASSIGN(PaintDrawing drawing, PaintDrawing::make({options.mesh, options.env, ""}));
   for (const std::string& remark : drawing.remarks()) session.warn(remark);
   Charts charts(samples, compare, std::move(drawing), session);
   std::vector<const ChartedSample*> order = in_order(samples);
-  if (!options.chart.ends_with(".html")) return write_folder(options.chart, charts, order);
-  std::string body = charts.overview();
+  std::string limits;
+  for (const LimitFamily& family : families) {
+    if (&family - families.data() == kMostFamilies) {
+      session.warn(fmt::format("the page shows the limits of {} of {} standards", kMostFamilies, families.size()));
+      break;
+    }
+    session.progress(fmt::format("{}: drawing the limits of {}", session.tool(), family.front().name));
+    GONIO_ASSIGN(const std::string section, charts.limit_section(family));
+    limits += section;
+  }
+  if (!options.chart.ends_with(".html")) return write_folder(options.chart, charts, order, limits);
+  std::string body = charts.overview() + limits;
   if (order.size() > kMostSections) {
     session.warn(
         fmt::format("the page shows {} of {} samples one by one, those that fail first: --chart FOLDER shows all",

@@ -14,9 +14,13 @@ struct ChartedSample {
   paint::Paint sample;
 };
 
-// Writes the page of --chart, or a folder with a page for each sample and an index. Error: the drawing cannot be set up
-// or a file cannot be written.
+// A standard and the eight paints of quality::just_passing() behind it.
+using LimitFamily = std::vector<paint::Paint>;
+
+// Writes the page of --chart, or a folder with a page for each sample and an index. The families are drawn before the
+// samples. Error: the drawing cannot be set up or a file cannot be written.
 Result<void> write_charts(const Options& options, const std::vector<ChartedSample>& samples,
-                          const quality::CompareOptions& compare, cli::Session& session);
+                          const std::vector<LimitFamily>& families, const quality::CompareOptions& compare,
+                          cli::Session& session);
 
 }  // namespace goniochrome::tool

@@ -46,13 +46,15 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .more(
           "Each standard is followed by eight paints, which lie on its limits at every geometry: a lighter and a "
           "darker one, and six in directions of hue 60 degrees apart. render-osmesa(1) --sheet 3x3 and paint-book(1) "
-          "--variations show them around the standard.");
+          "--variations show them around the standard, and so does the page of --chart.");
   spec.heading = "output";
   add_table_options(spec, o.output, o.format, "the samples, each with its verdict in an element of its own", "sample");
   spec.option("chart", "PATH", "page.html", &o.chart, "page of charts to write, .html, or a folder of pages")
       .more(
-          "The page needs no other file and prints on A4. It has control charts of dL at each geometry in the order "
-          "of the samples, from three samples on; and for each sample its verdict, a picture that is split between "
+          "The page needs no other file and prints on A4. It has control charts of dL at each geometry from three "
+          "samples on, against the date where every sample has one and else in the order of the samples; and for each "
+          "sample "
+          "its verdict, a picture that is split between "
           "standard and sample, the table, the a*b* plane with the tolerance of the first formula at each geometry, "
           "and dE by angle. One page shows up to 200 samples one by one, those that fail first; a folder has a page "
           "for each. Charts hold all samples in memory.");

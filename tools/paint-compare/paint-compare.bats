@@ -108,6 +108,30 @@ field() {
   [ "$(ls pages | xargs)" = "0001.html 0002.html index.html" ]
 }
 
+@test "control charts stand against the date where every sample has one, and else in order" {
+  { echo 'sample,date,geometry,illuminant,observer,L,a,b'
+    printf '%s,%s,45as15,D65,10,%s,-1,2\n' b1 2021-11-28 123 b2 2021-11-26 125 b3 2021-11-27T12:00Z 124; } >days.csv
+  paint-convert -q days.csv -o days.paints.xml
+  paint-compare -q -s std.paints.xml --chart page.html days.paints.xml -o table.tsv
+  grep -q '3 samples by their dates' page.html
+  grep -q '>date</text>' page.html
+  grep -q '>2021-11-26 12:00</text>' page.html
+  # dL of the days is .7, -.3 and -1.3, whose ranges are 1 and 1; in the order of the file they would be 2 and 1.
+  paint-convert -q days.csv --to csv | paint-convert -q --from csv -o plain.paints.xml
+  paint-compare -q -s std.paints.xml --chart plain.html plain.paints.xml -o table.tsv
+  grep -q '3 samples in their order' plain.html
+  ! grep -q '>date</text>' plain.html
+}
+
+@test "the page draws the paints of --show-limit around their standard" {
+  printf 'geometry,quantity,low,high\n*,dE,,2\n' >round.csv
+  paint-compare -q -s "$standard" -l round.csv --show-limit limit.paints.xml --chart page.html "$standard" -o table.tsv
+  [ "$(grep -c '<figure><img' page.html)" -eq 9 ]
+  [ "$(grep -o '<figcaption>[^<]*' page.html | sed 's/.*>//' | xargs)" = "lighter darker red yellow the standard green cyan blue magenta" ]
+  paint-compare -q -s "$standard" -l round.csv --chart page.html "$standard" -o table.tsv
+  ! grep -q '<figure>' page.html
+}
+
 @test "what cannot be compared is refused in a sentence" {
   refused() {
     local said=$1

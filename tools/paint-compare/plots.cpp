@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "paint/date.h"
 #include "quality/control_chart.h"
 
 namespace goniochrome::tool {
@@ -44,6 +45,23 @@ double reach(const color::DifferenceFormula& formula, const quality::AngleDiffer
     (is < tolerance ? low : high) = r;
   }
   return low;
+}
+
+// Labels of an axis of dates: about six, at whole steps of time.
+std::vector<report::Tick> date_ticks(double from_s, double to_s) {
+  constexpr double kMost = 6, kMinute = 60, kHour = 3600, kDay = 86400;
+  double step_s = kMinute;
+  for (const double next : {5 * kMinute, 15 * kMinute, kHour, 3 * kHour, 6 * kHour, 12 * kHour, kDay, 2 * kDay})
+    if ((to_s - from_s) / step_s > kMost) step_s = next;
+  while ((to_s - from_s) / step_s > kMost) step_s *= 2;
+  std::vector<report::Tick> ticks;
+  for (double t = std::ceil(from_s / step_s) * step_s; t <= to_s; t += step_s) {
+    const std::string date = paint::date_of_seconds(t);
+    if (date.empty()) continue;
+    constexpr std::size_t kDate = 10, kTimeAt = 11, kTime = 5;
+    ticks.push_back({t, date.substr(0, kDate) + (step_s < kDay ? " " + date.substr(kTimeAt, kTime) : "")});
+  }
+  return ticks;
 }
 
 Series level(const std::string& label, double value, double from, double to, Series::Style style, const char* color) {
@@ -100,28 +118,28 @@ report::Plot angle_plot(const Judgement& judgement, const quality::CompareOption
   return plot;
 }
 
-std::vector<report::Plot> control_plots(const std::vector<const Judgement*>& judgements, std::size_t angle) {
+std::vector<report::Plot> control_plots(const std::vector<const Judgement*>& judgements, std::size_t angle,
+                                        const std::vector<double>& times_s) {
   Series values{.label = "dL", .style = Series::Style::kLineAndPoints, .color = kInk};
   Series ranges{.label = "range", .style = Series::Style::kLineAndPoints, .color = kInk};
   for (std::size_t i = 0; i < judgements.size(); ++i) {
-    values.x.push_back(static_cast<double>(i + 1));
+    values.x.push_back(times_s.empty() ? static_cast<double>(i + 1) : times_s[i]);
     values.y.push_back(judgements[i]->comparison.angles[angle].lab.dL);
   }
   const quality::ControlChart chart = quality::control_chart(values.y);
-  for (std::size_t i = 0; i < chart.ranges.size(); ++i)
-    ranges.x.push_back(static_cast<double>(i + 2)), ranges.y.push_back(chart.ranges[i]);
-  const double from = 0.5, to = static_cast<double>(judgements.size()) + 0.5;
+  ranges.x.assign(values.x.begin() + 1, values.x.end()), ranges.y = chart.ranges;
+  const double air = times_s.empty() ? 0.5 : std::max(0.03 * (values.x.back() - values.x.front()), 60.0);
+  const double from = values.x.front() - air, to = values.x.back() + air;
   const std::string at = paint::geometry_name(judgements.front()->comparison.angles[angle].geometry);
-  report::Plot individuals{.title = fmt::format("dL at {}", at),
-                           .x = {.label = "sample, in order", .low = from, .high = to},
-                           .y = {.label = "dL"},
-                           .width = 738,
-                           .height = 220};
+  report::Axis along{.label = times_s.empty() ? "sample, in order" : "date", .low = from, .high = to};
+  if (!times_s.empty()) along.ticks = date_ticks(from, to);
+  report::Plot individuals{
+      .title = fmt::format("dL at {}", at), .x = along, .y = {.label = "dL"}, .width = 738, .height = 175};
   report::Plot moving{.title = fmt::format("moving range at {}", at),
-                      .x = {.label = "sample, in order", .low = from, .high = to},
+                      .x = along,
                       .y = {.label = "range", .low = 0},
                       .width = 738,
-                      .height = 160};
+                      .height = 125};
   individuals.series = {values, level("mean", chart.mean, from, to, Series::Style::kLine, kSigmaInk)};
   for (const int k : {1, 2, 3})
     for (const int side : {-1, 1})

@@ -18,6 +18,9 @@ report::Plot plane_plot(const Judgement& judgement, const quality::AngleDifferen
 report::Plot angle_plot(const Judgement& judgement, const quality::CompareOptions& compare);
 
 // dL at a geometry in the order of the samples, with its mean, one to three sigma and limits; and the moving ranges.
-std::vector<report::Plot> control_plots(const std::vector<const Judgement*>& judgements, std::size_t angle);
+// `times_s` are the dates of the samples, ascending, in seconds after the beginning of 1970; without them the samples
+// are counted.
+std::vector<report::Plot> control_plots(const std::vector<const Judgement*>& judgements, std::size_t angle,
+                                        const std::vector<double>& times_s);
 
 }  // namespace goniochrome::tool

@@ -38,7 +38,7 @@ class Run {
     GONIO_TRY(sink_->finish());
     for (const std::string& remark : remarks_.lines()) session_.warn(remark);
     GONIO_TRY(write_limits());
-    if (!options_.chart.empty()) GONIO_TRY(write_charts(options_, charted_, compare_, session_));
+    if (!options_.chart.empty()) GONIO_TRY(write_charts(options_, charted_, families_, compare_, session_));
     return finish();
   }
 
@@ -120,7 +120,8 @@ class Run {
     std::vector<paint::Paint> paints;
     for (const Standard& standard : standards_.all()) {
       GONIO_ASSIGN(auto family, quality::just_passing(standard.subject.paint, compare_, standard.limits));
-      std::move(family.begin(), family.end(), std::back_inserter(paints));
+      std::ranges::copy(family, std::back_inserter(paints));
+      if (!options_.chart.empty()) families_.push_back(std::move(family));
     }
     return write_paints(options_.show_limit, paints, session_);
   }
@@ -152,6 +153,7 @@ class Run {
   quality::LimitMaker maker_;
   formats::Remarks remarks_;
   std::vector<ChartedSample> charted_;
+  std::vector<LimitFamily> families_;  // of --show-limit, for the page
   std::size_t compared_ = 0, failed_ = 0, left_out_ = 0;
   double comparing_s_ = 0;
 };

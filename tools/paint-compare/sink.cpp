@@ -17,8 +17,11 @@ std::string table_head(const quality::CompareOptions& compare) {
 // The other quantities at a place.
 std::string others_at(const quality::Comparison& comparison, const std::string& at, int decimals) {
   std::string text;
-  for (const quality::Deviation& d : comparison.others)
-    if (d.at == at) text += (text.empty() ? "" : ",") + table_field(d.quantity) + "=" + table_number(d.value, decimals);
+  for (const quality::Deviation& d : comparison.others) {
+    if (d.at != at) continue;
+    if (!text.empty()) text += ',';
+    text += table_field(d.quantity), text += '=', text += table_number(d.value, decimals);
+  }
   return text.empty() ? "-" : text;
 }
 
@@ -28,14 +31,15 @@ std::string verdict_at(const Judgement& judgement, const std::string& at) {
   return judgement.standard->limits.empty() ? "-" : fails ? "fail" : "pass";
 }
 
-std::string table_line(const Judgement& judgement, const std::string& at, const quality::AngleDifference& angle,
-                       int decimals) {
-  const quality::Comparison& comparison = judgement.comparison;
-  std::string text = table_field(comparison.sample) + "\t" + table_field(comparison.standard) + "\t" + at;
+// Appends the line of a place; `names` are those of sample and standard with their tabs.
+void add_line(const Judgement& judgement, const std::string& names, const std::string& at,
+              const quality::AngleDifference& angle, int decimals, std::string& text) {
+  text += names, text += at;
   const color::LabDifference& d = angle.lab;
-  for (const double value : {d.dL, d.da, d.db, d.dC, d.dH}) text += "\t" + table_number(value, decimals);
-  for (const double value : angle.by_formula) text += "\t" + table_number(value, decimals);
-  return text + "\t" + others_at(comparison, at, decimals) + "\t" + verdict_at(judgement, at) + "\n";
+  for (const double value : {d.dL, d.da, d.db, d.dC, d.dH}) text += '\t', text += table_number(value, decimals);
+  for (const double value : angle.by_formula) text += '\t', text += table_number(value, decimals);
+  text += '\t', text += others_at(judgement.comparison, at, decimals);
+  text += '\t', text += verdict_at(judgement, at), text += '\n';
 }
 
 // Places of others that are no geometry of the comparison, such as the instrument's own words for its light.
@@ -43,7 +47,7 @@ std::vector<std::string> further_places(const quality::Comparison& comparison) {
   std::vector<std::string> places = {quality::kWhole};
   for (const quality::Deviation& d : comparison.others) {
     const auto is_angle = [&](const quality::AngleDifference& a) { return paint::geometry_name(a.geometry) == d.at; };
-    if (std::ranges::none_of(comparison.angles, is_angle) && std::ranges::find(places, d.at) == places.end())
+    if (std::ranges::find(places, d.at) == places.end() && std::ranges::none_of(comparison.angles, is_angle))
       places.push_back(d.at);
   }
   return places;
@@ -55,18 +59,18 @@ std::string table_lines(const Judgement& judgement, const quality::CompareOption
   for (const quality::AngleDifference& angle : comparison.angles)
     colors.insert(colors.end(), {angle.standard, angle.sample});
   const int decimals = decimals_of(colors);
+  const std::string names = table_field(comparison.sample) + "\t" + table_field(comparison.standard) + "\t";
   std::string text;
   for (const quality::AngleDifference& angle : comparison.angles)
-    text += table_line(judgement, paint::geometry_name(angle.geometry), angle, decimals);
-  text += table_line(judgement, quality::kMean, comparison.mean, decimals);
-  text += table_line(judgement, quality::kLargest, comparison.largest, decimals);
+    add_line(judgement, names, paint::geometry_name(angle.geometry), angle, decimals, text);
+  add_line(judgement, names, quality::kMean, comparison.mean, decimals, text);
+  add_line(judgement, names, quality::kLargest, comparison.largest, decimals, text);
   std::string blank;
   for (std::size_t i = 0; i < 5 + compare.formulas.size(); ++i) blank += "\t-";
   for (const std::string& place : further_places(comparison)) {
     // The verdict of the paint is that of all of its limits.
     const std::string verdict = place == quality::kWhole ? judgement.verdict() : verdict_at(judgement, place);
-    text += table_field(comparison.sample) + "\t" + table_field(comparison.standard) + "\t" + table_field(place) +
-            blank + "\t" + others_at(comparison, place, decimals) + "\t" + verdict + "\n";
+    text += names + table_field(place) + blank + "\t" + others_at(comparison, place, decimals) + "\t" + verdict + "\n";
   }
   return text;
 }

@@ -1,5 +1,7 @@
 #include "averaging.h"
 
+#include "base/text.h"
+#include "paint/date.h"
 #include "quality/average.h"
 
 namespace goniochrome::tool {
@@ -10,6 +12,8 @@ Json average_json(const quality::Average& average, const std::vector<paint::Pain
   Json json = {{"name", average.paint.name},
                {"readings", readings.size()},
                {"kept", average.kept},
+               {"date", average.paint.measurement->date},
+               {"serial", average.paint.measurement->serial},
                {"geometries", Json::object()},
                {"outliers", Json::array()}};
   for (const quality::Scatter& scatter : average.scatter)
@@ -32,7 +36,16 @@ Result<void> Averaging::take(paint::Paint reading, const std::string& place) {
   const bool by_code = options_.average == "code";
   if (by_code && reading.code.empty())
     return input_error("{}: paint \"{}\" has no code: give --average name", place, reading.name);
-  const std::string key = by_code ? reading.code : quality::base_name(reading.name);
+  std::string key = by_code ? reading.code : quality::base_name(reading.name);
+  if (options_.average == "date") {
+    const std::string date = reading.measurement ? reading.measurement->date : "";
+    const auto day = paint::day_of_date(date);
+    if (!day)
+      return input_error(
+          "{}: paint \"{}\" has {}: write it as 2021-11-26, or give --average name", place, reading.name,
+          date.empty() ? "no date" : fmt::format("the date \"{}\", whose day is not known", shown(date)));
+    key += " (" + *day + ")";
+  }
   const auto [found, is_new] = places_.try_emplace(key, groups_.size());
   if (is_new) groups_.push_back({key, place, {}});
   groups_[found->second].readings.push_back(std::move(reading));
@@ -56,7 +69,7 @@ Result<void> Averaging::finish(const std::function<Result<void>(paint::Paint, co
                       group.readings[outlier.place].name, group.readings.size(), group.key, outlier.distance,
                       outlier.median_distance, drop ? "left out" : "kept; --outliers drop leaves it out"));
     session_.add("averages", [&] { return average_json(*average, group.readings); });
-    if (options_.average == "name") average->paint.name = group.key;
+    if (options_.average != "code") average->paint.name = group.key;
     GONIO_TRY(pass(std::move(average->paint), group.place));
     group.readings.clear();
   }

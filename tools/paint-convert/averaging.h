@@ -1,4 +1,4 @@
-// The option --average: readings wait for the others of their name or code, and go on as their mean.
+// The option --average: readings wait for the others of their name, code or day, and go on as their mean.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,7 @@ class Averaging {
  public:
   Averaging(const Options& options, cli::Session& session) : options_(options), session_(session) {}
 
-  // `place` is where the reading stands. Error: it has no code, and codes are asked for.
+  // `place` is where the reading stands. Error: it lacks the code or the date that is asked for.
   Result<void> take(paint::Paint reading, const std::string& place);
 
   // Gives `pass` the mean of each group, in the order of its first reading, and `skip` what has none.

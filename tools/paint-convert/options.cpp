@@ -44,10 +44,13 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .more("Several are separated by commas. Tables, CxF and CGATS get rows that are missing from the curve.");
   spec.flag("fit-appearance", &o.fit_appearance, "fit face, flop and travel to the rows of each measured paint")
       .more("The residual of the fit is written with them.");
-  spec.option("average", "KEY", "name", &o.average, "write one paint for all readings of the same name or code")
-      .one_of({"none", "name", "code"})
+  spec.option("average", "KEY", "name", &o.average, "write one paint for all readings of the same name, code or day")
+      .one_of({"none", "name", "code", "date"})
       .more(
-          "The numbers and dates in parentheses by which readings of one name are told apart do not count. "
+          "The numbers and dates in parentheses by which readings of one name are told apart do not count. date makes "
+          "one "
+          "paint for each name and day, which stands behind the name. The mean has the span of all dates, "
+          "FIRST..LAST, and the serials of all instruments. "
           "Spectra are averaged as spectra, and Lab is the color of their mean; Lab, gloss and textures are averaged "
           "where there are no spectra. The report has number and standard deviations by geometry. All paints are held "
           "in memory.");
@@ -65,7 +68,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("columns", "WHICH", "all", &o.columns, "columns of a table")
       .one_of({"core", "all"})
       .more(
-          "core has names, conditions and Lab. all adds class, code, instrument and gloss, and to a long table the "
+          "core has names, conditions and Lab. all adds class, code, instrument, gloss, serial and date, and to a long "
+          "table the "
           "spectra, at the "
           "wavelengths of the first paint.");
   spec.flag("cxf-compat", &o.cxf_compat, "write CxF with one object for each angle")
@@ -92,11 +96,13 @@ void add_report(cli::ToolSpec& spec) {
       {"skipped", "number of rows or paints that --keep-going left out"},
       {"averages[].name, readings, kept",
        "with --average: name of each paint, how many readings it had and how many count"},
+      {"averages[].date, serial", "span of the dates of the readings, and serials of their instruments"},
       {"averages[].geometries.NAME",
        "readings, standard deviations L, a and b, and mean_distance from the mean, CIE 1976"},
       {"averages[].outliers[]", "name, distance and median_distance of the readings that stand apart"},
       {"measured[].name", "name of the paint that a measured BRDF became"},
-      {"measured[].format", "one of merl, cornell, mbsdf, rgl and openmaterial; description holds the file's own words"},
+      {"measured[].format",
+       "one of merl, cornell, mbsdf, rgl and openmaterial; description holds the file's own words"},
       {"measured[].illuminant", "illuminant that the Lab values are relative to; observer stands beside it"},
       {"measured[].samples", "how many numbers the file has; negative_share and zero_share are parts of them"},
       {"measured[].reciprocity_error", "median difference with light and viewer swapped, relative to the mean"},
@@ -128,7 +134,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "(columns L15, a15, b15 and so on). They may be separated by commas, semicolons or tabs, have decimal commas "
       "where a comma is not the separator or the cell is quoted, have headings like L*, and begin with a byte order "
       "mark. The rows of one "
-      "sample have to stand together. The columns class, code, instrument, gloss20, gloss60 and gloss85 are read where "
+      "sample have to stand together. The columns class, code, instrument, gloss20, gloss60, gloss85, serial and date "
+      "are read where "
       "they are there.",
       "CxF3 and CGATS.17 files of other programs are read as far as their colors stand at an angle; a warning names "
       "the colors that do not. Where a sample has readings under several illuminants or observers, the first counts, "
@@ -136,7 +143,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "CxF is written with one color specification for each angle, and with the spectra that its schema allows: "
       "factors "
       "from -0.1 to 3, in steps of 1, 2, 5, 10 or 20 nm from 360 to 400 nm on.",
-      "QTX, MIF, XTF, MTF and JCAMP-DX, the texts of instruments and their programs, are read with their spectra. Readings "
+      "QTX, MIF, XTF, MTF and JCAMP-DX, the texts of instruments and their programs, are read with their spectra. "
+      "Readings "
       "of a sphere, and those whose file does not say how they were measured, are left out unless --viewing says what "
       "geometry they stand for. See goniochrome-paint(5), FILES OF INSTRUMENTS.",
       "A workbook (XLSX) of a multi-angle instrument is read on all its sheets. A table is found by its headings: L*, "
@@ -166,11 +174,11 @@ cli::ToolSpec tool_spec(Options& o) {
       "are fitted again; its lobes and its color map, which are those of the light before, are left out. A paint "
       "without spectra stays as it is, and a warning says so.",
       "A wrong value stops the conversion, and the output file stays as it was."};
-  spec.inputs = {
-      "INPUT",
-      "paint XML, tables, CxF, CGATS, files of instruments or measured BRDFs, or FILE#NAMES for some paints of one; - or "
-      "none is standard input",
-      &o.inputs};
+  spec.inputs = {"INPUT",
+                 "paint XML, tables, CxF, CGATS, files of instruments or measured BRDFs, or FILE#NAMES for some paints "
+                 "of one; - or "
+                 "none is standard input",
+                 &o.inputs};
   add_options(spec, o);
   add_report(spec);
   return spec;

@@ -77,8 +77,8 @@ $xml_head<paint name="d" code="S7"><measurement illuminant="D65" observer="10"><
 <appearance travel="63"><face L="60" a="5" b="-20"/><flop L="20" a="3" b="-9"/></appearance></paint></paints>
 END
   run --separate-stderr paint-convert -q design.xml --to csv --columns all
-  [ "${lines[0]}" = "$header,class,code,instrument,gloss20,gloss60,gloss85,origin" ]
-  [ "$(cut -d, -f2,9,14 <<<"$output" | tail -n +2 | tr '\n' ' ')" = "45as15,S7,row 45as25,S7,curve 45as45,S7,row 45as75,S7,curve 45as110,S7,row " ]
+  [ "${lines[0]}" = "$header,class,code,instrument,gloss20,gloss60,gloss85,serial,date,origin" ]
+  [ "$(cut -d, -f2,9,16 <<<"$output" | tail -n +2 | tr '\n' ' ')" = "45as15,S7,row 45as25,S7,curve 45as45,S7,row 45as75,S7,curve 45as110,S7,row " ]
   # The curve at 25 deg: 20 + 40 (38/48)^2.
   awk -F, '$2 == "45as25" { exit !($5 - 45.06944444 < 1e-6 && 45.06944444 - $5 < 1e-6) }' <<<"$output"
   run --separate-stderr paint-convert -q design.xml --to wide
@@ -174,7 +174,7 @@ END
   [ "$status" -eq 0 ]
   [[ "$stderr" == *"lobes are left out: only paint XML holds them (p)"* ]]
   [[ "$stderr" == *"elements of other vocabularies are left out"* ]]
-  [[ "$stderr" == *"gloss, class, code and instrument are left out: --columns all keeps them (p)"* ]]
+  [[ "$stderr" == *"gloss, class, code, instrument, serial and date are left out: --columns all keeps them (p)"* ]]
   grep -q '"read": 1' r.json
   grep -q '"written": 1' r.json
   [ "$(grep -c 'left out' r.json)" -eq 3 ]
@@ -420,4 +420,36 @@ repeated() {
   run paint-convert -q --average code in.csv -o out.paints.xml
   [ "$status" -eq 3 ]
   [[ $output == *'paint "red" has no code: give --average name'* ]]
+}
+
+@test "readings of one day become their mean, which keeps dates and serials in every format" {
+  { echo 'sample,date,serial,geometry,illuminant,observer,L,a,b'
+    printf 'tile,26.11.2021 %s,S7,45as45,D65,10,%s,0,0\n' 08:00 50 09:00 52
+    printf 'tile,2021-11-27T08:00:00Z,S7,45as45,D65,10,51,0,0\n'; } >in.csv
+  paint-convert -q --average date in.csv -o days.paints.xml --report report.json
+  [ "$(grep -o 'name="[^"]*"' days.paints.xml | xargs)" = "name=tile (2021-11-26) name=tile (2021-11-27)" ]
+  grep -q 'serial="S7" date="2021-11-26T08:00..2021-11-26T09:00">' days.paints.xml
+  [ "$(jq -r '.results.averages[1] | "\(.date) \(.serial)"' report.json)" = "2021-11-27T08:00:00Z S7" ]
+  grep '<measurement' days.paints.xml >was
+  for format in csv wide cxf cgats; do
+    paint-convert -q days.paints.xml --to $format --columns all -o back.$format
+    paint-convert -q back.$format -o back.paints.xml
+    diff was <(grep '<measurement' back.paints.xml)
+  done
+  # By name, all are one.
+  paint-convert -q --average name in.csv | grep -q 'date="2021-11-26T08:00..2021-11-27T08:00:00Z"'
+  sed -i 's/2021-11-27T08:00:00Z/11\/27\/2021/' in.csv
+  run paint-convert -q --average date in.csv -o days.paints.xml
+  [ "$status" -eq 3 ]
+  [[ $output == *'paint "tile (3)" has the date "11/27/2021", whose day is not known'* ]]
+}
+
+@test "paints of one name in several files are told apart by date and code, and refused without" {
+  printf 'sample,date,geometry,illuminant,observer,L,a,b\ntile,2021-11-26,45as45,D65,10,50,0,0\n' >a.csv
+  sed 's/11-26/11-27/' a.csv >b.csv
+  paint-convert -q a.csv b.csv -o both.paints.xml
+  [ "$(grep -o 'name="[^"]*"' both.paints.xml | xargs)" = "name=tile name=tile (2)" ]
+  run paint-convert -q a.csv a.csv -o both.paints.xml
+  [ "$status" -eq 3 ]
+  [[ $output == *'paint "tile" is also in a.csv'* ]]
 }

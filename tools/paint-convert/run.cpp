@@ -115,7 +115,7 @@ class Conversion {
   cli::Session& session_;
   Averaging averaging_;
   formats::Remarks remarks_;
-  formats::NameLedger names_;
+  formats::PaintLedger names_;
   std::vector<std::string> inputs_;
 };
 
@@ -160,10 +160,9 @@ Result<void> Conversion::take(paint::Paint paint, const formats::PaintSource& so
 }
 
 Result<void> Conversion::pass(paint::Paint paint, const std::string& place) {
-  if (const auto other = names_.note(paint.name, static_cast<int>(inputs_.size())))
-    if (*other != static_cast<int>(inputs_.size()))
-      return skip(
-          input_error("{}: paint \"{}\" is also in {}: rename one of them", place, paint.name, inputs_[*other - 1]));
+  if (const auto other = names_.note(paint, static_cast<int>(inputs_.size()), remarks_))
+    return skip(
+        input_error("{}: paint \"{}\" is also in {}: rename one of them", place, paint.name, inputs_[*other - 1]));
   const auto relit = bring_to_light(paint);
   if (!relit.ok()) return skip(input_error("{}: paint \"{}\": {}", place, paint.name, relit.error().message));
   std::vector<paint::Geometry> from_curve;

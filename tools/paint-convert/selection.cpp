@@ -131,9 +131,10 @@ void Selection::note_losses(const paint::Paint& paint, bool designed, formats::R
   lost(paint.anisotropy || paint.color_map, "anisotropy and color maps are");
   lost(!paint.foreign.empty(), "elements of other vocabularies are");
   const bool more = !paint.gloss.empty() || !paint.code.empty() || paint.paint_class != paint::PaintClass::kUnknown ||
-                    (paint.measurement && !paint.measurement->instrument.empty());
+                    (paint.measurement && (!paint.measurement->instrument.empty() ||
+                                           !paint.measurement->serial.empty() || !paint.measurement->date.empty()));
   if (more && !format_.has_gloss && options_.columns != "all")
-    remarks.note("gloss, class, code and instrument are left out: --columns all keeps them", paint.name);
+    remarks.note("gloss, class, code, instrument, serial and date are left out: --columns all keeps them", paint.name);
 }
 
 Result<void> Selection::apply(paint::Paint& paint, std::vector<paint::Geometry>& from_curve,
@@ -186,7 +187,7 @@ std::string Selection::explanation() const {
     text += fmt::format("left out: lobes, face and flop, maps and foreign elements{}\n",
                         options_.columns == "all" || format_.has_gloss
                             ? ""
-                            : "; gloss, class, code and instrument (--columns all keeps them)");
+                            : "; gloss, class, code, instrument, serial and date (--columns all keeps them)");
   return text;
 }
 

@@ -10,11 +10,11 @@ namespace goniochrome::formats {
 namespace {
 
 constexpr std::array<std::string_view, kColumns> kNames = {
-    "sample", "geometry",   "illuminant", "observer", "l",       "a",      "b",   "class",
-    "code",   "instrument", "gloss20",    "gloss60",  "gloss85", "origin", "date"};
+    "sample", "geometry",   "illuminant", "observer", "l",       "a",      "b",    "class",
+    "code",   "instrument", "gloss20",    "gloss60",  "gloss85", "origin", "date", "serial"};
 
 // The words of other programs for these columns.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 23> kOtherNames = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 26> kOtherNames = {{
     {"name", "sample"},
     {"paint", "sample"},
     {"samplename", "sample"},
@@ -38,6 +38,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 23> kOtherNa
     {"measurementdate", "date"},
     {"datum", "date"},
     {"zeit", "date"},
+    {"serialnumber", "serial"},
+    {"instrumentserial", "serial"},
+    {"seriennummer", "serial"},
 }};
 
 // A heading in lower case and without what spreadsheets and instruments add: `L*`, `L_15`, `L (15)`, `15° L*`,
@@ -93,7 +96,7 @@ Result<CsvHeader> header_of(const std::vector<std::string>& cells) {
     if (taken) continue;
     if (const auto nm = wavelength_in(cells[i])) {
       header.wavelengths.push_back({*nm, i});
-      if (const Scale scale = scale_in(cells[i]); scale != Scale::kUnstated) header.scale = scale;
+      GONIO_TRY(take_scale(cells[i], header.scale));
     } else {
       header.unknown.push_back(cells[i]);
     }

@@ -29,6 +29,7 @@ enum CsvColumn {
   kGloss85,
   kOrigin,
   kDate,
+  kSerial,
   kColumns
 };
 

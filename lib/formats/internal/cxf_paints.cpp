@@ -36,6 +36,7 @@ void CxfResolver::add(CxfObject object) {
   if (object.joined.empty() || object.joined != joined_) {
     finish();
     open_.emplace().paint = std::move(object.paint);
+    open_->date = object.date;
     if (!object.joined.empty()) open_->paint.name = object.joined;
   }
   joined_ = object.joined;
@@ -154,6 +155,7 @@ void CxfResolver::place(const CxfColor& color, std::size_t n, std::size_t k) {
   for (std::size_t i = 0; i < angles.size(); ++i)
     if (n == 1 || i == k) open_->readings.push_back({condition, {angles[i], *lab}});
   if (open_->instrument.empty()) open_->instrument = specification.instrument;
+  if (open_->serial.empty()) open_->serial = specification.serial;
 }
 
 color::ViewingCondition CxfResolver::stated(const CxfSpecification& specification) {

@@ -27,6 +27,7 @@ struct CxfColor {
 struct CxfObject {
   paint::Paint paint;
   std::string joined;  // the paint whose angle this object is: our tag
+  std::string date;
   std::vector<CxfColor> colors;
   std::vector<std::string> unread;  // kinds of color values that are not read
   bool bad = false;                 // it had an error that is passed over
@@ -37,7 +38,7 @@ struct CxfSpecification {
   std::vector<paint::Geometry> angles;
   std::string other;               // a geometry without aspecular angles
   std::string unlike_reflectance;  // the measurement type, where it is another
-  std::string instrument;
+  std::string instrument, serial;
   double first_nm = 0, step_nm = 0;
 };
 

@@ -31,6 +31,8 @@ inline void expect_same(const std::vector<paint::Paint>& was, const std::vector<
     EXPECT_EQ(is[p].paint_class, was[p].paint_class);
     EXPECT_EQ(is[p].measurement->condition, was[p].measurement->condition);
     EXPECT_EQ(is[p].measurement->instrument, was[p].measurement->instrument);
+    EXPECT_EQ(is[p].measurement->serial, was[p].measurement->serial);
+    EXPECT_EQ(is[p].measurement->date, was[p].measurement->date);
     ASSERT_EQ(is[p].measurement->rows.size(), was[p].measurement->rows.size());
     for (std::size_t i = 0; i < was[p].measurement->rows.size(); ++i) {
       EXPECT_EQ(is[p].measurement->rows[i].geometry, was[p].measurement->rows[i].geometry);
@@ -56,10 +58,12 @@ inline std::vector<paint::Paint> two_paints(const std::string& illuminant) {
                                       {geometry("45as25az-76"), {130.5, 0, -0.1}},
                                       {geometry("45as15az0"), {30, 1, 2}},
                                       {geometry("r45as45"), {0, 0, 0}}}};
+  a.measurement->serial = "S/N 7", a.measurement->date = "2021-11-26T07:54:25Z";
   a.gloss = {{60, 92.1}, {20, 1.0 / 7}};
   paint::Paint b;
   b.name = "plain";
   b.measurement = paint::Measurement{{illuminant, 2}, "", {{geometry("45as15"), {2, 3, 4}}}};
+  b.measurement->date = "2021-11-26..2021-11-28";
   return {a, b};
 }
 

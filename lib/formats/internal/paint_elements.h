@@ -44,7 +44,7 @@ constexpr std::array kRules = {
     ElementRule{Node::kPaints, Node::kDocument, "paints", "version"},
     ElementRule{Node::kProcessing, Node::kPaints, "processing", "tool version command"},
     ElementRule{Node::kPaint, Node::kPaints, "paint", "name class? code?"},
-    ElementRule{Node::kMeasurement, Node::kPaint, "measurement", "illuminant observer instrument?"},
+    ElementRule{Node::kMeasurement, Node::kPaint, "measurement", "illuminant observer instrument? serial? date?"},
     ElementRule{Node::kLab, Node::kMeasurement, "lab", "geometry L a b"},
     ElementRule{Node::kSpectrum, Node::kMeasurement, "spectrum", "geometry from to step"},
     ElementRule{Node::kTexture, Node::kMeasurement, "texture", "quantity geometry version? value"},

@@ -67,7 +67,7 @@ void RecordImport::make_paint(SpectralRecord& record) {
     open_.emplace();
     open_->paint.name = record.name.empty() ? fmt::format("sample {}", result_.paints.size() + 1) : record.name;
     open_->paint.code = record.code;
-    open_->instrument = record.instrument;
+    open_->instrument = record.instrument, open_->date = record.date;
   }
   if (!record.geometry) return;
   const bool silent = record.condition.illuminant.empty() || record.condition.observer_deg == 0;

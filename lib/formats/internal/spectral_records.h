@@ -18,7 +18,7 @@
 namespace goniochrome::formats {
 
 struct SpectralRecord {
-  std::string name, code, instrument;
+  std::string name, code, instrument, date;
   std::string viewing;                       // the file's words on light and detector
   std::optional<paint::Geometry> geometry;   // where the file names it otherwise
   bool joins = false;                        // is of the paint of the record before

@@ -20,6 +20,8 @@ constexpr double kFar_deg = 45 - 1e-6, kBrightestFar = 1.25;
 constexpr double kBrightNear = 1.5, kFarOfBright = 0.95;
 // A file in percent whose brightest spectrum is this dark may be one of factors.
 constexpr double kDarkest = 1.25;
+// The dimmest of 243 real panels read 0.8 percent at its brightest angle.
+constexpr double kDarkPercent = 1;
 
 // The largest factor of light that is reflected about specular and becomes no brighter away from it: all of the light
 // within the cone of that angle. Nearer than 10 deg, gloss has no bound of use.
@@ -73,6 +75,16 @@ Scale scale_in(std::string_view text) {
   return has("factor") || has("faktor") ? Scale::kFactor : Scale::kUnstated;
 }
 
+Result<void> take_scale(std::string_view text, Scale& scale) {
+  const Scale stated = scale_in(text);
+  if (stated == Scale::kUnstated) return {};
+  if (scale != Scale::kUnstated && scale != stated)
+    return input_error("\"{}\" says another scale of reflectances than stands before: write percent or factors in all",
+                       shown(text));
+  scale = stated;
+  return {};
+}
+
 Result<void> sort_wavelengths(std::vector<WavelengthColumn>& columns) {
   std::ranges::stable_sort(columns, {}, &WavelengthColumn::nm);
   const auto twice = std::ranges::adjacent_find(columns, {}, &WavelengthColumn::nm);
@@ -117,7 +129,20 @@ void ScaleJudge::close_paint() {
   } else if (open_.near > kBrightestFar && first_bright_.empty()) {
     first_bright_ = named(open_.near_at);
   }
+  const double brightest = std::max(open_.near, open_.far);
+  if (brightest <= kDarkPercent && dark_++ == 0)
+    first_dark_ = named(open_.near >= open_.far ? open_.near_at : open_.far_at);
   open_ = {};
+}
+
+// Remarks that many paints of a file in percent would be nearly black, as those are that are written as factors.
+void ScaleJudge::note_dark(Remarks& remarks) const {
+  constexpr std::size_t kMany = 20;  // one in so many
+  if (!is_told_by_lab() && dark_ > 0 && kMany * dark_ >= paints_)
+    remarks.note(fmt::format("{} of {} paints would reflect {} percent or less at every angle: they are dark, or are "
+                             "written as factors beside others in percent",
+                             dark_, paints_, kDarkPercent),
+                 first_dark_);
 }
 
 // Error: the values make no sense on this scale.
@@ -137,6 +162,7 @@ Result<double> ScaleJudge::checked(Scale scale, const std::string& whose, const 
 
 Result<double> ScaleJudge::unit_of_format(const std::string& format, Scale defined, Scale option, Remarks& remarks) {
   close_paint();
+  if (option == Scale::kPercent) note_dark(remarks);
   if (option != Scale::kUnstated) return checked(option, "--scale", kOtherScale);
   const bool percent = defined == Scale::kPercent;
   if (is_told_by_lab() && (as_percent_ < as_factor_) != percent) {
@@ -150,6 +176,8 @@ Result<double> ScaleJudge::unit_of_format(const std::string& format, Scale defin
                     "factors",
                     format, reflectance(brightest_)),
         "");
+  else if (percent)
+    note_dark(remarks);
   return checked(defined, format, kRemedy);
 }
 
@@ -165,6 +193,7 @@ Result<double> ScaleJudge::unit(Scale stated, Scale option, Remarks& remarks) {
       remarks.note("--scale has no effect on reflectances whose scale the file states", "");
     return checked(stated, "the file", "correct it");
   }
+  if (option == Scale::kPercent) note_dark(remarks);
   if (option != Scale::kUnstated) return checked(option, "--scale", kOtherScale);
   if (paints_ == 0) return 1;
   if (is_told_by_lab()) {
@@ -177,6 +206,14 @@ Result<double> ScaleJudge::unit(Scale stated, Scale option, Remarks& remarks) {
     return 1;
   }
   if (2 * impossible_ >= paints_ && impossible_ > 0) {
+    constexpr std::size_t kMixed = 4;  // one in so many
+    if (kMixed * dark_ >= paints_)
+      return input_error(
+          "reflectances are written as percent and as factors: {}, which as a factor is more than paint reflects, and "
+          "{}, which in percent is nearly black, as {} of {} paints are: split the file, or give --scale percent if "
+          "they are so dark",
+          first_impossible_, first_dark_, dark_, paints_);
+    note_dark(remarks);
     remarks.note(fmt::format("reflectances were read as percent: as factors, {} of {} paints would reflect more than "
                              "paint can; give --scale factor if not",
                              impossible_, paints_),

@@ -32,6 +32,9 @@ std::optional<double> wavelength_in(std::string_view heading);
 // The scale of reflectances that a heading or a unit (`400 nm (%)`, `percent`, `[%]`, `factor`) states.
 Scale scale_in(std::string_view text);
 
+// Takes what a text states, if it states a scale, into `scale`. Error: that is another one.
+Result<void> take_scale(std::string_view text, Scale& scale);
+
 // Error: a factor is -0.1 or less.
 Result<void> check_not_negative(const std::vector<double>& factors);
 
@@ -67,16 +70,19 @@ class ScaleJudge {
     std::string beyond_at;
   };
   void close_paint();
+  void note_dark(Remarks& remarks) const;
   bool is_told_by_lab() const { return as_factor_ != as_percent_; }
   Result<double> checked(Scale scale, const std::string& whose, const std::string& remedy);
 
   std::string paint_;
   Brightest open_;
   std::size_t paints_ = 0, impossible_ = 0;  // as factors
+  std::size_t dark_ = 0;                     // paints that as percent reflect at most kDarkPercent at every angle
   double brightest_ = 0;                     // mean of a spectrum
   std::string first_impossible_;             // paint, geometry and value
   std::string first_bright_;                 // likewise, of a paint that may be either
-  double as_factor_ = 0, as_percent_ = 0;    // how far the values lie from the L* beside them
+  std::string first_dark_;
+  double as_factor_ = 0, as_percent_ = 0;  // how far the values lie from the L* beside them
 };
 
 // Integrates spectra, most of which have the wavelengths and the light of the one before.

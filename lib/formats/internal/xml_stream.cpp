@@ -396,13 +396,12 @@ const XmlAttribute* XmlValues::find(std::string_view name) const {
 }
 
 Result<void> XmlValues::check_names(std::string_view names) const {
-  std::string listed;
+  const std::vector<std::string_view> words = split(names, ' ');
   std::size_t known = 0;
-  for (std::string_view name : split(names, ' ')) {
+  for (std::string_view name : words) {
     if (name.empty()) break;
     const bool optional = name.ends_with('?');
     if (optional) name.remove_suffix(1);
-    listed += fmt::format("{}{}", listed.empty() ? "" : ", ", name);
     if (has(name))
       ++known;
     else if (!optional)
@@ -411,13 +410,14 @@ Result<void> XmlValues::check_names(std::string_view names) const {
   if (known == tag_.attributes.size()) return {};
   for (const XmlAttribute& attribute : tag_.attributes) {
     if (attribute.space == kSchemaInstance) continue;
-    const auto words = split(names, ' ');
     const bool ours = attribute.space.empty() && std::ranges::any_of(words, [&](std::string_view word) {
                         return word.substr(0, word.find('?')) == attribute.name;
                       });
-    if (!ours)
-      return input_error("{}:{}: <{}> takes no attribute \"{}\": it takes {}", file_, attribute.line, tag_.name,
-                         attribute.name, listed.empty() ? "none" : listed);
+    if (ours) continue;
+    std::vector<std::string> listed;
+    for (const std::string_view word : words) listed.emplace_back(word.substr(0, word.find('?')));
+    return input_error("{}:{}: <{}> takes no attribute \"{}\": it takes {}", file_, attribute.line, tag_.name,
+                       attribute.name, names.empty() ? "none" : joined(listed, ", "));
   }
   return {};
 }
