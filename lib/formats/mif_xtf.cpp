@@ -62,6 +62,8 @@ class MifParser {
       record_ = {}, has_name_ = false, in_sample_ = true;
     else if (lines_.section() != "MEASUREMENT")
       in_sample_ = false;
+    else if (dialect_ == Dialect::kMif)
+      record_.date.clear();  // each measurement states its own
     is_measured_ = false;
     return {};
   }
