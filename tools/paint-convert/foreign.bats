@@ -30,7 +30,7 @@ brdf() {
 @test "XML, table, CxF and CGATS in a circle keep every Lab, name, gloss and observer" {
   paint-convert -q paints.csv -o 1.xml
   paint-convert -q 1.xml --to csv --columns all -o 2.csv
-  sed 's/,[^,]*$//' 2.csv | cmp paints.csv -
+  sed 's/,[^,]*,[^,]*,[^,]*$//' 2.csv | cmp paints.csv -  # without serial, date and origin
   [ "$(sed -n 's/.*,//p' 2.csv | sort | uniq -c | tr -s ' ' | tr '\n' ';')" = " 1 origin; 5 row;" ]
   paint-convert -q 2.csv -o 3.cxf
   paint-convert -q 3.cxf -o 4.cgats

@@ -22,8 +22,8 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
   render-osmesa -q $scene --tolerance 2 -o out.exr --report r.json
   [ "$(of decision shadow)" = drawn ]
   [ "$(of needed bounce)" = true ]
-  # The noise is within half of the tolerance, unless the most samples were drawn.
-  jq -e '.results | .rays.noise_de00_p95 <= 1 or (.rays.reached | not)' r.json
+  # The errors of rays are within .7 of the tolerance, unless the most samples were drawn.
+  jq -e '.results | .rays.noise_de00_p95 <= 1.4 or (.rays.reached | not)' r.json
   jq -e '.results.rays.samples | . > 0 and . <= 1024' r.json
   ! cmp -s before.exr out.exr
   # Beforehand the table says what is drawn and why, and then what the first pass found.
@@ -166,7 +166,7 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
   run render-osmesa $scene --effects all,-shadow --check 40,truth -o out.exr --report r.json
   [ "$status" -eq 1 ]
   jq -e '.results.error | .against == "truth" and .occlusion > 1 and .noise == 0 and .standard_error < 0.1 * .de00_p95' r.json
-  [[ $output == *"farther from the truth than --tolerance 0.5"* ]]
+  [[ $output == *"farther from the truth than --tolerance 1"* ]]
   jq '.results.error.occlusion' r.json >without
   # What is left is noise, whose standard deviation is within half of the tolerance at 95 of 100 points.
   run render-osmesa -q $scene --effects all,+rays --tolerance 3 --check 40 -o out.exr --report r.json

@@ -292,7 +292,7 @@ void Shooting::tell_rays() {
                                 {"ms", rays.ms}};
   session_.say(fmt::format(
       "rays: {:.0f} samples a point in {:.0f} ms, errors dE00 {:.2f} (p95){}", rays.samples, rays.ms, rays.de00_p95,
-      rays.reached ? "" : fmt::format(", stopped before it was within {}", shortest(plan_.effects.ray_noise_de00))));
+      rays.reached ? "" : fmt::format(", stopped before it was within {:.3g}", plan_.effects.ray_noise_de00)));
 }
 
 bool Shooting::is_quick() const {
