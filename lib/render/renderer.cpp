@@ -336,9 +336,9 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
     std::vector<VisibleSurface> samples;
     for (int i = begin; i < end; ++i) samples.push_back(drawn_surface(*scene.mesh, *gbuffer(i)));
     if (effects.rays.floor) {
-      std::vector<const Gbuffer*> seen;
-      for (const VisibleSurface& sample : samples) seen.push_back(&sample.gbuffer);
-      add_surroundings(*transport, seen, backdrop, effects.rays, 1.0F / static_cast<float>(count), picture);
+      std::vector<const Gbuffer*> shown;
+      for (const VisibleSurface& sample : samples) shown.push_back(&sample.gbuffer);
+      add_surroundings(*transport, shown, backdrop, effects.rays, 1.0F / static_cast<float>(count), picture);
     }
     const float gain = static_cast<float>(end - begin) / static_cast<float>(count);
     const CorrectionNoise one = add_correction(*transport, samples, request, before, gain, picture);

@@ -38,7 +38,7 @@ brdf() {
   diff <(grep -v '<processing' 1.xml) <(grep -v '<processing' 5.xml)
   paint-convert -q 5.xml --cxf-compat -o 6.cxf
   [ "$(grep -c '<cc:Object ' 6.cxf)" -eq 5 ]
-  paint-convert -q 6.cxf --to csv --columns all | cmp - paints.csv
+  paint-convert -q 6.cxf --to csv --columns all | sed 's/,[^,]*,[^,]*$//' | cmp - paints.csv
 }
 
 @test "the sample library passes through CxF and CGATS unchanged" {

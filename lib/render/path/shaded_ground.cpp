@@ -136,7 +136,7 @@ ShadedGround::Directions ShadedGround::directions(const std::vector<LaidGround::
 
 ShadedGround::Source ShadedGround::source(
     const std::function<std::vector<LaidGround::SharedRay>(std::uint32_t count)>& drawn) {
-  Source source{directions(drawn(kFew)), directions(drawn(kMany)), {}, {}};
+  Source source{directions(drawn(kFew)), directions(drawn(kMany)), {}, {}, {}};
   for (const Float3& share : source.many.shares) source.share = source.share + share;
   return source;
 }
