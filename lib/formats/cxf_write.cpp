@@ -28,7 +28,7 @@ bool allowed(const paint::SpectrumReading& spectrum) {
          std::ranges::all_of(spectrum.factors, [](double factor) { return factor > -0.1 && factor < 3; });
 }
 
-// Whether XML Schema takes it for date and time: it has seconds.
+// XML Schema takes a text for date and time only if it has seconds.
 bool is_date_time(std::string_view date) {
   constexpr std::size_t kWithSeconds = 19, kOffset = 6;
   if (date.find("..") != std::string_view::npos || !paint::seconds_of_date(date) || date.size() < kWithSeconds ||

@@ -51,8 +51,12 @@ TEST_F(Mif, AnglesOfAMeasurementAreOnePaint) {
 
 TEST_F(Mif, EachSampleAndMeasurementIsAPaint) {
   const std::string one = mif({"25"}), section = one.substr(one.find("[MEASUREMENT]"));
-  const auto paints = good(one + section + "[SAMPLE]\nNAME=Batch\n" + section);
+  std::string undated = section;
+  undated.erase(undated.find("TIME="), undated.find("INST=") - undated.find("TIME="));
+  const auto paints = good(one + undated + "[SAMPLE]\nNAME=Batch\n" + section);
   ASSERT_EQ(paints.paints.size(), 3u);
+  EXPECT_EQ(paints.paints[0].measurement->date, "7164914");
+  EXPECT_EQ(paints.paints[1].measurement->date, "") << "that of the measurement before is not its own";
   EXPECT_EQ(paints.paints[1].name, "Silver (2)");
   EXPECT_EQ(paints.paints[2].name, "Batch");
 }

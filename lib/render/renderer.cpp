@@ -313,12 +313,9 @@ Result<void> Renderer::State::add_seen_through(int sample, float gain, image::Im
 
 // Each sample of a pixel is corrected as the surface that it shows, as many together as there is memory for.
 CorrectionNoise Renderer::State::correct(int first, int count, image::Image& picture) {
-  constexpr double kMostBytes = 4e8, kBytesOfPixel = sizeof(rays::Hit) + 4 * sizeof(float) + sizeof(std::uint32_t);
-  const int together =
-      std::clamp(static_cast<int>(kMostBytes / (kBytesOfPixel * picture.width * picture.height)), 4, 16);
   CorrectionNoise all;
   if (!effects.rays.any() || !transport) return all;
-  const int groups = (count + together - 1) / together;
+  const int together = corrected_together(picture.width, picture.height), groups = (count + together - 1) / together;
   CorrectionRequest request;
   request.effects = effects.rays;
   request.bounces = effort_asked.bounces;
@@ -335,11 +332,9 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
     request.seed = mixed(effort_asked.seed, static_cast<std::uint64_t>(begin));
     std::vector<VisibleSurface> samples;
     for (int i = begin; i < end; ++i) samples.push_back(drawn_surface(*scene.mesh, *gbuffer(i)));
-    if (effects.rays.floor) {
-      std::vector<const Gbuffer*> shown;
-      for (const VisibleSurface& sample : samples) shown.push_back(&sample.gbuffer);
-      add_surroundings(*transport, shown, backdrop, effects.rays, 1.0F / static_cast<float>(count), picture);
-    }
+    if (effects.rays.floor)
+      add_surroundings(*transport, gbuffers_of(samples), backdrop, effects.rays, 1.0F / static_cast<float>(count),
+                       picture);
     const float gain = static_cast<float>(end - begin) / static_cast<float>(count);
     const CorrectionNoise one = add_correction(*transport, samples, request, before, gain, picture);
     all.de00_p95 += one.de00_p95 / std::sqrt(groups) / groups, all.free_share += one.free_share / groups;
@@ -384,7 +379,6 @@ Result<Transport> Renderer::State::traced_light(bool over_floor) const {
   if (over_floor) {
     GroundRequest request;
     request.directions = ground_directions(tolerance_de00), request.bounced_directions = 4 * request.directions;
-    request.bent = 1.0 / request.directions;  // shadows come in steps of this size
     request.seed = effort_asked.seed;
     created.shade_ground(request, effort_asked.bounces);
   }

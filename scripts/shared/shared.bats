@@ -179,3 +179,14 @@ E: Unable to locate package libbad-dev" 'check the network, the mirror and the p
   "$scripts/fresh" --help | grep -q 'bookworm|trixie'
   "$scripts/demo" --help | grep -q 'OUT/venv'
 }
+
+@test "a script has the version of the tools, and says where it finds none" {
+  for script in paint-book batch/paint-batch accuracy-report; do
+    ends 3 "its version is that of the tools, of which none is in PATH: add their folder to it" "$scripts/$script" --version
+    program fit-paint 'echo fit-paint 1.2.3'
+    run "$scripts/$script" --version
+    [ "$status, $output" = "0, $(basename "$script") 1.2.3" ]
+    rm bin/fit-paint
+    ends 2 "" "$scripts/$script" --version=now
+  done
+}

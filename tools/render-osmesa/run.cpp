@@ -177,7 +177,7 @@ void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
   results["engine_reason"] = plan.engine_reason;
   session_.explain(plan_table(plan));
   if (request_.plan.quick && plan.effects.rays.any())
-    session_.explain("no tolerance, time limit or check is asked for: rays end after 5 s\n");
+    session_.explain(fmt::format("no tolerance, time limit or check is asked for: rays end after {:g} s\n", kQuick_s));
   if (options_.print_shader) std::fputs((shader_gaps(plan) + shader).c_str(), stdout);
   plan_ = std::move(plan);
 }

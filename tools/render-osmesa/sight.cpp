@@ -12,9 +12,6 @@ namespace {
 // times for a picture of 4 samples a pixel.
 constexpr std::size_t kTracedFrom = 1000000;
 
-// A picture of which nothing is asked ends after these seconds.
-constexpr double kQuick_s = 5;
-
 }  // namespace
 
 Result<render::Renderer> make_renderer(const Options& options, const Request& request, const Stage& stage,

@@ -8,6 +8,9 @@
 
 namespace goniochrome::tool {
 
+// A picture of which nothing is asked ends after these seconds.
+constexpr double kQuick_s = 5;
+
 // Rays find what is visible for the engine that traces them, for meshes of many triangles, and where there is no
 // OpenGL. Error: no OpenGL for an engine that needs it.
 Result<render::Renderer> make_renderer(const Options& options, const Request& request, const Stage& stage,

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "render/internal/seen.h"
 #include "render/path/gathered.h"
+#include "render/path/pixel_pieces.h"
 #include "render/path/reconstruction.h"
 #include "render/path/round_cut.h"
 #include "render/path/seen_point.h"
@@ -32,11 +34,7 @@ constexpr int kPixelReach = 2;  // pixels to each side of the neighborhood
 constexpr double kDeviations = 1.4;
 // The samples of a pixel are first looked at, which took about as long as so many fours of a car in two probes.
 constexpr double kFoursOfLook = 2;
-// A first round of a reconstructed picture takes samples of about so many points, and of all at edges.
-constexpr std::size_t kFirstPoints = 50000;
-// Points whose normals have at least this cosine tell the first round of each other.
-constexpr double kToldByNeighbor = 0.998;
-// Samples of a pixel that rays look at where all of them show one piece of surface.
+// Rays look at every sample of a pixel at an edge, and at about so many where all of them show one piece of surface.
 constexpr unsigned kOfOnePiece = 4;
 // Points at which the shares of the first round are compared.
 constexpr std::size_t kCompared = 4096;
@@ -66,16 +64,8 @@ class Picture {
         request_(request),
         deadline_(request.time_limit_s) {
     count_ = samples.size();
-    const std::size_t pixels = surface_.hits.size();
-    coverage_ = {std::vector<std::uint16_t>(pixels, 0), std::vector<std::uint16_t>(pixels, 0)};
-    for (std::size_t sample = 0; sample < count_; ++sample) {
-      const auto bit = static_cast<std::uint16_t>(1U << sample);
-      for (std::size_t i = 0; i < pixels; ++i) {
-        const rays::Hit& hit = samples[sample].hits[i];
-        if (hit.any()) coverage_.any[i] |= bit;
-        if (hit.triangle == rays::kFloor) coverage_.floor[i] |= bit;
-      }
-    }
+    coverage_ = coverage(samples);
+    even_ = even_pixels(samples);
     add_points();
   }
 
@@ -124,46 +114,26 @@ class Picture {
       for (int x = 0; x < g.width; ++x) add_point(x, y);
     states_.resize(points_.size());
     if (request_.reconstruct) shown_.assign(points_.size(), {0, 0, {-1, {}, {}}});
-    if (seen_ != nullptr) find_even();
+    if (count_ > kOfOnePiece && !even_.empty())
+      for (std::size_t i = 0; i < points_.size(); ++i)
+        if (even_[place(points_[i])] != 0) states_[i].step = static_cast<unsigned>(count_) / kOfOnePiece + 1;
     options_ = whole_ = request_.options;
     whole_.correction = false;
     first_whole_ = whole_;
     const bool given = seen_ != nullptr || count_ == 1;  // the surfaces of all samples
-    if (request_.options.correction && base_ != nullptr && given) find_hidden();
+    if (!request_.options.correction || base_ == nullptr || !given) return;
+    const PixelFlags hidden = hidden_pixels(transport_, seen_ != nullptr ? std::span(*seen_) : std::span(&surface_, 1));
+    for (std::size_t i = 0; i < points_.size(); ++i) states_[i].hidden = hidden[place(points_[i])] != 0;
   }
 
-  // Rays look at every sample of a pixel at an edge, and at some of them where all show one piece.
-  void find_even() {
-    each_point([&](std::size_t i) {
-      const PathPoint& point = points_[i];
-      states_[i].even = std::ranges::all_of(*seen_, [&](const VisibleSurface& seen) {
-        return are_one_piece(seen.gbuffer, surface_.gbuffer, place(point.x, point.y), place(point.x, point.y),
-                             kSamePiece);
-      });
-      if (states_[i].even && count_ > kOfOnePiece) states_[i].step = static_cast<unsigned>(count_) / kOfOnePiece + 1;
-    });
-  }
-
-  static bool are_one_piece(const Gbuffer& a, const Gbuffer& b, std::size_t at_a, std::size_t at_b, double cosine) {
-    const float *p = &a.data[4 * at_a], *q = &b.data[4 * at_b];
-    return p[3] != 0 && p[3] == q[3] && p[0] * q[0] + p[1] * q[1] + p[2] * q[2] > cosine;
-  }
-
-  // A first round leaves out points that stand beside one of the same piece of surface, the more the finer the picture
-  // is: light on a surface does not change with its resolution.
+  // Light on a surface does not change with the resolution: a first round leaves points out that neighbors tell.
   std::vector<int> first_fours() const {
     std::vector<int> fours(points_.size(), kFirstFours);
-    if (!request_.reconstruct || seen_ == nullptr) return fours;
-    int spacing = 1;
-    while (points_.size() > 4 * kFirstPoints * static_cast<std::size_t>(spacing * spacing)) spacing *= 2;
-    each_point([&](std::size_t i) {
-      const PathPoint& point = points_[i];
-      const std::size_t own = place(point.x, point.y),
-                        first = place(point.x - point.x % spacing, point.y - point.y % spacing);
-      const std::int32_t other = number_[first];
-      if (first == own || other < 0 || !states_[i].even || !states_[static_cast<std::size_t>(other)].even) return;
-      if (are_one_piece(surface_.gbuffer, surface_.gbuffer, own, first, kToldByNeighbor)) fours[i] = 0;
-    });
+    const int spacing = first_spacing(points_.size(), request_.first_points);
+    if (!request_.reconstruct || even_.empty() || spacing == 1) return fours;
+    const PixelFlags told = told_by_corners(surface_.gbuffer, even_, spacing);
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (told[place(points_[i])] != 0) fours[i] = 0;
     return fours;
   }
 
@@ -180,41 +150,6 @@ class Picture {
       for (double& element : covariance) element /= std::max(1, states_[i].sums.fours());
       points_[i].noise_de00 = noise_of(i, points_[i].radiance, covariance);
     });
-  }
-
-  // Where the mesh takes most of the light, what is left has less noise than what is taken. Both have the same mean, so
-  // that one pixel of a block may decide for the others.
-  void find_hidden() {
-    constexpr int kBlock = 2;
-    const auto is_hidden = [&](std::size_t i) {
-      const PathPoint& point = points_[i];
-      if (shows_pane(point.x, point.y)) return false;  // the picture has there what is behind as well
-      const unsigned covered = seen_ != nullptr ? coverage_.any[place(point.x, point.y)] : 1;
-      const VisibleSurface& surface = seen_ != nullptr ? (*seen_)[std::countr_zero(covered)] : surface_;
-      return transport_.open_share(spot_at(transport_.rays(), surface, point.x, point.y)) < kMostlyHidden;
-    };
-    const auto decides = [&](const PathPoint& point) { return point.x % kBlock == 0 && point.y % kBlock == 0; };
-    each_point([&](std::size_t i) {
-      if (decides(points_[i])) states_[i].hidden = is_hidden(i);
-    });
-    each_point([&](std::size_t i) {
-      const PathPoint& point = points_[i];
-      if (decides(point)) return;
-      const std::size_t first = place(point.x - point.x % kBlock, point.y - point.y % kBlock);
-      const std::int32_t other = number_[first];
-      const bool same =
-          other >= 0 && surface_.gbuffer.data[4 * first + 3] == surface_.gbuffer.data[4 * place(point.x, point.y) + 3];
-      states_[i].hidden =
-          same && !shows_pane(point.x, point.y) ? states_[static_cast<std::size_t>(other)].hidden : is_hidden(i);
-    });
-  }
-
-  // Whether a sample of the pixel shows a pane, where the surfaces of all samples are given.
-  bool shows_pane(int x, int y) const {
-    const std::size_t at = place(x, y);
-    if (seen_ == nullptr) return transport_.meets_pane(surface_.hits[at]);
-    return std::ranges::any_of(*seen_,
-                               [&](const VisibleSurface& seen) { return transport_.meets_pane(seen.hits[at]); });
   }
 
   // The first samples of a point are of all shares.
@@ -253,10 +188,10 @@ class Picture {
     bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
     std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
     unsigned step = 1;            // from one sample of the pixel that rays look at to the next
-    bool even = false;            // all samples of the pixel show one piece of surface
     bool looked = false;          // what is seen and known without samples is known
   };
 
+  std::size_t place(const PathPoint& point) const { return place(point.x, point.y); }
   std::size_t place(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(surface_.gbuffer.width) + static_cast<std::size_t>(x);
   }
@@ -277,17 +212,6 @@ class Picture {
           sample(wanted[k], more[wanted[k]]);
       }
     });
-  }
-
-  // A step near the golden section of n that shares no factor with it.
-  static std::size_t scattering(std::size_t n) {
-    auto step = static_cast<std::size_t>(0.6180339887 * static_cast<double>(n)) + 1;
-    const auto common = [](std::size_t a, std::size_t b) {
-      while (b != 0) a %= b, std::swap(a, b);
-      return a;
-    };
-    while (n > 1 && common(step, n) != 1) ++step;
-    return step;
   }
 
   void sample(std::size_t i, int fours) {
@@ -316,7 +240,7 @@ class Picture {
     ShownPoint& shown = shown_[i];
     const ShownPiece piece{spot.part, spot.shading, spot.position, static_cast<float>(share)};
     if (shown.piece.part < 0) shown = {points_[i].x, points_[i].y, piece};
-    if (share < 1) shown.pieces.push_back(piece);
+    if (share < 1 && (even_.empty() || even_[place(points_[i])] == 0)) shown.pieces.push_back(piece);
     state.sharp += share * (state.hidden ? SeenPoint(transport_, options_, spot, to_viewer).sure() : sure);
   }
 
@@ -327,27 +251,12 @@ class Picture {
       for (std::size_t k = 0; k < Round::kSequences; ++k) kept_[i][k] = sum_of(means[k], kAllShares & ~drawn_);
     states_[i].sums.add(round, drawn);
     if (first_.empty()) return;
-    for (std::size_t k = 0; k < first_[i].size(); ++k) {
-      const color::Rgb& share = means[k / kShareCount].*kShares[k % kShareCount];
-      for (int c = 0; c < 3; ++c) first_[i][k][static_cast<std::size_t>(c)] = static_cast<float>(share[c]);
-    }
-  }
-
-  // Of one sequence of the first round.
-  LightShares first_shares(std::size_t i, std::size_t sequence) const {
-    LightShares shares;
-    for (std::size_t k = 0; k < kShareCount; ++k) {
-      const std::array<float, 3>& share = first_[i][sequence * kShareCount + k];
-      shares.*kShares[k] = {share[0], share[1], share[2]};
-    }
-    return shares;
+    first_.keep(i, means);
   }
 
   // What the first round shows of a point, with what is known without samples.
   LightShares first_shares(std::size_t i) const {
-    LightShares shares = first_shares(i, 0);
-    shares += first_shares(i, 1);
-    shares = 0.5 * shares;
+    LightShares shares = first_.mean(i);
     shares.direct += states_[i].sure;
     if (states_[i].hidden) shares.direct += -1.0 * base_at(points_[i]);
     return shares;
@@ -393,7 +302,7 @@ class Picture {
       if (states_[i].sums.fours() == 0) continue;
       color::Rgb drawn[Round::kSequences];
       for (std::size_t k = 0; k < Round::kSequences; ++k) {
-        const LightShares shares = first_shares(i, k);
+        const LightShares shares = first_.of(i, k);
         drawn[k] = sum_of(shares, drawn_), kept_[i][k] = sum_of(shares, stopped);
       }
       states_[i].sums = {};
@@ -493,16 +402,6 @@ class Picture {
     return std::max(largest_errors(mesh), largest_errors(floor));
   }
 
-  // True if all samples of a pixel that rays looked at show one piece of surface.
-  bool is_even(std::size_t i) const {
-    const ShownPoint& shown = shown_[i];
-    const std::size_t count = (count_ + states_[i].step - 1) / states_[i].step;
-    return shown.pieces.empty() ||
-           (shown.pieces.size() == count && std::ranges::all_of(shown.pieces, [&](const auto& p) {
-              return p.part == shown.piece.part && rays::dot(p.normal, shown.piece.normal) > kSamePiece;
-            }));
-  }
-
   // Light that is known without samples stays sharp. Where all that is left was summed, the rest is the same light less
   // what points show without the mesh in the way, as everywhere else.
   void reconstruct() {
@@ -518,7 +417,6 @@ class Picture {
         if (!kept_.empty()) halves[i][k] += kept_[i][k];
         if (is_unknown(i)) halves[i][k] = kUnknown;
       }
-      if (is_even(i)) shown_[i].pieces.clear();
     });
     const Reconstruction found = reconstruction(shown_, halves, beside, request_.white_luminance);
     each_point([&](std::size_t i) {
@@ -656,13 +554,14 @@ class Picture {
   std::size_t count_ = 1;                      // of the pixels' samples
   std::vector<std::array<double, 2>> shifts_;  // of these, where rays find what is seen
   Coverage coverage_;                          // empty where the centers alone are seen
+  PixelFlags even_;                            // empty but where surfaces of all samples are given
   std::vector<std::int32_t> number_;           // of the point of each pixel, or -1
   std::vector<PathPoint> points_;
   std::vector<State> states_;
   unsigned drawn_ = kAllShares;  // the shares that are drawn on
   FoundShares found_;
-  std::vector<std::array<std::array<float, 3>, 2 * kShareCount>> first_;  // by sequences; empty: not kept
-  std::vector<Halves> kept_;                                              // of shares that stopped
+  FirstShares first_;              // empty: not kept
+  std::vector<Halves> kept_;       // of shares that stopped
   std::vector<ShownPoint> shown_;  // by the points; empty: nothing is reconstructed
 };
 

@@ -14,10 +14,6 @@
 
 namespace goniochrome::render {
 
-// A point that gets less than this part of even light (Transport::open_share) is corrected by the sum of all that is
-// left instead of what is taken: where most is taken, that has less noise.
-constexpr double kMostlyHidden = 0.5;
-
 struct PathRequest {
   PathOptions options = {};
   double tolerance_de00 = 0.5;  // of the picture's noise; 0: until another limit ends it
@@ -32,6 +28,8 @@ struct PathRequest {
   int pixel_samples = 1;
   // If set, reconstruction() smooths the light along the surface, and the noise is the error that it measures.
   bool reconstruct = false;
+  // The first round of such a picture samples at least so many of its points, and all at edges; neighbors tell others.
+  std::size_t first_points = 50000;
   // Told after each round: the noise so far, and the seconds.
   std::function<void(double noise_de00, double seconds)> progress = {};
 };

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "render/camera.h"
 #include "render/internal/seen.h"
+#include "render/path/pixel_pieces.h"
 #include "render/path/scenes_for_paths_for_test.h"
 
 namespace goniochrome::render::path_tracer_test {
@@ -301,6 +302,38 @@ TEST(PathPicture, CorrectsHiddenPointsByTheSumOfWhatIsLeft) {
   EXPECT_LT(std::abs(difference), 4 * std::sqrt(variance));
   ASSERT_GT(hidden, 20);
   EXPECT_LT(left, 0.8 * taken) << "the control: what is taken away";
+}
+
+// A first round that leaves out points of smooth pieces takes fewer samples, and neighbors tell the points that were
+// left out: each has an error, and what is told of the picture is its error. The truth is a picture that is not
+// smoothed.
+TEST(PathPicture, PointsWithoutSamplesAreToldByTheirNeighbors) {
+  const auto stage = ball_in_a_cup();
+  Camera camera;
+  camera.eye = {0.5, 4, 2};
+  camera.fov_deg = 36;
+  constexpr int kWidth = 96, kHeight = 72;
+  const Rays center = *rays(camera, kWidth, kHeight);
+  std::vector<VisibleSurface> samples;
+  for (const auto& [dx, dy] : sample_shifts(4))
+    samples.push_back(visible_surface(stage->transport->rays(), center.shifted(dx, dy), kWidth, kHeight));
+  PathRequest request;
+  request.options.bounces = 2;
+  request.tolerance_de00 = 0.5, request.seed = 9;
+  const PathPicture truth = path_picture(*stage->transport, samples, nullptr, request);
+  request.reconstruct = true, request.tolerance_de00 = 0, request.most_samples = 8, request.seed = 1;
+  const PathPicture dense = path_picture(*stage->transport, samples, nullptr, request);
+  request.first_points = truth.points.size() / 20;
+  const PathPicture sparse = path_picture(*stage->transport, samples, nullptr, request);
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < truth.points.size(); ++i) {
+    EXPECT_TRUE(std::isfinite(sparse.points[i].noise_de00)) << i;
+    errors.push_back(seen_difference(sparse.points[i].radiance, truth.points[i].radiance, 1));
+  }
+  EXPECT_LT(sparse.samples_mean, 0.5 * dense.samples_mean);
+  const double error = percentile_95(errors);
+  EXPECT_GT(sparse.noise_p95_de00, 0.8 * error);
+  EXPECT_LT(sparse.noise_p95_de00, 1.25 * error);
 }
 
 TEST(Noise, IsTheSpreadOfSmallErrors) {

@@ -16,6 +16,11 @@ constexpr std::size_t kCorrectedRowsAtOnce = 8;
 
 }  // namespace
 
+int corrected_together(int width, int height) {
+  constexpr double kMostBytes = 4e8, kBytesOfPixel = sizeof(rays::Hit) + 4 * sizeof(float) + sizeof(std::uint32_t);
+  return std::clamp(static_cast<int>(kMostBytes / (kBytesOfPixel * width * height)), 4, 16);
+}
+
 VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer) {
   VisibleSurface surface;
   surface.gbuffer = gbuffer;
@@ -105,6 +110,12 @@ bool is_smooth(const std::vector<rays::Float3>& light, const std::vector<bool>& 
 }
 
 }  // namespace
+
+std::vector<const Gbuffer*> gbuffers_of(const std::vector<VisibleSurface>& samples) {
+  std::vector<const Gbuffer*> gbuffers;
+  for (const VisibleSurface& sample : samples) gbuffers.push_back(&sample.gbuffer);
+  return gbuffers;
+}
 
 void add_surroundings(const Transport& transport, const std::vector<const Gbuffer*>& samples, const Backdrop& backdrop,
                       const RayEffects& effects, float gain, image::Image& picture) {

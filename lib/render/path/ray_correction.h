@@ -16,6 +16,9 @@ namespace goniochrome::render {
 // pixel on an edge is corrected as the surface that it shows. The G-buffer must have triangles.
 VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer);
 
+// As many samples of a pixel are corrected together as there is memory for: 4 to 16.
+int corrected_together(int width, int height);
+
 struct CorrectionRequest {
   RayEffects effects;
   int bounces = 8;
@@ -51,6 +54,8 @@ struct Backdrop {
 // What the floor changes beside the mesh, at 95 of 100 pixels that show it: CIEDE2000 to the backdrop.
 double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Backdrop& backdrop,
                     const RayEffects& effects, double white_luminance);
+
+std::vector<const Gbuffer*> gbuffers_of(const std::vector<VisibleSurface>& samples);
 
 // Adds `gain` times what each of these samples of the pixels shows beside the mesh: the floor, whose ground is shaded,
 // or, above the horizon, the background. Where these points are the floor, it adds their coverage. A pixel that shows

@@ -30,7 +30,7 @@ constexpr int kLevels = 4;
 // The light as it was sampled, and by each filter.
 constexpr std::size_t kChoices = kFilters.size() + 1;
 // Errors are means over this neighborhood.
-constexpr Filter kErrorMean = {2, {2, 0.25F, 0.5F, kNoSlopes}};
+constexpr Filter kErrorMean = {2, {3, 0.25F, 0.5F, kNoSlopes}};
 // A squared difference of a filter from its reference above this multiple of their common variance counts as bias.
 constexpr float kSurprise = 25;
 // The own variance of a point, divided by this, bounds its error from below: the mean over a neighborhood dilutes rare
@@ -183,16 +183,18 @@ class Fits {
     const rays::Float3 normal{image_.normal[0][i], image_.normal[1][i], image_.normal[2][i]},
         position{image_.position[0][i], image_.position[1][i], image_.position[2][i]};
     const rays::Float3 turned = piece.normal - normal, way = piece.position - position;
-    const float off = rays::dot(way, normal);
+    const float across = right - image_.shift[0][i], below = down - image_.shift[1][i];
+    // The direction of the way tells nothing at the middle of the element's points, which on a bent surface lies off
+    // it.
+    const float off = rays::dot(way, normal), off_plane = off * off / (rays::dot(way, way) + 1e-20F);
     const float far = rays::dot(turned, turned) / (window.normal * window.normal) +
-                      off * off / (rays::dot(way, way) + 1e-20F) / (window.plane * window.plane);
+                      std::min(1.0F, across * across + below * below) * off_plane / (window.plane * window.plane);
     if (far >= 1) return 0;
     const float weight = (reach - std::abs(right)) * (reach - std::abs(down)) * (1 - far) * (1 - far);
     if (!(weight > 0)) return 0;
     const float scale = 1.0F / (static_cast<float>(window.reach) + 0.5F);
     const auto tangents = tangents_of(normal.x, normal.y, normal.z);
-    std::array<float, kSurfaceFeatures> feature = {1, scale * (right - image_.shift[0][i]),
-                                                   scale * (down - image_.shift[1][i])};
+    std::array<float, kSurfaceFeatures> feature = {1, scale * across, scale * below};
     for (std::size_t t = 0; t < 2; ++t)
       feature[3 + t] =
           (turned.x * tangents[t][0] + turned.y * tangents[t][1] + turned.z * tangents[t][2]) / window.normal;

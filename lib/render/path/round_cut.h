@@ -45,4 +45,11 @@ bool cut_round(double left, std::vector<int>& more, const Drawable& drawable) {
   return any;
 }
 
+// A step near the golden section of n that shares no factor with it: its multiples visit n chunks in a scattered order.
+inline std::size_t scattering(std::size_t n) {
+  auto step = static_cast<std::size_t>(0.6180339887 * static_cast<double>(n)) + 1;
+  while (n > 1 && std::gcd(step, n) != 1) ++step;
+  return step;
+}
+
 }  // namespace goniochrome::render

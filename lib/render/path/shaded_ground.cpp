@@ -60,6 +60,11 @@ Float3 floats(const color::Rgb& c) {
   return rays::float3(c);
 }
 
+// Between four values, of which the second pair is the lower one.
+Float3 between_four(const Float3* upper, const Float3* lower, float right, float down) {
+  return (1 - down) * ((1 - right) * upper[0] + right * upper[1]) + down * ((1 - right) * lower[0] + right * lower[1]);
+}
+
 }  // namespace
 
 // 256 for the default tolerance. Twice the directions have some .6 of the error.
@@ -164,7 +169,7 @@ void ShadedGround::add_lamp(const Light& light, const color::Rgb& irradiance) {
 ShadedGround::ShadedGround(std::shared_ptr<const rays::RayScene> scene, const LaidGround& ground,
                            const std::vector<Light>& lights, const mesh::Box& box, float mesh_radius,
                            const GroundRequest& request)
-    : scene_(std::move(scene)), mesh_radius_(mesh_radius), bent_(static_cast<float>(request.bent)) {
+    : scene_(std::move(scene)), mesh_radius_(mesh_radius), bent_(1.0F / static_cast<float>(request.directions)) {
   height_ = scene_->spot({rays::kFloor, 0, 0, 0}, {}, {0, -1, 0}).position.y;
   soft_ = directions(ground.soft_rays(static_cast<std::uint32_t>(request.directions)));
   if (ground.has_bright()) sources_.push_back(source([&](std::uint32_t count) { return ground.bright_rays(count); }));
@@ -272,7 +277,7 @@ void ShadedGround::smooth(Source& source) const {
   }
 }
 
-// What a line between two nodes misses of a curve through them and the nodes beside them, at most.
+// A curve through two nodes and those beside them departs from the line between the two by no more than this.
 float ShadedGround::bent(const Grid& grid, std::size_t column, std::size_t row, bool across) {
   const std::size_t last = (across ? grid.x : grid.z).size() - 1;
   const auto value = [&](std::size_t of_column, std::size_t of_row) { return mean_of(grid.at(of_column, of_row)); };
@@ -389,11 +394,6 @@ Float3 ShadedGround::blocked(const Source& source, const Float3& start) const {
   constexpr float kAll = 1 - 1e-5F;
   if (mean_of(few) == 0) return few;
   return mean_of(few) >= kAll * mean_of(source.share) ? source.share : blocked(source.many, start);
-}
-
-// Between four values, of which the second pair is the lower one.
-static Float3 between_four(const Float3* upper, const Float3* lower, float right, float down) {
-  return (1 - down) * ((1 - right) * upper[0] + right * upper[1]) + down * ((1 - right) * lower[0] + right * lower[1]);
 }
 
 Float3 ShadedGround::between(const Grid& grid, const Place& at) {

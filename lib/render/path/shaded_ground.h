@@ -26,7 +26,6 @@ struct GroundLight {
 struct GroundRequest {
   int directions = 256;          // at each node, a power of two
   double cell = 1.0 / 96;        // of the grid about the mesh, in lengths of the mesh; farther away cells grow
-  double bent = 0.004;           // cells in which lines between nodes miss more of the light are divided
   int bounced_directions = 256;  // at each fourth node, a power of two
   std::uint64_t seed = 1;
   // The radiance that the mesh sends along a ray from the floor that meets it there, for the numbers of a sample; none:
@@ -75,7 +74,7 @@ class ShadedGround {
   };
   // A lamp, or the brightest texels together.
   struct Source {
-    // Of a cell of blocked_: nothing is in the way of the source, or rays tell how much is, or the nodes do.
+    // A cell of blocked_ has nothing in the way of the source, or rays tell how much there is, or its nodes do.
     enum State : std::uint8_t { kFree, kAsked, kSmooth };
     Directions few, many;
     rays::Float3 share;  // of all of it
@@ -107,7 +106,8 @@ class ShadedGround {
   rays::Float3 start_at(float x, float z) const { return {x, height_ + rays::kLift, z}; }
 
   std::shared_ptr<const rays::RayScene> scene_;
-  float mesh_radius_ = 0, bent_ = 0, height_ = 0;
+  float mesh_radius_ = 0, height_ = 0;
+  float bent_ = 0;  // the share of one direction, by which shadows come in steps: cells that bend more are divided
   Directions soft_;
   std::vector<Source> sources_;
   Grid blocked_, bounced_;              // of the soft light; of the open irradiance

@@ -1,0 +1,90 @@
+#include "render/path/pixel_pieces.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "render/path/reconstruction.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+// Points whose normals have at least this cosine tell the first round of each other: well within the filters' reach.
+constexpr float kToldByCorner = 0.998F;
+
+bool are_one_piece(const float* a, const float* b, float cosine) {
+  return a[3] != 0 && a[3] == b[3] && a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > cosine;
+}
+
+template <class Flag>
+PixelFlags flags_of(const Gbuffer& gbuffer, const Flag& flag) {
+  PixelFlags flags(gbuffer.data.size() / 4, 0);
+  parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+      for (int x = 0; x < gbuffer.width; ++x) flags[gbuffer.index(x, y)] = flag(x, y) ? 1 : 0;
+  });
+  return flags;
+}
+
+}  // namespace
+
+Coverage coverage(const std::vector<VisibleSurface>& samples) {
+  const std::size_t pixels = samples.front().hits.size();
+  Coverage result{std::vector<std::uint16_t>(pixels, 0), std::vector<std::uint16_t>(pixels, 0)};
+  for (std::size_t sample = 0; sample < samples.size(); ++sample) {
+    const auto bit = static_cast<std::uint16_t>(1U << sample);
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const rays::Hit& hit = samples[sample].hits[i];
+      if (hit.any()) result.any[i] |= bit;
+      if (hit.triangle == rays::kFloor) result.floor[i] |= bit;
+    }
+  }
+  return result;
+}
+
+PixelFlags even_pixels(const std::vector<VisibleSurface>& samples) {
+  const Gbuffer& first = samples.front().gbuffer;
+  return flags_of(first, [&](int x, int y) {
+    return std::ranges::all_of(samples, [&](const VisibleSurface& sample) {
+      return are_one_piece(sample.gbuffer.at(x, y), first.at(x, y), kSamePiece);
+    });
+  });
+}
+
+int first_spacing(std::size_t points, std::size_t least) {
+  std::size_t spacing = 1;
+  while (points > 4 * least * spacing * spacing) spacing *= 2;
+  return static_cast<int>(spacing);
+}
+
+PixelFlags told_by_corners(const Gbuffer& gbuffer, const PixelFlags& even, int spacing) {
+  return flags_of(gbuffer, [&](int x, int y) {
+    const int left = x - x % spacing, top = y - y % spacing;
+    return (left != x || top != y) && even[gbuffer.index(x, y)] != 0 && even[gbuffer.index(left, top)] != 0 &&
+           are_one_piece(gbuffer.at(x, y), gbuffer.at(left, top), kToldByCorner);
+  });
+}
+
+PixelFlags hidden_pixels(const Transport& transport, std::span<const VisibleSurface> samples) {
+  constexpr int kBlock = 2;
+  const Gbuffer& gbuffer = samples.front().gbuffer;
+  const auto shows_pane = [&](std::size_t i) {
+    return std::ranges::any_of(samples, [&](const VisibleSurface& s) { return transport.meets_pane(s.hits[i]); });
+  };
+  const auto is_hidden = [&](int x, int y) {
+    const std::size_t i = gbuffer.index(x, y);
+    const auto seen = std::ranges::find_if(samples, [&](const VisibleSurface& s) { return s.hits[i].any(); });
+    return seen != samples.end() && !shows_pane(i) &&
+           transport.open_share(spot_at(transport.rays(), *seen, x, y)) < kMostlyHidden;
+  };
+  const auto decides = [](int x, int y) { return x % kBlock == 0 && y % kBlock == 0; };
+  const PixelFlags decided = flags_of(gbuffer, [&](int x, int y) { return decides(x, y) && is_hidden(x, y); });
+  return flags_of(gbuffer, [&](int x, int y) {
+    const int left = x - x % kBlock, top = y - y % kBlock;
+    const float part = gbuffer.at(left, top)[3];
+    const bool told = decides(x, y) || (part != 0 && part == gbuffer.at(x, y)[3]);
+    return told && !shows_pane(gbuffer.index(x, y)) ? decided[gbuffer.index(left, top)] != 0 : is_hidden(x, y);
+  });
+}
+
+}  // namespace goniochrome::render

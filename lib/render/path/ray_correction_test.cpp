@@ -1,0 +1,66 @@
+// What is seen beside a mesh: one sample of a pixel stands for all where no edge is seen.
+#include "render/path/ray_correction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "render/path/scenes_for_paths_for_test.h"
+
+namespace goniochrome::render::ray_correction_test {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 64;
+
+// A ball above a floor, below a lamp that throws a sharp shadow.
+struct Stage : PathStage {
+  Stage() : PathStage(sphere_mesh(32), {matt({0.7, 0.6, 0.5})}) {
+    environment = environment_of(64, 32, [](int x, int y) {
+      return y >= 16 ? color::Rgb{0.2 + 0.002 * x, 0.5, 0.3} : color::Rgb{0.3 + 0.005 * x, 0.5, 0.9};
+    });
+    ground.emplace();
+    ground->height = -1.2, ground->probe_eye = {0, 0.6, 0};
+    scene.lights = {{normalized({-1, 0.8, 0.4}), {0.6, 0.6, 0.6}, 0.002}};
+    build();
+  }
+};
+
+image::Image beside_mesh(const Stage& stage, const Transport& transport,
+                         const std::vector<std::vector<const Gbuffer*>>& groups) {
+  image::Image picture;
+  picture.width = kWidth, picture.height = kHeight, picture.channels = 3;
+  picture.data.assign(std::size_t{3} * kWidth * kHeight, 0);
+  const Backdrop backdrop{Background::kEnvironment, {}, &*stage.environment};
+  for (const auto& group : groups)
+    add_surroundings(transport, group, backdrop, {true, true, true, true}, 0.25F, picture);
+  return picture;
+}
+
+TEST(Surroundings, ASmoothPixelIsItsFirstSampleAndAnEdgeTheMeanOfAll) {
+  Stage stage;
+  Transport transport = *stage.transport;
+  transport.shade_ground({}, 1);
+  Camera camera;
+  camera.eye = {3, 2, 5};
+  camera.fov_deg = 50;
+  const Rays center = *rays(camera, kWidth, kHeight);
+  std::vector<Gbuffer> samples;
+  for (const auto& [dx, dy] : sample_shifts(4))
+    samples.push_back(mesh_gbuffer(transport.rays(), center.shifted(dx, dy), kWidth, kHeight));
+  const auto [a, b, c, d] = std::array{&samples[0], &samples[1], &samples[2], &samples[3]};
+  const image::Image together = beside_mesh(stage, transport, {{a, b, c, d}}),
+                     each = beside_mesh(stage, transport, {{a}, {b}, {c}, {d}}),
+                     first = beside_mesh(stage, transport, {{a}, {a}, {a}, {a}});
+  int of_first = 0, apart = 0;
+  for (std::size_t i = 0; i < together.data.size(); ++i) {
+    const float value = together.data[i], mean = each.data[i];
+    EXPECT_NEAR(value, mean, std::max(value, mean) / 32) << i;
+    of_first += std::abs(value - first.data[i]) <= 1e-6F;
+    apart += std::abs(first.data[i] - mean) > mean / 32;
+  }
+  EXPECT_GT(of_first, 0.75 * static_cast<double>(together.data.size()));
+  EXPECT_GT(apart, 50) << "the control: first samples alone, which are wrong at edges";
+}
+
+}  // namespace
+}  // namespace goniochrome::render::ray_correction_test
