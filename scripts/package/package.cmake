@@ -6,7 +6,11 @@ set(modules base math color paint formats library quality brdf materials image d
 foreach(module ${modules})
   set_target_properties(goniochrome_${module} PROPERTIES EXPORT_NAME ${module})
   target_include_directories(goniochrome_${module} PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/goniochrome>)
-  install(TARGETS goniochrome_${module} EXPORT goniochrome ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+  install(
+    TARGETS goniochrome_${module}
+    EXPORT goniochrome
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
   install(
     DIRECTORY ${PROJECT_SOURCE_DIR}/lib/${module}
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/goniochrome
