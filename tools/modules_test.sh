@@ -3,6 +3,7 @@
 #   - an #include under lib/ names the same room or one before it, and `cli` stands on `base` alone;
 #   - what lies in a private folder (internal/, and every folder of `render`) is included by its own room alone;
 #   - a public header stands at the top of its room because somebody outside the room includes it;
+#   - inside `render` no include leads back up: a header and its source are one unit, and the units have an order;
 #   - no third-party type shows in a public header;
 #   - the code of a room stands in the namespace of that name; that of `base` stands in goniochrome itself; below it a test has a
 #     namespace of the name of its file, since several tests are compiled at once;
@@ -57,6 +58,17 @@ while read -r header; do
   grep -rqF "#include \"$header\"" --include='*.h' --include='*.cpp' $(printf '%s\n' */ | grep -v "^$room/") ../tools ||
     complain "$header is public, and nobody outside $room includes it: it belongs into $room/internal"
 done < <(find . -name '*.h' | grep -vE "^\./([a-z]+/internal|render/[a-z]+|image/codecs)/" | sort)
+
+# arrows: for each include inside `render` the unit and that which it includes.
+arrows() {
+  grep -rE '^#include "render/' --include='*.h' --include='*.cpp' render | grep -vE '_(test|bench)\.cpp:|_for_test\.h' |
+    sed -E 's#^([^:.]*)\.[a-z]+:\#include "([^".]*)\.h".*#\1 \2#; s/-inl\b//g' | awk '$1 != $2'
+}
+# loops: reads arrows, prints the units of those that lead back.
+loops() { tsort 2>&1 >/dev/null | sed -n 's/^tsort: \(render\)/\1/p' | xargs; }
+loop=$(arrows | loops)
+[ -z "$loop" ] || complain "these include each other: $loop"
+[ -n "$({ arrows && echo render/scene render/renderer; } | loops)" ] || complain "a loop is not found: this test checks nothing"
 
 # fit/ceres_options.h is for the two rooms that solve by Ceres.
 while read -r line; do complain "$line: belongs into a .cpp or into internal/"; done < <(

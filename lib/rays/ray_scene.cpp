@@ -237,14 +237,14 @@ Hit RayScene::closest(const Float3& origin, const Float3& direction) const {
   return {};
 }
 
-bool RayScene::blocked(const Float3& origin, const Float3& direction, float distance) const {
+bool RayScene::occluded(const Float3& origin, const Float3& direction, float distance) const {
   if (floor_distance(origin, direction) < distance) return true;
   RTCRay ray = ray_of(origin, direction, distance);
   occlude(state_->scene.get(), ray_query(false), ray);
   return ray.tfar < 0;
 }
 
-unsigned RayScene::blocked(const Fan& fan) const {
+unsigned RayScene::occluded(const Fan& fan) const {
   RTCRay8 rays{};
   alignas(32) int valid[8];
   unsigned result = 0;
@@ -399,8 +399,8 @@ void RayScene::closest(const Vec3& origin, std::span<const Vec3> directions, std
   }
 }
 
-bool RayScene::blocked(const Vec3& origin, const Vec3& direction, double distance) const {
-  return blocked(local(origin), float3(direction), static_cast<float>(distance * scale()));
+bool RayScene::occluded(const Vec3& origin, const Vec3& direction, double distance) const {
+  return occluded(local(origin), float3(direction), static_cast<float>(distance * scale()));
 }
 
 }  // namespace goniochrome::rays

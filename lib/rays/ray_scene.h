@@ -59,7 +59,7 @@ struct Fan {
   Float3 origin;
   alignas(32) float x[8], y[8], z[8];  // directions, unit
   unsigned wanted = 0;
-  // Where blocked() stops to look, in local units.
+  // Where occluded() stops to look, in local units.
   float reach = std::numeric_limits<float>::infinity();
   // Whether the rays go nearly the same way, as those to a lamp do: they are then traced together, which is faster.
   bool narrow = false;
@@ -88,8 +88,8 @@ class RayScene {
   // The same for many rays from one point, nothing where triangle == kNothing.
   void closest(const Vec3& origin, std::span<const Vec3> directions, std::span<SurfacePoint> points) const;
   // Whether anything lies between the origin and the distance.
-  bool blocked(const Vec3& origin, const Vec3& direction,
-               double distance = std::numeric_limits<double>::infinity()) const;
+  bool occluded(const Vec3& origin, const Vec3& direction,
+                double distance = std::numeric_limits<double>::infinity()) const;
 
   int parts() const;  // of the mesh, and the floor as one more
   bool has_floor() const;
@@ -103,10 +103,10 @@ class RayScene {
 
   // In local coordinates.
   Hit closest(const Float3& origin, const Float3& direction) const;
-  bool blocked(const Float3& origin, const Float3& direction,
-               float distance = std::numeric_limits<float>::infinity()) const;
+  bool occluded(const Float3& origin, const Float3& direction,
+                float distance = std::numeric_limits<float>::infinity()) const;
   // The bits of those wanted rays of the fan that meet anything.
-  unsigned blocked(const Fan& fan) const;
+  unsigned occluded(const Fan& fan) const;
   // The nearest hits of those wanted rays of the fan; the others are left alone.
   void closest(const Fan& fan, Hit* hits) const;
 

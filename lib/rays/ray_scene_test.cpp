@@ -84,7 +84,7 @@ TEST(RayScene, MeetsASphereWhereTheClosedFormSays) {
     const double outer = sphere_distance(origin, direction, 1),
                  inner = sphere_distance(origin, direction, 1 - 2 * sagitta);
     const auto point = scene->closest(origin, direction);
-    EXPECT_EQ(point.has_value(), scene->blocked(origin, direction));
+    EXPECT_EQ(point.has_value(), scene->occluded(origin, direction));
     if (inner > 0) {
       ASSERT_TRUE(point.has_value());
       ++met;
@@ -96,8 +96,8 @@ TEST(RayScene, MeetsASphereWhereTheClosedFormSays) {
                 3e-6 / std::abs(dot(point->geometric, direction)));
       EXPECT_LT(length(point->shading - normalized(point->position)), 1e-4);  // linear between exact normals
       EXPECT_FALSE(point->inside);
-      EXPECT_TRUE(scene->blocked(origin, direction, inner + 1e-5));
-      EXPECT_FALSE(scene->blocked(origin, direction, outer - 1e-5));
+      EXPECT_TRUE(scene->occluded(origin, direction, inner + 1e-5));
+      EXPECT_FALSE(scene->occluded(origin, direction, outer - 1e-5));
     } else if (outer < 0) {
       EXPECT_FALSE(point.has_value());
       ++missed;
@@ -133,14 +133,14 @@ TEST(RayScene, FansMeetWhatSingleRaysMeet) {
       const Float3 d = float3(next.direction());
       fan.x[i] = d.x, fan.y[i] = d.y, fan.z[i] = d.z;
     }
-    const unsigned blocked = scene->blocked(fan);
+    const unsigned occluded = scene->occluded(fan);
     scene->closest(fan, hits);
-    EXPECT_EQ(blocked & ~fan.wanted, 0U);
+    EXPECT_EQ(occluded & ~fan.wanted, 0U);
     for (unsigned i = 0; i < 8; ++i) {
       if ((fan.wanted >> i & 1U) == 0) continue;
       const Float3 d{fan.x[i], fan.y[i], fan.z[i]};
       const Hit single = scene->closest(fan.origin, d);
-      EXPECT_EQ((blocked >> i & 1U) != 0, single.any());
+      EXPECT_EQ((occluded >> i & 1U) != 0, single.any());
       EXPECT_EQ(hits[i].any(), single.any());
       if (single.any()) {
         EXPECT_NEAR(hits[i].distance, single.distance, 1e-5F);
@@ -169,13 +169,13 @@ TEST(RayScene, NarrowFansMeetWhatSingleRaysMeet) {
       const Float3 d = float3(normalized(middle + 0.02 * next.direction()));
       fan.x[i] = d.x, fan.y[i] = d.y, fan.z[i] = d.z;
     }
-    const unsigned blocked = scene->blocked(fan);
-    EXPECT_EQ(blocked & ~fan.wanted, 0U);
+    const unsigned occluded = scene->occluded(fan);
+    EXPECT_EQ(occluded & ~fan.wanted, 0U);
     for (unsigned i = 0; i < 8; ++i) {
       if ((fan.wanted >> i & 1U) == 0) continue;
       const Float3 d{fan.x[i], fan.y[i], fan.z[i]};
-      const bool one = scene->blocked(fan.origin, d, fan.reach), of_fan = (blocked >> i & 1U) != 0;
-      ++rays, met += one, differ += one != of_fan, differ_without_reach += scene->blocked(fan.origin, d) != of_fan;
+      const bool one = scene->occluded(fan.origin, d, fan.reach), of_fan = (occluded >> i & 1U) != 0;
+      ++rays, met += one, differ += one != of_fan, differ_without_reach += scene->occluded(fan.origin, d) != of_fan;
     }
   }
   EXPECT_GT(met, rays / 10);
@@ -205,9 +205,9 @@ TEST(RayScene, AFloorLiesWhereItIsSaidAndReachesTheHorizon) {
 }
 
 // Triangles in every orientation that meet nothing but themselves: from no point of theirs may a ray above their plane
-// be blocked. The control starts its rays on the surface itself.
-double self_blocked_share(double size, bool from_surface) {
-  int blocked = 0, rays = 0;
+// be occluded. The control starts its rays on the surface itself.
+double self_occluded_share(double size, bool from_surface) {
+  int occluded = 0, rays = 0;
   Numbers next;
   for (int k = 0; k < 200; ++k) {
     mesh::Mesh mesh = single_triangle(size);
@@ -225,18 +225,18 @@ double self_blocked_share(double size, bool from_surface) {
       const Vec3 n = vec3(spot.geometric);
       if (dot(d, n) < 0) d = -d;
       if (i % 2 == 0) d = normalized(d + (1e-3 * next() - dot(d, n)) * n);  // grazing
-      blocked += scene->blocked(from_surface ? spot.position : spot.start, float3(d));
+      occluded += scene->occluded(from_surface ? spot.position : spot.start, float3(d));
       ++rays;
     }
   }
-  return static_cast<double>(blocked) / rays;
+  return static_cast<double>(occluded) / rays;
 }
 
 TEST(HardCase, RaysLeaveTheirOwnTriangleAtEveryScale) {
   double textbook = 1, ours = 0;
   for (const double size : {1e-6, 1.0, 1e6}) {
-    textbook = std::min(textbook, self_blocked_share(size, true));
-    ours = worst_of(ours, self_blocked_share(size, false));
+    textbook = std::min(textbook, self_occluded_share(size, true));
+    ours = worst_of(ours, self_occluded_share(size, false));
   }
   hard_case("transport-self", {"rays that meet their own triangle", textbook, ours, 0, "share"});
 }
@@ -244,11 +244,11 @@ TEST(HardCase, RaysLeaveTheirOwnTriangleAtEveryScale) {
 // A sphere of few triangles with smooth normals: above the horizon of the smooth normal nothing blocks. The control
 // starts on the flat triangles.
 TEST(HardCase, ASmoothSphereOfFewTrianglesDoesNotShadeItself) {
-  const auto blocked_share = [](double size, bool flat) {
+  const auto occluded_share = [](double size, bool flat) {
     const mesh::Mesh mesh = sphere(12, size);
     const auto scene = RayScene::create(mesh);
     Numbers next;
-    int blocked = 0, rays = 0;
+    int occluded = 0, rays = 0;
     for (int i = 0; i < 40000; ++i) {
       const Vec3 from = next.direction();
       const Float3 origin = scene->local(3 * size * from), toward = float3(-from);
@@ -257,18 +257,18 @@ TEST(HardCase, ASmoothSphereOfFewTrianglesDoesNotShadeItself) {
       Vec3 d = next.direction();
       const Vec3 n = vec3(spot.shading);
       if (dot(d, n) < 0) d = -d;
-      blocked += scene->blocked(flat ? spot.position + kLift * spot.geometric : spot.start, float3(d));
+      occluded += scene->occluded(flat ? spot.position + kLift * spot.geometric : spot.start, float3(d));
       ++rays;
     }
-    return static_cast<double>(blocked) / rays;
+    return static_cast<double>(occluded) / rays;
   };
   // Interpolated normals are not quite radial, so that their horizon dips below the lifted point's by a trace.
   double textbook = 1, ours = 0;
   for (const double size : {1e-6, 1.0, 1e6}) {
-    textbook = std::min(textbook, blocked_share(size, true));
-    ours = worst_of(ours, blocked_share(size, false));
+    textbook = std::min(textbook, occluded_share(size, true));
+    ours = worst_of(ours, occluded_share(size, false));
   }
-  hard_case("transport-self", {"open sky of a smooth sphere that is blocked", textbook, ours, 2e-4, "share"});
+  hard_case("transport-self", {"open sky of a smooth sphere that is occluded", textbook, ours, 2e-4, "share"});
 }
 
 TEST(RayScene, DuplicateAndCoplanarFacesDoNotBlockWhatStartsOnThem) {
@@ -289,7 +289,7 @@ TEST(RayScene, DuplicateAndCoplanarFacesDoNotBlockWhatStartsOnThem) {
     EXPECT_FLOAT_EQ(spot.geometric.z, 1);
     Vec3 d = next.direction();
     d.z = std::abs(d.z) * (i % 2 == 0 ? 1 : 1e-3);
-    EXPECT_FALSE(scene->blocked(spot.start, float3(normalized(d))));
+    EXPECT_FALSE(scene->occluded(spot.start, float3(normalized(d))));
   }
 }
 

@@ -15,6 +15,7 @@
 #include "render/path/lobe_columns.h"
 #include "render/path/open_light.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render::coat_test {

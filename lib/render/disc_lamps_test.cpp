@@ -14,6 +14,7 @@
 #include "render/path/path_tracer.h"
 #include "render/path/transport.h"
 #include "render/scene.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render::disc_lamps_test {
 namespace {

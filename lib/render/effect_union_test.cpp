@@ -4,6 +4,7 @@
 
 #include "render/engine.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render::effect_union_test {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "brdf/ward.h"
 #include "render/scene.h"
 
 namespace goniochrome::render {
@@ -73,31 +72,8 @@ struct Effects {
   bool depends_on_view() const { return fresnel || coat || horizon || views || stretch || tilt_level > 0; }
 };
 
-// Everything that the scene's paints and lights call for.
-Effects effects_of(const Scene& scene);
-
-// Whether a part of the scene wears a color map.
-bool is_mapped(const Scene& scene, std::size_t part);
-
-// Whether the gloss of a part of the scene stands for a rough coat, whose facets can be drawn in its place: a plain
-// paint that is not brushed.
-bool wears_rough_coat(const Scene& scene, std::size_t part);
-
-// Whether two parts of the scene wear the same.
-bool same_wear(const Scene& scene, std::size_t a, std::size_t b);
-
-// A paint with the diffuse part, lobes, mirror, views and coat that are on alone.
-paint::LobeFit with_effects(const paint::LobeFit& paint, const Effects& effects);
-
 // The lamps that these effects draw, as points where the effect `extent` is off.
 std::vector<Light> lights_of(const Scene& scene, const Effects& effects);
-
-// These, and then the bright spots of the environment that are cut one by one, which scene_maps() takes out of the
-// maps.
-std::vector<Light> single_lights(const Scene& scene, const Effects& effects);
-
-// The tilted normals that each part's lobes are drawn about; a single one where the part is isotropic.
-std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects& effects);
 
 // Weights are piecewise linear in the view: W = a + b t. Where no effect depends on the view there is one segment, with
 // t = n.wo itself; else kViewSegments of them, even in x = sqrt(n.wo), with t the part of a segment. Each part of the
@@ -138,7 +114,4 @@ struct WeightTable {
 };
 // The table's sizes, without its weights.
 WeightTable slots_of(const Effects& effects);
-// `stretched` tells of each part whether other lobes stand for the gloss of its rough coat; empty: of none.
-WeightTable weight_table(const Scene& scene, const Effects& effects, const std::vector<bool>& stretched = {});
-
 }  // namespace goniochrome::render

@@ -7,7 +7,9 @@
 #include <set>
 
 #include "render/exact.h"
+#include "render/picture_error.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render::engine_test {

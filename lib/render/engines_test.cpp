@@ -6,6 +6,7 @@
 #include "brdf/lobe_model.h"
 #include "color/color.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render::engines_test {

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
 #include "math/cosine_power.h"
+#include "render/picture_error.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render::exact_test {

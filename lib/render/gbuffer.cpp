@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/gl/gbuffer_shader.h"
 #include "render/gl/gl.h"
-#include "render/gl/shader.h"
 
 namespace goniochrome::render {
 

@@ -4,7 +4,9 @@
 #include <limits>
 
 #include "render/internal/seen.h"
+#include "render/plan/effect_list.h"
 #include "render/plan/ray_plan.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "render/internal/seen.h"
+#include "render/scene_effects.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render::left_out_test {

@@ -3,9 +3,11 @@
 #include <utility>
 
 #include "render/gl/disc_texture.h"
+#include "render/gl/gbuffer_shader.h"
 #include "render/gl/shader.h"
 #include "render/internal/maps.h"
 #include "render/internal/product_forms.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render {
 

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "brdf/ward.h"
 #include "render/effects.h"
 
 namespace goniochrome::render {

@@ -10,6 +10,7 @@
 #include "brdf/lobe_model.h"
 #include "render/path/scenes_for_paths_for_test.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render::panes_test {
 namespace {
@@ -159,8 +160,8 @@ TEST(Panes, LetLightPass) {
   const Vec3 from{0.1, 0.1, 1}, toward{0, 0, -1};
   EXPECT_EQ(whole->closest(from, toward)->part, 1);
   EXPECT_EQ(passing->closest(from, toward)->part, 0);
-  EXPECT_FALSE(passing->blocked(Vec3{0.1, 0.1, 0.1}, Vec3{0, 0, 1}));
-  EXPECT_TRUE(whole->blocked(Vec3{0.1, 0.1, 0.1}, Vec3{0, 0, 1}));
+  EXPECT_FALSE(passing->occluded(Vec3{0.1, 0.1, 0.1}, Vec3{0, 0, 1}));
+  EXPECT_TRUE(whole->occluded(Vec3{0.1, 0.1, 0.1}, Vec3{0, 0, 1}));
   // Its spots are known nevertheless.
   const rays::Spot spot = passing->spot({2, 0.25F, 0.25F, 0}, passing->local(from), rays::float3(toward));
   EXPECT_EQ(spot.part, 1);

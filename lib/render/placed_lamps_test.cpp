@@ -10,7 +10,9 @@
 #include "render/exact.h"
 #include "render/internal/placed_lamps.h"
 #include "render/internal/seen.h"
+#include "render/picture_error.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 #include "render/scenes_for_test.h"
 #include "render/surface_layer.h"
 

@@ -7,8 +7,11 @@
 #include "color/color.h"
 #include "envmap/environment.h"
 #include "render/cpu/cpu_engine.h"
+#include "render/effect_words.h"
 #include "render/internal/seen.h"
+#include "render/planning.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render::plan_test {

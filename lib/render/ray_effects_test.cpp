@@ -7,6 +7,7 @@
 #include "render/internal/seen.h"
 #include "render/path/scenes_for_paths_for_test.h"
 #include "render/plan/ray_plan.h"
+#include "render/planning.h"
 #include "render/renderer.h"
 #include "render/truth.h"
 

@@ -11,7 +11,9 @@
 #include "render/exact.h"
 #include "render/internal/seen.h"
 #include "render/left_out.h"
+#include "render/planning.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render {

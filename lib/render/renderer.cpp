@@ -15,7 +15,10 @@
 #include "render/path/open_residual.h"
 #include "render/path/path_engine.h"
 #include "render/path/visible_surface.h"
+#include "render/plan/effect_list.h"
 #include "render/plan/ray_plan.h"
+#include "render/planning.h"
+#include "render/scene_effects.h"
 #include "render/spots.h"
 #include "render/surface_layer.h"
 
@@ -377,9 +380,9 @@ Result<Transport> Renderer::State::traced_light(bool over_floor) const {
   }
   GONIO_ASSIGN(Transport created, Transport::create(paths));
   if (over_floor) {
-    GroundRequest request;
-    request.directions = ground_directions(tolerance_de00), request.bounced_directions = 4 * request.directions;
-    request.seed = effort_asked.seed;
+    GroundRequest request{.directions = ground_directions(tolerance_de00), .seed = effort_asked.seed};
+    request.bounced_directions = 4 * request.directions;
+    if (deadline && deadline->limit_s() > 0) request.longest_s = std::max(1e-3, deadline->left_s() / 4);
     created.shade_ground(request, effort_asked.bounces);
   }
   return created;

@@ -5,6 +5,7 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "render/scene_effects.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render::renderer_test {

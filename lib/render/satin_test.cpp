@@ -16,6 +16,7 @@
 #include "render/effects.h"
 #include "render/exact.h"
 #include "render/path/traced_paint.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render::satin_test {
 namespace {

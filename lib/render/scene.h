@@ -55,8 +55,8 @@ struct SceneSpectra;
 
 // A level floor that reaches to the horizon.
 struct Ground {
-  // kShadow: the lower half of the environment, laid on the floor as a probe saw it that stood on it, and darkened
-  // where the mesh takes light from it. kPaint: a floor that wears a paint.
+  // kShadow: the lower half of the environment, projected onto the floor as a probe saw it that stood on it, and
+  // darkened where the mesh takes light from it. kPaint: a floor that wears a paint.
   enum class Kind { kShadow, kPaint };
   Kind kind = Kind::kShadow;
   double height = 0;           // of the plane y = height, in units of the mesh

@@ -13,7 +13,9 @@
 #include "render/exact.h"
 #include "render/internal/seen.h"
 #include "render/path/scenes_for_paths_for_test.h"
+#include "render/picture_error.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render::spots_test {
 namespace {

@@ -10,8 +10,10 @@
 #include "prefilter/prefilter.h"
 #include "render/exact.h"
 #include "render/internal/tilt_table.h"
+#include "render/picture_error.h"
 #include "render/plan.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render::stretch_test {

@@ -13,7 +13,9 @@
 #include "render/cpu/cpu_engine.h"
 #include "render/exact.h"
 #include "render/internal/tilt_table.h"
+#include "render/picture_error.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render::tilts_test {

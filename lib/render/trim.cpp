@@ -26,7 +26,7 @@ bool is_capital(char c) {
 
 // The words of a name in lower case. Words begin at a capital behind a small letter (carWindow), and at the last of
 // several capitals before a small letter (RIMFront).
-Words words_of(const std::string& name) {
+Words words_in(const std::string& name) {
   Words words;
   bool inside = false;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -63,7 +63,7 @@ std::optional<TrimKind> kind_by(const Words& words) {
 }  // namespace
 
 std::optional<TrimKind> trim_kind(const mesh::MeshPart& part) {
-  const Words name = words_of(part.name), material = words_of(part.material);
+  const Words name = words_in(part.name), material = words_in(part.material);
   for (const Words& words : {name, material})
     if (const auto kind = kind_by(words)) return kind;
   for (const Words& words : {name, material})

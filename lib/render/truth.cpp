@@ -12,6 +12,8 @@
 #include "render/path/ray_correction.h"
 #include "render/path/ray_points.h"
 #include "render/path/transport.h"
+#include "render/picture_error.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render {
 
@@ -27,7 +29,7 @@ constexpr double kPart = 0.1, kUnseen = 0.02;
 
 // Independent batches, added one after the other.
 struct PointTruth {
-  LightShares sure, sum;
+  LightShares deterministic, sum;
   LightShares even;  // the sum of every second batch
   Estimates batches;
   bool certain = false;
@@ -38,7 +40,7 @@ struct PointTruth {
     batches.add(batch.sum());
   }
   LightShares mean() const {
-    LightShares result = sure;
+    LightShares result = deterministic;
     if (batches.count() > 0) result += (1.0 / batches.count()) * sum;
     return result;
   }
@@ -49,7 +51,7 @@ struct PointTruth {
     const int count = batches.count();
     std::array<LightShares, 2> result = {(1.0 / std::max(1, (count + 1) / 2)) * even,
                                          (1.0 / std::max(1, count / 2)) * odd};
-    for (LightShares& half : result) half += sure;
+    for (LightShares& half : result) half += deterministic;
     return result;
   }
   // Of that mean.
@@ -175,7 +177,7 @@ class Judge {
                           std::uint64_t seed, int batches, PointTruth& truth) {
     const PointTransport point(transport, options, at.spot, at.to_viewer);
     truth.certain = point.certain();
-    truth.sure = {point.sure(), {}, {}};
+    truth.deterministic = {point.deterministic(), {}, {}};
     while (!truth.certain && truth.batches.count() < batches)
       truth.add(point.batch_shares(mixed(seed, static_cast<std::uint64_t>(truth.batches.count()))));
   }

@@ -7,6 +7,7 @@
 
 #include "base/result.h"
 #include "render/exact.h"
+#include "render/picture_error.h"
 
 namespace goniochrome::render {
 

@@ -5,6 +5,7 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render {
 

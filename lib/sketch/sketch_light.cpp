@@ -14,6 +14,7 @@
 #include "render/effects.h"
 #include "render/gbuffer.h"
 #include "render/glints.h"
+#include "render/scene_effects.h"
 #include "render/spots.h"
 #include "render/unit_weights.h"
 #include "sketch/internal/sketch_lobes.h"

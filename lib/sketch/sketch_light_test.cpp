@@ -9,6 +9,7 @@
 #include "render/aov.h"
 #include "render/effects.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::sketch::sketch_light_test {

@@ -28,12 +28,13 @@ int TracedLight::height() const {
 
 bool TracedLight::shows_floor(int x, int y) const {
   const auto point = sketch::point_at(*transport_, x, y);
-  return point && transport_->worn.is_laid(transport_->part[*point]);
+  return point && transport_->worn.is_projected(transport_->part[*point]);
 }
 
 std::optional<std::size_t> TracedLight::point_at(int x, int y) const {
   const auto point = sketch::point_at(*transport_, x, y);
-  if (point && transport_->worn.is_laid(transport_->part[*point])) return std::nullopt;  // its light is what it shows
+  if (point && transport_->worn.is_projected(transport_->part[*point]))
+    return std::nullopt;  // its light is what it shows
   return point;
 }
 

@@ -29,7 +29,7 @@ class TracedLight {
   // that were worn. Nothing where no surface of the mesh was traced.
   std::optional<std::array<color::Rgb, 3>> diffusers(int x, int y) const;
 
-  // Whether this pixel shows a floor on which the environment is laid, so that no paint is seen there.
+  // Whether this pixel shows a floor onto which the environment is projected, so that no paint is seen there.
   bool shows_floor(int x, int y) const;
 
   // The aspecular angle (deg) at which one lamp alone would give the flakes of a paint the light that they get at this

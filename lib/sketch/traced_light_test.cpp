@@ -193,16 +193,16 @@ TEST(SketchTransport, ShowsWhatAnotherCoatLeavesOfLight) {
 // A floor that shows the environment wears no paint, which the weights of a file tell. The control: a floor of paint.
 TEST(TracedLight, AFloorThatShowsTheEnvironmentHasNoPaintToPick) {
   const std::vector<Lit> row = {{{1, 1, 1}, of_lamp(25)}, {{1, 1, 1}, of_lamp(40)}};
-  const auto laid = TracedLight::of(buffers_of(row, color::Rgb{1, 1, 1})),
+  const auto shown = TracedLight::of(buffers_of(row, color::Rgb{1, 1, 1})),
              painted = TracedLight::of(buffers_of(row, color::Rgb{0.1, 0.1, 0.1}));
-  ASSERT_TRUE(laid.ok()) << laid.error().message;
+  ASSERT_TRUE(shown.ok()) << shown.error().message;
   ASSERT_TRUE(painted.ok()) << painted.error().message;
-  EXPECT_TRUE(laid->shows_floor(1, 0));
-  EXPECT_FALSE(laid->diffusers(1, 0).has_value());
-  EXPECT_FALSE(laid->aspecular_deg(1, 0).has_value());
-  EXPECT_FALSE(laid->shows_floor(0, 0));
-  EXPECT_TRUE(laid->diffusers(0, 0).has_value());
-  EXPECT_FALSE(laid->shows_floor(2, 0)) << "outside";
+  EXPECT_TRUE(shown->shows_floor(1, 0));
+  EXPECT_FALSE(shown->diffusers(1, 0).has_value());
+  EXPECT_FALSE(shown->aspecular_deg(1, 0).has_value());
+  EXPECT_FALSE(shown->shows_floor(0, 0));
+  EXPECT_TRUE(shown->diffusers(0, 0).has_value());
+  EXPECT_FALSE(shown->shows_floor(2, 0)) << "outside";
   EXPECT_FALSE(painted->shows_floor(1, 0)) << "the control";
   EXPECT_TRUE(painted->diffusers(1, 0).has_value());
 }

@@ -13,6 +13,7 @@
 #include "library/verdict.h"
 #include "paint/curve.h"
 #include "render/page_weights.h"
+#include "render/scene_effects.h"
 #include "sketch/dropper.h"
 #include "studio/internal/describe.h"
 #include "studio/internal/edit_json.h"

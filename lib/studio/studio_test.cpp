@@ -16,6 +16,7 @@
 #include "paint/curve.h"
 #include "paint/edit.h"
 #include "render/page_weights.h"
+#include "render/scene_effects.h"
 #include "studio/paint_json.h"
 
 namespace goniochrome::studio::studio_test {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/text.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::tool {
 

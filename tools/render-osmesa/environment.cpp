@@ -18,6 +18,7 @@
 #include "prefilter/filtered_image.h"
 #include "prefilter/lobe_tree.h"
 #include "prefilter/prefilter.h"
+#include "render/effect_words.h"
 #include "stream.h"
 
 namespace goniochrome::tool {

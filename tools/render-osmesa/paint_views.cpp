@@ -8,6 +8,7 @@
 #include "plan_text.h"
 #include "render/aov.h"
 #include "render/effect_union.h"
+#include "render/scene_effects.h"
 #include "sight.h"
 #include "stream.h"
 

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "render/aov.h"
+#include "render/effect_words.h"
 
 namespace goniochrome::tool {
 

@@ -15,6 +15,8 @@
 #include "plan_text.h"
 #include "render/aov.h"
 #include "render/left_out.h"
+#include "render/picture_error.h"
+#include "render/planning.h"
 #include "settled.h"
 #include "sight.h"
 #include "stage.h"

@@ -10,6 +10,7 @@
 #include "image/image.h"
 #include "mesh/unit.h"
 #include "render/aov.h"
+#include "render/effect_words.h"
 #include "render/panes.h"
 #include "render/trim.h"
 #include "spectra.h"
@@ -153,7 +154,7 @@ Result<void> set_gbuffer(const Options& options, const Request& request, Stage& 
 }
 
 // The floor of a picture by an engine with prefiltered maps.
-Result<void> set_laid_floor(const Request& request, const Stage& stage, render::RaySetup& rays) {
+Result<void> set_projected_floor(const Request& request, const Stage& stage, render::RaySetup& rays) {
   rays.no_floor = "no floor is asked for: --floor shadow has one, and --background env calls for it";
   if (request.floor.kind == FloorRequest::Kind::kNone) return {};
   render::Scene over = stage.scene;
@@ -200,7 +201,7 @@ Result<void> set_rays(const Options& options, const Request& request, Stage& sta
     stage.sky.emplace(envmap::Environment::from_cube(stage.env.mirror.map, options.env));
     rays.environment = &*stage.sky;
   }
-  return set_laid_floor(request, stage, rays);
+  return set_projected_floor(request, stage, rays);
 }
 
 }  // namespace

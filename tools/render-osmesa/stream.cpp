@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/pipeline.h"
 #include "base/text.h"
+#include "render/effect_words.h"
 #include "render/engine.h"
 #include "render/plan.h"
 #include "stream_sink.h"

@@ -11,6 +11,7 @@
 #include "render/aov.h"
 #include "render/effects.h"
 #include "render/panes.h"
+#include "render/scene_effects.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::tool {
@@ -29,7 +30,7 @@ std::vector<render::VisiblePoint> seen_points(const render::Gbuffer& seen, const
   std::vector<render::VisiblePoint> all, few;
   for (int y = 0; y < seen.height; ++y)
     for (int x = 0; x < seen.width; ++x)
-      if (seen.part(x, y) >= 0 && !worn.is_laid(seen.part(x, y))) all.push_back(seen.point(x, y));
+      if (seen.part(x, y) >= 0 && !worn.is_projected(seen.part(x, y))) all.push_back(seen.point(x, y));
   const std::size_t count = std::min(all.size(), kMost);
   for (std::size_t i = 0; i < count; ++i) few.push_back(all[(2 * i + 1) * all.size() / (2 * count)]);
   return few;

@@ -1,4 +1,5 @@
 #include "truth_check.h"
+#include "render/picture_error.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,5 @@
 #include "render/cpu/cpu_engine.h"
+#include "render/internal/bordered_face.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include "base/large_pages.h"
 #include "base/parallel.h"
 #include "render/internal/coat_stretch.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render {
 

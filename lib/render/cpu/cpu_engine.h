@@ -14,6 +14,7 @@
 #include "render/internal/maps.h"
 #include "render/internal/placed_lamps.h"
 #include "render/internal/product_forms.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render {
 

@@ -10,7 +10,7 @@
 // After highway.h:
 #include <hwy/contrib/math/math-inl.h>
 
-#include "render/cpu/cpu_kernel.h"
+#include "render/cpu/interleaved_maps.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace goniochrome::render {

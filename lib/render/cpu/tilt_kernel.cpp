@@ -1,4 +1,5 @@
 #include "render/cpu/tilt_kernel.h"
+#include "render/internal/bordered_face.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "base/result.h"
-#include "render/gl/gl_driver.h"
+#include "render/gl/driver.h"
 
 namespace goniochrome::render {
 

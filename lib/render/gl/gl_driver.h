@@ -7,27 +7,10 @@
 #include <memory>
 
 #include "base/result.h"
+#include "render/gl/driver.h"
 #include "render/gl/gl_choice.h"
 
 namespace goniochrome::render {
-
-// One context, which is destroyed with its driver.
-class GlDriver {
- public:
-  virtual ~GlDriver() = default;
-  GlDriver() = default;
-  GlDriver(const GlDriver&) = delete;
-  GlDriver& operator=(const GlDriver&) = delete;
-
-  // Makes the context that of this thread.
-  virtual void make_current() const = 0;
-  // The function of that name, such as "glClear"; null where there is none.
-  virtual void* address(const char* name) const = 0;
-  // "OSMesa" or "EGL".
-  virtual const char* name() const = 0;
-  // Whether a GPU draws, and not the processor.
-  virtual bool on_gpu() const { return false; }
-};
 
 // A driver whose new OpenGL 3.3 core context is current. Error: the libraries are not there, or make no such context,
 // with what to install.

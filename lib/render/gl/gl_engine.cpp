@@ -12,6 +12,7 @@
 #include "render/gl/tilt_shader.h"
 #include "render/internal/coat_stretch.h"
 #include "render/page_weights.h"
+#include "render/scene_effects.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {

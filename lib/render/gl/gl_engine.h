@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "brdf/ward.h"
 #include "render/engine.h"
 #include "render/gl/gl.h"
 #include "render/gl/texture_shader.h"

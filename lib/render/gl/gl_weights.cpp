@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/page_weights.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render {
 

@@ -87,11 +87,12 @@ std::vector<LightLayer> light_layers(const Effects& effects) {
   return layers;
 }
 
-std::string gathering_fragment_shader(const Effects& effects, const color::ReflectionOperator& op, bool laid_ground) {
+std::string gathering_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
+                                      bool projected_ground) {
   const bool lamps = effects.single_lights() > 0;
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
-  laid_ground = laid_ground && effects.background == Background::kEnvironment;
+  projected_ground = projected_ground && effects.background == Background::kEnvironment;
   std::string text = std::string(kHead) + "// goniochrome-theory(7), RENDERING, Layers\n" + uniforms(effects) + kRays;
   text +=
       fmt::format("uniform int slots[{0}];\nuniform float scales[{0}];\nlayout(location = 0) out vec4 layers[{0}];\n",
@@ -104,7 +105,7 @@ std::string gathering_fragment_shader(const Effects& effects, const color::Refle
   if (lamps) text += disc_functions(effects.lobes.size()) + "float index2;  // of the coat, squared\n";
   if (effects.environment) text += map_light_function(effects);
   if (lamps && !effects.lobes.empty()) text += lamp_light_function(effects);
-  if (laid_ground) text += kLaidGround;
+  if (projected_ground) text += kProjectedGround;
   std::string beside, sums, written;
   for (int o = 0; o < kLayersAtOnce; ++o) {
     beside += fmt::format("    layers[{0}] = slots[{0}] == {1} ? vec4(shown.rgb / scales[{0}], shown.a) : vec4(0.0);\n",
@@ -114,7 +115,7 @@ std::string gathering_fragment_shader(const Effects& effects, const color::Refle
   }
   text += start_of_main(
       effects, "",
-      fmt::format("    vec4 shown = {};\n", background_color(effects.background, product, laid_ground)) + beside);
+      fmt::format("    vec4 shown = {};\n", background_color(effects.background, product, projected_ground)) + beside);
   text += tilt_frame(effects) + fmt::format("  vec4 sums[{0}] = vec4[{0}]({1});\n", kLayersAtOnce, sums);
   if (effects.environment) {
     // A brushed surface has lobes about each of its normals; its diffuse part and its mirror have their own.

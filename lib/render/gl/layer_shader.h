@@ -33,7 +33,8 @@ constexpr int kMostLayers = 32;
 
 // Draws the layers of uniform slots[4], each divided by scales[4], at the points of a G-buffer. It reads what the
 // shading program of these effects reads.
-std::string gathering_fragment_shader(const Effects& effects, const color::ReflectionOperator& op, bool laid_ground);
+std::string gathering_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
+                                      bool projected_ground);
 
 // The picture from layers: `layers` has the one of kBesideLayer first; `count` others have their slot and place in
 // uniform used[], and what they were divided by in scales[].

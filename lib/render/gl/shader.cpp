@@ -160,36 +160,6 @@ std::string light_terms(const Effects& effects) {
 
 }  // namespace
 
-std::string gbuffer_vertex_shader() {
-  return std::string(kHead) + R"(layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 vertex_normal;
-uniform mat4 clip;
-out vec3 normal;
-void main() {
-  normal = vertex_normal;
-  gl_Position = clip * vec4(position, 1.0);
-}
-)";
-}
-
-std::string gbuffer_fragment_shader(bool with_triangles) {
-  const char* number = with_triangles ? R"(uniform int first;  // the number of the part's first triangle
-layout(location = 1) out uint triangle;
-)"
-                                      : "";
-  return std::string(kHead) + kRays + number + R"(uniform int part;
-in vec3 normal;
-layout(location = 0) out vec4 gbuffer;
-void main() {
-  float side = gl_FrontFacing ? 1.0 : -1.0;
-  vec3 n = side * normalize(normal), wo = -ray();
-  // Near an outline the smooth normal can look away from the viewer: the nearest that does not.
-  float cos_o = dot(n, wo);
-  if (cos_o < 1e-3) n = normalize(n + (1e-3 - cos_o) * wo);
-  gbuffer = vec4(n, side * float(part + 1));
-)" + (with_triangles ? "  triangle = uint(first + gl_PrimitiveID);\n}\n" : "}\n");
-}
-
 std::string shading_vertex_shader() {
   return std::string(kHead) + R"(void main() {  // one triangle that covers the picture
   gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 4.0 * float(gl_VertexID >> 1) - 1.0, 0.0, 1.0);
@@ -198,7 +168,7 @@ std::string shading_vertex_shader() {
 }
 
 std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
-                                    const std::vector<double>& tilted, bool laid_ground,
+                                    const std::vector<double>& tilted, bool projected_ground,
                                     const TextureProgram& textures) {
   const bool lit_lobes = effects.single_lights() > 0 && !effects.lobes.empty();
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
@@ -218,11 +188,11 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
     text += disc_functions(effects.lobes.size()) + disc_weights(effects);
   if (!effects.lobes.empty()) text += lobe_functions(effects, product);
   text += tilt_function(effects, tilted, product) + texture_function(textures, effects);
-  laid_ground = laid_ground && effects.background == Background::kEnvironment;
-  if (laid_ground) text += kLaidGround;
+  projected_ground = projected_ground && effects.background == Background::kEnvironment;
+  if (projected_ground) text += kProjectedGround;
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
-  text += start_of_main(effects, "",
-                        fmt::format("    color = {};\n", background_color(effects.background, product, laid_ground)));
+  text += start_of_main(
+      effects, "", fmt::format("    color = {};\n", background_color(effects.background, product, projected_ground)));
   text += "  vec3 radiance = vec3(0.0);\n";
   // 3. The sum of what the environment and the lights show.
   text += tilt_frame(effects);

@@ -10,19 +10,14 @@
 
 namespace goniochrome::render {
 
-// Draws the G-buffer: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from inside);
-// and, as a second picture unless it is left out, the number of the triangle.
-std::string gbuffer_vertex_shader();
-std::string gbuffer_fragment_shader(bool with_triangles = true);
-
 // Covers the picture, and shades each point of the G-buffer.
 std::string shading_vertex_shader();
 // The operator is written into it where the effects have it. `tilted` are the exponents of tilted lobes. With
-// `laid_ground` an environment in the background may lie on the ground: ground_eye is the camera's eye relative to the
-// point above the ground from which the environment was seen, and ground_drop how far below that the ground lies; 0 for
-// no ground. goniochrome-theory(7), PATHS, Ground.
+// `projected_ground` an environment in the background may lie on the ground: ground_eye is the camera's eye relative to
+// the point above the ground from which the environment was seen, and ground_drop how far below that the ground lies; 0
+// for no ground. goniochrome-theory(7), PATHS, Ground.
 std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
-                                    const std::vector<double>& tilted, bool laid_ground = false,
+                                    const std::vector<double>& tilted, bool projected_ground = false,
                                     const TextureProgram& textures = {});
 // That of a scene, with its tilted lobes and its textures.
 std::string shading_fragment_shader(const Scene& scene, const Effects& effects);

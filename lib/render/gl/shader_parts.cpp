@@ -144,10 +144,10 @@ std::string over_tilts(const Effects& effects, const std::string& sum, const std
                      sum, function, more);
 }
 
-std::string background_color(Background background, Product product, bool laid_ground) {
+std::string background_color(Background background, Product product, bool projected_ground) {
   switch (background) {
     case Background::kEnvironment: {
-      const std::string seen = fmt::format("textureLod(mirror, {}, 0.0)", laid_ground ? "laid(-wo)" : "-wo");
+      const std::string seen = fmt::format("textureLod(mirror, {}, 0.0)", projected_ground ? "projected(-wo)" : "-wo");
       return product == Product::kForms ? fmt::format("vec4(unreflected({}), 1.0)", seen)
                                         : fmt::format("vec4({}.rgb, 1.0)", seen);
     }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "render/effects.h"
+#include "render/gl/gbuffer_shader.h"
 #include "render/gl/tilt_shader.h"
 #include "render/internal/product_forms.h"
 
@@ -19,15 +20,6 @@ const char* sum_type(Product product);
 
 // A GLSL constant, which needs a point or an exponent to be a float.
 std::string glsl(double value);
-
-// The first line of every program.
-inline constexpr const char* kHead = "#version 330 core\n";
-
-// Pixels as rays; both programs see the same, so a viewing direction needs no position.
-inline constexpr const char* kRays =
-    R"(uniform vec3 corner, right, down;  // the ray through (x, y), in pixels from the upper left
-vec3 ray() { return normalize(corner + gl_FragCoord.x * right + gl_FragCoord.y * down); }
-)";
 
 // Where the weights of this point begin, and how far into its segment the view is.
 inline constexpr const char* kWeight = R"(
@@ -51,9 +43,9 @@ float let_in(float c, float index2) {
 )";
 
 // What stands on the ground where a ray meets it was seen from ground_eye = 0; elsewhere it is the ray's own direction.
-inline constexpr const char* kLaidGround = R"(uniform vec3 ground_eye;
+inline constexpr const char* kProjectedGround = R"(uniform vec3 ground_eye;
 uniform float ground_drop;
-vec3 laid(vec3 ray) {
+vec3 projected(vec3 ray) {
   float rise = ground_eye.y + ground_drop;
   return ground_drop > 0.0 && rise > 0.0 && ray.y < 0.0 ? ground_eye - (rise / ray.y) * ray : ray;
 }
@@ -111,6 +103,6 @@ std::string over_tilts(const Effects& effects, const std::string& sum, const std
                        const std::string& more);
 
 // What a ray shows that meets nothing.
-std::string background_color(Background background, Product product, bool laid_ground);
+std::string background_color(Background background, Product product, bool projected_ground);
 
 }  // namespace goniochrome::render

@@ -1,5 +1,5 @@
 // A gatherer sums, patch by patch, the light from all around that one point reflects to the viewer. It holds the
-// integrand of exact.h and decides how finely the light must be divided.
+// integrand of exact_model.h and decides how finely the light must be divided.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 #include "color/color.h"
 #include "envmap/block_tree.h"
-#include "render/exact.h"
+#include "render/integral/exact_model.h"
 #include "render/integral/patch.h"
 
 namespace goniochrome::render {

@@ -6,7 +6,9 @@
 
 #include "base/parallel.h"
 #include "render/exact.h"
+#include "render/picture_error.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render::integral_engine_test {

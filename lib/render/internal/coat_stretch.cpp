@@ -12,6 +12,7 @@
 #include "brdf/gloss.h"
 #include "brdf/lobe_model.h"
 #include "math/elementary.h"
+#include "render/internal/wear.h"
 #include "render/internal/worn_lobes.h"
 
 namespace goniochrome::render {

@@ -38,8 +38,4 @@ std::vector<LobeClass> lobe_classes(const envmap::PrefilteredEnvironment& env, c
 // command that makes it. The maps may be those of the environment, which must outlive them.
 Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects);
 
-// A face with the texels of its neighbors around it, as seamless filtering has them (a corner is the mean of the three
-// texels that meet there): (size + 2)^2 RGB triples.
-std::vector<float> bordered_face(const envmap::CubeMap& map, int face);
-
 }  // namespace goniochrome::render

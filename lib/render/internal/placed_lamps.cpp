@@ -3,8 +3,6 @@
 #include <algorithm>
 
 #include "math/elementary.h"
-#include "render/effects.h"
-#include "render/surface_layer.h"
 
 namespace goniochrome::render {
 
@@ -33,22 +31,6 @@ Vec3 origin_of(const mesh::Mesh& mesh) {
 std::array<float, 3> from_origin(const Vec3& position, const Vec3& origin) {
   const Vec3 from = position - origin;
   return {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
-}
-
-Result<void> draws_placed_lamps(const Scene& scene, const char* engine) {
-  const bool any = std::ranges::any_of(
-      scene.lights, [](const Light& light) { return light.place.has_value() && light.radius_rad > 0; });
-  if (!any || !effects_of(scene).extent) return {};
-  for (std::size_t part = 0; part < scene.paints.size(); ++part) {
-    const paint::LobeFit& paint = scene.paints[part];
-    if (paint.lobes.empty() && paint.views.empty() && paint.diffuse == color::Rgb{}) continue;
-    if (scene.layer != nullptr && scene.layer->surface(static_cast<int>(part)).hides_paint()) continue;
-    return usage_error(
-        "the engine {} draws a lamp at a place that shines on paint as a point: write @0 behind the lamp, or take the "
-        "engine path, which draws it with its extent",
-        engine);
-  }
-  return {};
 }
 
 }  // namespace goniochrome::render

@@ -24,8 +24,4 @@ std::vector<PlacedLamp> placed_lamps(const std::vector<Light>& lights, const Vec
 Vec3 origin_of(const mesh::Mesh& mesh);
 std::array<float, 3> from_origin(const Vec3& position, const Vec3& origin);
 
-// Error: a paint that is seen shows the extent of a lamp at a place. What its lobes gather of a disc is tabulated for
-// one radius, and the lamp has another at each point. `engine` is the name of the engine that asks.
-Result<void> draws_placed_lamps(const Scene& scene, const char* engine);
-
 }  // namespace goniochrome::render

@@ -7,6 +7,7 @@
 #include "brdf/tilted_lobes.h"
 #include "math/elementary.h"
 #include "render/internal/coat_stretch.h"
+#include "render/internal/wear.h"
 #include "render/internal/worn_lobes.h"
 
 namespace goniochrome::render {

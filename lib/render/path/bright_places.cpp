@@ -25,7 +25,7 @@ constexpr double kByArea = 0.75;
 // Of each piece one path is followed, and so many of each group.
 constexpr std::uint32_t kMostPieces = 1U << 14, kPathsOfGroup = 64;
 // About so many rays of a receiver are shared out among the places, of which each gets no less and no more than this.
-constexpr double kRays = 8192;
+constexpr double kTestRays = 8192;
 constexpr std::uint32_t kLeastPairs = 8, kMostPairs = 256;
 // Where light is spread this evenly, places are not worth while: the mean square of what the surface sends over the
 // square of its mean; and what they have to gain.
@@ -290,7 +290,7 @@ BrightPlaces::Links BrightPlaces::links(std::size_t receiver, const std::vector<
     links.first.push_back(static_cast<std::uint32_t>(links.all.size()));
     if (!(open[place] > 0)) continue;
     const std::uint32_t pairs =
-        std::clamp(static_cast<std::uint32_t>(kRays * open[place] / sum), kLeastPairs, kMostPairs);
+        std::clamp(static_cast<std::uint32_t>(kTestRays * open[place] / sum), kLeastPairs, kMostPairs);
     for (std::uint32_t k = 0; k < pairs; ++k)
       links.all.push_back(link(receiver, place, sequence, pair(place, k), true));
   }

@@ -186,7 +186,7 @@ TEST(BrightPlaces, AreKnownWhereTheyAreSeenFromAPartOfAGroup) {
                            0};
       const rays::Spot from = scene.spot(bowl, {}, {0, -1, 0});
       const EmitterSample light = transport.emitters().drawn(lit_point(from), choice, c, d);
-      if (!(light.pdf > 0) || scene.blocked(from.start, light.direction, 0.999F * light.distance)) continue;
+      if (!(light.pdf > 0) || scene.occluded(from.start, light.direction, 0.999F * light.distance)) continue;
       const Float3 away = PaintedPoint::drawn_about(from.shading, 1, u, v);
       const rays::Hit wall = scene.closest(from.start, away);
       if (!wall.any() || part(wall.triangle) == "Lamp_Bowls" || part(wall.triangle) == "Lamps") continue;

@@ -31,7 +31,7 @@ double brightness(const color::Rgb& c) {
 
 struct LobePoint::Ray {
   Float3 direction;
-  bool above = false, blocked = false, from_light = false;
+  bool above = false, occluded = false, from_light = false;
 };
 
 // What a surface that a ray met sends back along it, by class; apart from them, the light off a floor that no paint
@@ -78,7 +78,7 @@ class LobePoint::Classes {
   Float3 base_, gloss_;
 };
 
-// Of each sequence and column, the mean over its directions: light of the environment from free and from blocked
+// Of each sequence and column, the mean over its directions: light of the environment from free and from occluded
 // directions, of emitters, and bounced. The squares of single directions tell which estimate is the quieter one.
 struct LobePoint::Sums {
   std::size_t columns;
@@ -112,9 +112,9 @@ LobePoint::LobePoint(const Transport& transport, const LobeColumns& columns, con
       kernels_(columns, painted_) {
   options_.bounces = bounces;
   if (transport.environment_) light_chance_ = kLightChance;
-  is_laid_ = transport.is_laid(spot);
+  on_projected_ = transport.is_projected(spot);
   open_ = !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0);
-  if (!open_ && !is_laid_) mirror_hit_ = transport.rays_->closest(spot_.start, painted_.mirrored());
+  if (!open_ && !on_projected_) mirror_hit_ = transport.rays_->closest(spot_.start, painted_.mirrored());
 }
 
 color::Rgb LobePoint::reflect(const Float3& f, const color::Rgb& light) const {
@@ -135,7 +135,7 @@ LobePoint::Ray LobePoint::drawn_ray(const std::array<double, 4>& numbers) const 
 }
 
 // Those of one sequence.
-std::vector<LobePoint::Ray> LobePoint::traced_rays(int directions, std::uint64_t seed, bool& any_blocked) const {
+std::vector<LobePoint::Ray> LobePoint::traced_rays(int directions, std::uint64_t seed, bool& any_occluded) const {
   std::vector<Ray> rays(static_cast<std::size_t>(directions));
   const Sequence sequence(seed, static_cast<std::uint32_t>(directions));
   for (int first = 0; first < directions; first += 8) {
@@ -147,9 +147,9 @@ std::vector<LobePoint::Ray> LobePoint::traced_rays(int directions, std::uint64_t
       fan.x[i] = eight[i].direction.x, fan.y[i] = eight[i].direction.y, fan.z[i] = eight[i].direction.z;
       if (eight[i].above) fan.wanted |= 1U << i;
     }
-    const unsigned blocked = transport_.rays_->blocked(fan);
-    for (int i = 0; i < 8; ++i) eight[i].blocked = (blocked >> i & 1U) != 0;
-    any_blocked = any_blocked || blocked != 0;
+    const unsigned occluded = transport_.rays_->occluded(fan);
+    for (int i = 0; i < 8; ++i) eight[i].occluded = (occluded >> i & 1U) != 0;
+    any_occluded = any_occluded || occluded != 0;
   }
   return rays;
 }
@@ -159,7 +159,7 @@ LobePoint::Sent LobePoint::sent(const Hit& hit, const Float3& direction, const S
                                 std::uint32_t index) const {
   Sent sent;
   const Transport& t = transport_;
-  if (t.is_laid(hit)) {
+  if (t.is_projected(hit)) {
     const Transport::FloorLight floor = t.off_floor(hit, spot_.start, direction, options_.bounces, sequence, index, 4);
     sent.fixed = floor.fixed, sent.deeper = floor.bounced;
     return sent;
@@ -170,7 +170,7 @@ LobePoint::Sent LobePoint::sent(const Hit& hit, const Float3& direction, const S
   const Transport::Next next = t.step(vertex, sequence.point(index, 4), sequence.point(index, 5), light);
   if (!next.goes_on() || !next.hit.any()) return sent;
   const int further = options_.bounces - 1;
-  if (t.is_laid(next.hit)) {
+  if (t.is_projected(next.hit)) {
     const Transport::FloorLight floor = t.off_floor(next.hit, next.start, next.direction, further, sequence, index, 6);
     light.add(1, {floor.fixed});
     sent.deeper = light.shown(floor.bounced);
@@ -196,13 +196,13 @@ void LobePoint::add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t 
   if (!(pdf > 0) || !(kernels_pdf > 0)) return;
   const double scale = 1 / pdf, size = scale * brightness(light.radiance);
   const std::size_t first = sums.at(which, 0), count = columns_.count();
-  std::vector<color::Rgb>& into = ray.blocked ? sums.hidden : sums.free;
-  std::vector<double>& squares = ray.blocked ? sums.hidden_squares : sums.free_squares;
+  std::vector<color::Rgb>& into = ray.occluded ? sums.hidden : sums.free;
+  std::vector<double>& squares = ray.occluded ? sums.hidden_squares : sums.free_squares;
   for (std::size_t k = 0; k < count; ++k) {
     into[first + k] += (scale / sums.directions * values[k]) * light.radiance;
     squares[first + k] += size * size * values[k] * values[k];
   }
-  if (!ray.blocked || (options_.bounces == 0 && transport_.emitters_.empty() && !transport_.ground_)) return;
+  if (!ray.occluded || (options_.bounces == 0 && transport_.emitters_.empty() && !transport_.ground_)) return;
   const Hit hit = transport_.rays_->closest(spot_.start, ray.direction);
   if (!hit.any()) return;
   const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
@@ -211,7 +211,7 @@ void LobePoint::add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t 
         1 / (pdf + transport_.emitters_.pdf(lit_point(spot_), hit.triangle, ray.direction, hit.distance));
     for (std::size_t k = 0; k < count; ++k) sums.emitted[first + k] += (share / sums.directions * values[k]) * emission;
   }
-  if (options_.bounces == 0 && !transport_.is_laid(hit)) return;
+  if (options_.bounces == 0 && !transport_.is_projected(hit)) return;
   const Sent sent = this->sent(hit, ray.direction, sequence, index);
   const color::Rgb total = sent.total();
   for (std::size_t k = 0; sent.fixed != color::Rgb{} && k < count; ++k)
@@ -225,7 +225,7 @@ void LobePoint::add_emitter(const std::array<double, 4>& numbers, Sums& sums, in
   const EmitterSample light = transport_.emitters_.drawn(lit_point(spot_), numbers[0], numbers[1], numbers[2]);
   float values[2 * kMostTracedLobes + 2];
   const float kernels_pdf = light.pdf > 0 ? kernels_.at(light.direction, values) : 0;
-  if (!(kernels_pdf > 0) || transport_.rays_->blocked(spot_.start, light.direction, kShort * light.distance)) return;
+  if (!(kernels_pdf > 0) || transport_.rays_->occluded(spot_.start, light.direction, kShort * light.distance)) return;
   const double open_pdf = transport_.environment_ ? transport_.environment_->at(light.direction).pdf : 0;
   const double scale = 1 / (light.pdf + light_chance_ * open_pdf + (1 - light_chance_) * kernels_pdf);
   for (std::size_t k = 0; k < columns_.count(); ++k)
@@ -233,7 +233,7 @@ void LobePoint::add_emitter(const std::array<double, 4>& numbers, Sums& sums, in
 }
 
 void LobePoint::add_mirror(std::uint64_t seed, Sums& sums, int which) const {
-  if (!mirror_hit_.any() || (options_.bounces == 0 && !transport_.is_laid(mirror_hit_))) return;
+  if (!mirror_hit_.any() || (options_.bounces == 0 && !transport_.is_projected(mirror_hit_))) return;
   const int samples = std::max(1, sums.directions / kMirrorShare);
   const Sequence sequence(mixed(seed, 0x4D), static_cast<std::uint32_t>(sums.directions));
   const std::size_t mirror = sums.at(which, columns_.mirror());
@@ -258,7 +258,7 @@ bool LobePoint::lamp_values(std::size_t which, const Transport::SeenLamp& lamp, 
     const std::array<double, 4> numbers = sequence.point(i, 0);
     const Transport::LampSample sample = Transport::drawn_from(lamp, numbers[0], numbers[1]);
     if (!(kernels_.at(sample.direction, here) > 0)) continue;
-    if (transport_.rays_->blocked(spot_.start, sample.direction, sample.reach)) {
+    if (transport_.rays_->occluded(spot_.start, sample.direction, sample.reach)) {
       all_free = false;
       continue;
     }
@@ -270,7 +270,7 @@ bool LobePoint::lamp_values(std::size_t which, const Transport::SeenLamp& lamp, 
 }
 
 // Lamps, whose shadow rays decide all, and what the mirror sees without a bounce.
-void LobePoint::add_sure(const color::Rgb* open_mirror, double share, std::vector<color::Rgb>& direct) const {
+void LobePoint::add_deterministic(const color::Rgb* open_mirror, double share, std::vector<color::Rgb>& direct) const {
   float values[2 * kMostTracedLobes + 2];
   for (std::size_t i = 0; i < transport_.lights_.size(); ++i) {
     const Transport::SeenLamp lamp = transport_.seen_lamp(i, spot_.start);
@@ -280,7 +280,7 @@ void LobePoint::add_sure(const color::Rgb* open_mirror, double share, std::vecto
     } else {
       const Float3 direction = rays::float3(light.direction);
       if (!(kernels_.at(direction, values) > 0)) continue;
-      if (!open_ && transport_.rays_->blocked(spot_.start, direction, lamp.reach)) continue;
+      if (!open_ && transport_.rays_->occluded(spot_.start, direction, lamp.reach)) continue;
     }
     for (std::size_t k = 0; k < columns_.count(); ++k) direct[k] += (share * kPi * values[k]) * light.white;
   }
@@ -352,7 +352,7 @@ LobeEstimate LobePoint::floor_estimate(std::span<const LobePoint* const> points,
   bool certain = true;
   for (const LobePoint* point : points) {
     floors.emplace_back(point->transport_, point->options_, point->spot_, point->painted_.to_viewer());
-    result.direct[LobeColumns::diffuse()] += (1.0 / static_cast<double>(points.size())) * floors.back().sure();
+    result.direct[LobeColumns::diffuse()] += (1.0 / static_cast<double>(points.size())) * floors.back().deterministic();
     certain = certain && floors.back().certain();
   }
   if (certain) return result;
@@ -382,7 +382,7 @@ LobeEstimate LobePoint::floor_estimate(std::span<const LobePoint* const> points,
 void LobePoint::add_sequence(const std::vector<Ray>& rays, std::uint64_t seed, Sums& sums, int which) const {
   const Sequence sequence(seed, static_cast<std::uint32_t>(sums.directions));
   for (std::size_t i = 0; i < rays.size(); ++i)
-    if (rays[i].above && (rays[i].blocked || transport_.environment_))
+    if (rays[i].above && (rays[i].occluded || transport_.environment_))
       add_ray(rays[i], sequence, static_cast<std::uint32_t>(i), sums, which);
   if (!transport_.emitters_.empty())
     for (std::uint32_t i = 0; i < rays.size(); ++i) add_emitter(sequence.point(i, 1), sums, which);
@@ -398,7 +398,7 @@ void LobePoint::add_sequence(const std::vector<Ray>& rays, std::uint64_t seed, S
 LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const color::Rgb* open_light,
                                  const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed) {
   const LobePoint& any = *points.front();
-  if (any.is_laid_) return floor_estimate(points, sequences, directions, seed);
+  if (any.on_projected_) return floor_estimate(points, sequences, directions, seed);
   const Transport& transport = any.transport_;
   const LobeColumns& columns = any.columns_;
   const std::size_t count = columns.count();
@@ -406,8 +406,8 @@ LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const
   result.direct.resize(count), result.bounced.resize(count), result.covariance.resize(count);
   result.classes.resize(any.groups_.classes());
   for (std::size_t i = 0; i < points.size(); ++i)
-    points[i]->add_sure(open_light != nullptr ? &open_mirrors[i] : nullptr, 1.0 / static_cast<double>(points.size()),
-                        result.direct);
+    points[i]->add_deterministic(open_light != nullptr ? &open_mirrors[i] : nullptr,
+                                 1.0 / static_cast<double>(points.size()), result.direct);
   const auto add_open = [&] {
     for (std::size_t k = 0; open_light != nullptr && k + 1 < count; ++k) result.direct[k] += open_light[k];
   };
@@ -417,16 +417,16 @@ LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const
     return result;
   }
   result.sequences = sequences;
-  bool any_blocked = summed;
+  bool any_occluded = summed;
   std::vector<std::vector<Ray>> rays;
   const auto seed_of = [seed](int which) { return mixed(seed, static_cast<std::uint64_t>(which)); };
   std::vector<std::size_t> starts;
   for (int which = 0; which < sequences; ++which) {
     const LobePoint& start = *points[starts.emplace_back(start_of(which, points.size(), seed))];
-    rays.push_back(start.traced_rays(directions, seed_of(which), any_blocked));
-    any_blocked = any_blocked || start.mirror_hit_.any();
+    rays.push_back(start.traced_rays(directions, seed_of(which), any_occluded));
+    any_occluded = any_occluded || start.mirror_hit_.any();
   }
-  if (!any_blocked) {
+  if (!any_occluded) {
     add_open();
     result.freedom = sequences - 1;
     return result;
@@ -470,8 +470,8 @@ void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* 
                           const Sequence& sequence, std::uint32_t index, Pairs& pairs) const {
   const Transport& t = transport_;
   // What a column of the visible point shows; a floor that shows the environment has a color of its own.
-  const color::Rgb tint = is_laid_ ? rgb(painted_.diffuse()) : color::Rgb{1, 1, 1};
-  if (t.is_laid(hit)) {
+  const color::Rgb tint = on_projected_ ? rgb(painted_.diffuse()) : color::Rgb{1, 1, 1};
+  if (t.is_projected(hit)) {
     const Transport::FloorLight floor = t.off_floor(hit, spot_.start, direction, options_.bounces, sequence, index, 4);
     for (std::size_t k = 0; k < columns_.count(); ++k)
       pairs.deeper[pairs.at(group_of(hit), k, LobeColumns::diffuse())] += (scale * values[k]) * tint * floor.bounced;
@@ -486,14 +486,14 @@ void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* 
   const std::array<double, 4> of_lamp = sequence.point(index, 5);
   for (std::size_t i = 0; i < t.lights_.size(); ++i) {
     const Transport::LampSample lamp = Transport::drawn_from(t.seen_lamp(i, at.start), of_lamp[0], of_lamp[1]);
-    if (!(kernels.at(lamp.direction, sent) > 0) || t.rays_->blocked(at.start, lamp.direction, lamp.reach)) continue;
+    if (!(kernels.at(lamp.direction, sent) > 0) || t.rays_->occluded(at.start, lamp.direction, lamp.reach)) continue;
     for (std::size_t l = 0; l < count; ++l) once[l] += static_cast<double>(sent[l]) * lamp.light;
   }
   const int further = options_.bounces - 1;
   const auto add = [&](const Float3& toward, double share, std::uint32_t set) {
     const Hit next = t.rays_->closest(at.start, toward);
     color::Rgb light, bounced;
-    if (t.is_laid(next)) {
+    if (t.is_projected(next)) {
       const Transport::FloorLight floor = t.off_floor(next, at.start, toward, further, sequence, index, set);
       light = floor.fixed, bounced = floor.bounced;
     } else if (!next.any()) {
@@ -526,7 +526,7 @@ void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* 
                                                                    t.rays_->closest(at.start, painted.mirrored()));
   const int group = groups_.of_part[static_cast<std::size_t>(at.part)];
   for (std::size_t k = 0; k < count; ++k) {
-    if (values[k] == 0 || (is_laid_ && k != LobeColumns::diffuse())) continue;
+    if (values[k] == 0 || (on_projected_ && k != LobeColumns::diffuse())) continue;
     for (std::size_t l = 0; l < count; ++l) {
       pairs.once[pairs.at(group, k, l)] += (scale * values[k]) * tint * once[l];
       pairs.deeper[pairs.at(group, k, l)] += (scale * values[k]) * tint * deeper[l];
@@ -539,16 +539,16 @@ LobePoint::Pairs LobePoint::pairs(int sequences, int directions, std::uint64_t s
   pairs.once.resize(static_cast<std::size_t>(groups_.count) * pairs.columns * pairs.columns);
   pairs.deeper.resize(pairs.once.size());
   if (open_ || options_.bounces == 0) return pairs;
-  bool any_blocked = false;
+  bool any_occluded = false;
   const double share = 1.0 / (static_cast<double>(sequences) * directions);
   float values[2 * kMostTracedLobes + 2];
   for (int which = 0; which < sequences; ++which) {
     const std::uint64_t own = mixed(seed, static_cast<std::uint64_t>(which));
     const Sequence sequence(own, static_cast<std::uint32_t>(directions));
-    const std::vector<Ray> rays = traced_rays(directions, own, any_blocked);
+    const std::vector<Ray> rays = traced_rays(directions, own, any_occluded);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Ray& ray = rays[i];
-      if (!ray.above || !ray.blocked) continue;
+      if (!ray.above || !ray.occluded) continue;
       const float kernels_pdf = kernels_.at(ray.direction, values);
       const double light_pdf = transport_.environment_ ? transport_.environment_->at(ray.direction).pdf : 0;
       const double pdf = light_chance_ * light_pdf + (1 - light_chance_) * kernels_pdf;

@@ -79,7 +79,7 @@ class LobePoint {
   class Classes;
   struct Sums;
   Ray drawn_ray(const std::array<double, 4>& numbers) const;
-  std::vector<Ray> traced_rays(int directions, std::uint64_t seed, bool& any_blocked) const;
+  std::vector<Ray> traced_rays(int directions, std::uint64_t seed, bool& any_occluded) const;
   Sent sent(const rays::Hit& hit, const rays::Float3& direction, const Sequence& sequence, std::uint32_t index) const;
   void add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t index, Sums& sums, int which) const;
   void add_emitter(const std::array<double, 4>& numbers, Sums& sums, int which) const;
@@ -89,7 +89,7 @@ class LobePoint {
                  const Sequence& sequence, std::uint32_t index, Pairs& pairs) const;
   bool lamp_values(std::size_t which, const Transport::SeenLamp& lamp, float* values) const;
   void add_sequence(const std::vector<Ray>& rays, std::uint64_t seed, Sums& sums, int which) const;
-  void add_sure(const color::Rgb* open_mirror, double share, std::vector<color::Rgb>& direct) const;
+  void add_deterministic(const color::Rgb* open_mirror, double share, std::vector<color::Rgb>& direct) const;
   static LobeEstimate floor_estimate(std::span<const LobePoint* const> points, int sequences, int directions,
                                      std::uint64_t seed);
   int group_of(const rays::Hit& hit) const {
@@ -107,7 +107,7 @@ class LobePoint {
   rays::Hit mirror_hit_;
   float light_chance_ = 0;
   bool open_ = false;
-  bool is_laid_ = false;  // on a floor that shows the environment
+  bool on_projected_ = false;  // on a floor that shows the environment
 };
 
 }  // namespace goniochrome::render

@@ -11,6 +11,7 @@
 #include "brdf/lobe_model.h"
 #include "render/effects.h"
 #include "render/internal/seen.h"
+#include "render/internal/wear.h"
 #include "render/path/round_cut.h"
 #include "render/surface_layer.h"
 
@@ -175,7 +176,7 @@ class Tracing {
     }
     // Looked up or summed in the first round, and kept for the others; what mirrors see is not.
     std::vector<color::Rgb> open(t.columns.count()), mirrors(points.size());
-    if (open_ != nullptr && !t.worn.is_laid(part)) {
+    if (open_ != nullptr && !t.worn.is_projected(part)) {
       float* kept = &open_light_[i * t.floats()];
       if (round_ == 0) {
         open_->mean(views, part, open.data());
@@ -221,7 +222,7 @@ class Tracing {
   // dE00^2
   double nominal_variance(std::size_t i, std::size_t k, Covariance covariance) const {
     const LobeTransport& t = result_.transport;
-    const double weight = t.worn.is_laid(t.part[i]) ? 1 : nominal_[k];
+    const double weight = t.worn.is_projected(t.part[i]) ? 1 : nominal_[k];
     color::Rgb shown = weight * t.light(i, k);
     if (t.columns.is_gloss(k)) shown += (kNominalGray / kPi) * t.light(i, 0);
     for (double& element : covariance) element *= weight * weight;
@@ -337,15 +338,15 @@ Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path
     worn.brushed.push_back(part < scene.anisotropy.size() ? scene.anisotropy[part] : paint::Anisotropy{});
   }
   if (path.ground) {
-    worn.floor_is_laid = path.ground->kind == Ground::Kind::kShadow;
+    worn.floor_is_projected = path.ground->kind == Ground::Kind::kShadow;
     GONIO_ASSIGN(auto weights, column_weights(columns, path.ground->paint.diffuse, path.ground->paint.lobes,
                                               brdf::kGlossIncidence_deg));
-    if (worn.floor_is_laid) {
+    if (worn.floor_is_projected) {
       weights.assign(columns.count(), color::Rgb{});
       weights[LobeColumns::diffuse()] = {1, 1, 1};
     }
     worn.groups.of_part.push_back(static_cast<int>(first.size()));
-    worn.coats.push_back(worn.floor_is_laid ? paint::kNoCoat : path.ground->paint.coat_index);
+    worn.coats.push_back(worn.floor_is_projected ? paint::kNoCoat : path.ground->paint.coat_index);
     worn.has_floor = true;
     worn.weights.push_back(std::move(weights));
   }

@@ -24,9 +24,9 @@ struct WornPaints {
   std::vector<color::Rgb> emission;  // radiance of each part of the mesh by itself, whatever it wears
   bool has_floor = false;            // as the part after the mesh's
   // Whether that floor shows the environment. Its weights are 1 in the diffuse column and 0 elsewhere, for any paint.
-  bool floor_is_laid = false;
+  bool floor_is_projected = false;
 
-  bool is_laid(int part) const { return floor_is_laid && part == static_cast<int>(brushed.size()); }
+  bool is_projected(int part) const { return floor_is_projected && part == static_cast<int>(brushed.size()); }
 };
 // The groups of the scene's parts, and of the floor as one more where there is one. Each part is a group up to
 // kMostOwnGroups parts; beyond them parts that wear the same are one. Error: as column_weights(). Of a paint whose

@@ -330,7 +330,7 @@ TEST(LobeTransport, HoldsAFloorThatShowsTheEnvironment) {
   const TracedLobes bare = traced(false), whole = traced(true);
   ASSERT_TRUE(whole.reached) << whole.noise_p95_de00;
   const LobeTransport& t = whole.transport;
-  ASSERT_TRUE(t.worn.floor_is_laid);
+  ASSERT_TRUE(t.worn.floor_is_projected);
   paint::LobeFit other_paint = worn_paint;
   other_paint.diffuse = other_paint.diffuse * color::Rgb{0.4, 1.3, 1};
   for (const paint::LobeFit& paint : {worn_paint, other_paint}) {

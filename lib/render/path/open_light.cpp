@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "brdf/lobe_model.h"
 #include "render/internal/seen.h"
+#include "render/scene_effects.h"
 #include "render/spots.h"
 
 namespace goniochrome::render {

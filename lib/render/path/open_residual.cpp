@@ -8,6 +8,8 @@
 #include "brdf/lobe_model.h"
 #include "render/internal/coat_stretch.h"
 #include "render/internal/seen.h"
+#include "render/internal/wear.h"
+#include "render/scene_effects.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {

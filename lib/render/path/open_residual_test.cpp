@@ -15,7 +15,9 @@
 #include "render/internal/seen.h"
 #include "render/path/scenes_for_paths_for_test.h"
 #include "render/plan.h"
+#include "render/planning.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render::open_residual_test {
 namespace {

@@ -217,7 +217,7 @@ void write_worn(const LobeTransport& t, Writer& to) {
   for (const paint::Anisotropy& alpha : worn.brushed) to.number(alpha.alpha_x), to.number(alpha.alpha_y);
   for (const color::Rgb& radiance : worn.emission) to.color(radiance);
   to.numbers(worn.coats);
-  to.number(worn.has_floor), to.number(worn.floor_is_laid);
+  to.number(worn.has_floor), to.number(worn.floor_is_projected);
 }
 
 bool read_worn(LobeTransport& t, Reader& from) {
@@ -235,7 +235,7 @@ bool read_worn(LobeTransport& t, Reader& from) {
   }
   for (std::size_t i = 0; i < parts && from.ok(); ++i) worn.emission.push_back(from.color());
   from.numbers(worn.coats);
-  worn.has_floor = from.count(1) == 1, worn.floor_is_laid = from.count(1) == 1;
+  worn.has_floor = from.count(1) == 1, worn.floor_is_projected = from.count(1) == 1;
   const auto in_range = [&](int group) { return group >= 0 && group < worn.groups.count; };
   return from.ok() && t.columns.exponents.size() <= kMostTracedLobes &&
          std::ranges::all_of(worn.groups.of_part, in_range) && worn.coats.size() == worn.groups.of_part.size() &&

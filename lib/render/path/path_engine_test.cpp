@@ -9,6 +9,7 @@
 #include "render/path/path_tracer.h"
 #include "render/path/scenes_for_paths_for_test.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render::path_engine_test {
 namespace {
@@ -62,7 +63,7 @@ color::Rgb at(const image::Image& image, int x, int y) {
 // Light from below is nowhere; a black ball of radius 1 whose middle is d above the floor hides (1/d)^2 of the
 // irradiance of the point under it (see light on a plane element under a sphere, [Howell] B-38), and leaves that much
 // less of what the ground shows. A floor that is not darkened is the control.
-TEST(LaidGround, UnderABallItLosesTheBallsFormFactor) {
+TEST(ProjectedGround, UnderABallItLosesTheBallsFormFactor) {
   const color::Rgb ground{0.2, 0.1, 0.05};
   const envmap::Environment light = two_halves({1, 2, 3}, ground);
   for (const double d : {1.5, 2.5}) {
@@ -86,7 +87,7 @@ TEST(LaidGround, UnderABallItLosesTheBallsFormFactor) {
 
 // Where nothing takes light from it, the floor has the color of the environment along the line from the probe's eye to
 // its point, without a sample's noise, even if the product of colors mixes channels.
-TEST(LaidGround, InTheOpenItShowsWhatTheProbeSaw) {
+TEST(ProjectedGround, InTheOpenItShowsWhatTheProbeSaw) {
   const auto pattern = [](int column, int row) {
     return row < 32 ? color::Rgb{1, 1, 1} : color::Rgb{0.1 + 0.01 * (column % 8), 0.3, 0.2 + 0.01 * (row % 5)};
   };
@@ -112,7 +113,7 @@ TEST(LaidGround, InTheOpenItShowsWhatTheProbeSaw) {
 
 // A white floor under white light from all around is as bright as the light, and so is a white ball on it: nothing is
 // lost between floor and ball. Without bounces the floor's shade is the control.
-TEST(LaidGround, AWhiteBallOnAWhiteFloorInEvenLightIsNotSeen) {
+TEST(ProjectedGround, AWhiteBallOnAWhiteFloorInEvenLightIsNotSeen) {
   World world(even_environment(), matt({1, 1, 1}));
   world.lay_ground(-1, 2);
   Effort endless;
@@ -137,7 +138,7 @@ TEST(LaidGround, AWhiteBallOnAWhiteFloorInEvenLightIsNotSeen) {
 }
 
 // The environment is smooth at its poles, across its seam and within a cube's faces.
-TEST(LaidGround, InterpolatesBetweenTexelCenters) {
+TEST(ProjectedGround, InterpolatesBetweenTexelCenters) {
   const auto light = environment_of(16, 8, [](int column, int row) { return color::Rgb{1.0 + column, 1.0 + row, 2}; });
   for (const auto& [column, row] : {std::pair{3, 4}, {0, 0}, {15, 7}}) {
     const color::Rgb there = light.blended(light.direction(column, row));

@@ -34,8 +34,8 @@ struct Transport::Vertex {
   BrightPlaces::Receiver receiver;
   double lobes_chance = 1;  // that it goes on by the lobes
   // True for a floor that shows the environment. Its unoccluded light is known, and paths add the changes by the mesh:
-  // unblocked rays add nothing.
-  bool is_laid = false;
+  // unoccluded rays add nothing.
+  bool is_projected = false;
   color::Rgb open;        // unoccluded light of such a floor
   bool is_white = false;  // matt white, whatever its paint is
 
@@ -43,8 +43,8 @@ struct Transport::Vertex {
       : spot(at),
         painted(transport.painted(at, to_viewer)),
         receiver(transport.receiver(at, painted)),
-        is_laid(transport.is_laid(at)),
-        open(is_laid ? transport.open_ground(at) : color::Rgb{}) {
+        is_projected(transport.is_projected(at)),
+        open(is_projected ? transport.open_ground(at) : color::Rgb{}) {
     const double mirror = painted.mirror_weight(), lobes = painted.lobes_weight();
     mirror_chance = mirror > 0 ? mirror / (mirror + lobes) : 0;
     lobes_chance = (1 - mirror_chance) * (1 - receiver.chance());
@@ -94,7 +94,7 @@ class Transport::Channels {
 
  private:
   static void lengthen(PathProduct& path, const Vertex& vertex, const color::Rgb& paint) {
-    if (vertex.is_laid) {
+    if (vertex.is_projected) {
       path.reflect_plain(paint);
     } else {
       path.reflect(paint);
@@ -105,17 +105,17 @@ class Transport::Channels {
 };
 
 // Light that is drawn at a vertex, weighed against the same light found by the next ray: together they count it once. A
-// floor that shows the environment loses what is blocked.
+// floor that shows the environment loses what is occluded.
 template <class Carrier>
 void Transport::add_direct(const Vertex& vertex, const std::array<double, 4>& numbers, double choice,
                            Carrier& carrier) const {
-  const bool laid = vertex.is_laid;
-  const double sign = laid ? -1 : 1;
+  const bool projected = vertex.is_projected;
+  const double sign = projected ? -1 : 1;
   const rays::Float3& start = vertex.spot.start;
   if (!lights_.empty()) {
     const LampSample lamp = drawn_lamp(start, numbers[2], numbers[3]);
     const auto f = carrier.reflected(vertex, lamp.direction);
-    if (f.pdf > 0 && rays_->blocked(start, lamp.direction, lamp.reach) == laid) {
+    if (f.pdf > 0 && rays_->occluded(start, lamp.direction, lamp.reach) == projected) {
       const double share = Carrier::kWeighsLamps ? 1 / (1 + lamp.extent_sr * vertex.lobes_chance * f.pdf) : 1;
       carrier.add_reflected(vertex, f, sign * share, {lamp.light, PathLight::Source::kLamp, lamp.number});
     }
@@ -124,7 +124,7 @@ void Transport::add_direct(const Vertex& vertex, const std::array<double, 4>& nu
     const LightSample light = environment_->drawn(numbers[0], numbers[1]);
     if (light.pdf > 0) {
       const auto f = carrier.reflected(vertex, light.direction);
-      if (f.pdf > 0 && rays_->blocked(start, light.direction) == laid)
+      if (f.pdf > 0 && rays_->occluded(start, light.direction) == projected)
         carrier.add_reflected(vertex, f, sign / (light.pdf + vertex.lobes_chance * f.pdf), {light.radiance});
     }
   }
@@ -132,7 +132,7 @@ void Transport::add_direct(const Vertex& vertex, const std::array<double, 4>& nu
   const EmitterSample light = emitters_.drawn(lit_point(vertex.spot), choice, numbers[2], numbers[3]);
   if (!(light.pdf > 0)) return;
   const auto f = carrier.reflected(vertex, light.direction);
-  if (f.pdf > 0 && !rays_->blocked(start, light.direction, kShort * light.distance))
+  if (f.pdf > 0 && !rays_->occluded(start, light.direction, kShort * light.distance))
     carrier.add_reflected(vertex, f, 1 / (light.pdf + vertex.lobes_chance * f.pdf),
                           {light.radiance, PathLight::Source::kEmitter, light.part});
 }
@@ -172,11 +172,11 @@ void Transport::add_found(const Vertex& vertex, const Next& next, Carrier& carri
     carrier.add(next.share(1 / (static_cast<double>(lights_.size()) * lamp.extent_sr())),
                 {lamp.light.radiance(), PathLight::Source::kLamp, static_cast<int>(i)});
   }
-  const bool laid = vertex.is_laid;
-  if (next.hit.any() == laid && environment_) {
+  const bool projected = vertex.is_projected;
+  if (next.hit.any() == projected && environment_) {
     const LightSample light = environment_->at(next.direction);
     const color::Rgb radiance = next.is_mirrored() ? mirrored_environment(next.direction) : light.radiance;
-    carrier.add((laid ? -1 : 1) * next.share(light.pdf), {radiance});
+    carrier.add((projected ? -1 : 1) * next.share(light.pdf), {radiance});
   }
   if (!next.hit.any()) return;
   const int part = rays_->part(next.hit.triangle);
@@ -207,14 +207,14 @@ void Transport::follow(rays::Hit hit, rays::Float3 origin, rays::Float3 directio
   constexpr double kEndlessChance = 0.9, kLeastChance = 0.05;
   const int most = std::min(bounces, kMostBounces);
   for (int bounce = 1, surfaces = 0;; ++bounce) {
-    if (shaded_ != nullptr && is_laid(hit)) {
+    if (shaded_ != nullptr && is_projected(hit)) {
       carrier.add(1, {met_ground(hit, origin, direction, sequence.point(index, set)[0]).sum()});
       return;
     }
     const std::array<double, 4> to_light = sequence.point(index, set), onward = sequence.point(index, set + 1);
     if (environment_) environment_->fetch(to_light[0], to_light[1]);
     const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
-    if (vertex.is_laid) {
+    if (vertex.is_projected) {
       carrier.add(1, {vertex.open});
     } else if (++surfaces > most) {
       return;
@@ -222,7 +222,7 @@ void Transport::follow(rays::Hit hit, rays::Float3 origin, rays::Float3 directio
     if (vertex.painted.black()) return;
     set += 2;
     const Next next = step(vertex, to_light, onward, carrier);
-    if (!next.goes_on() || !next.hit.any() || (surfaces == most && !is_laid(next.hit))) return;
+    if (!next.goes_on() || !next.hit.any() || (surfaces == most && !is_projected(next.hit))) return;
     if (bounce >= kRouletteFrom) {
       const double most_chance = bounce >= kEndlessFrom ? kEndlessChance : 1;
       const double chance = std::clamp(carrier.size() * brightness(next.hit), kLeastChance, most_chance);

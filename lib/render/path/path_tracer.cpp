@@ -19,7 +19,7 @@ namespace goniochrome::render {
 namespace {
 
 // Points that one thread takes at a time.
-constexpr std::size_t kTogether = 64;
+constexpr std::size_t kSampledTogether = 64;
 // Most points need no more than a few samples: the first round takes as many fours as tell a variance.
 constexpr int kFirstFours = 2;
 // No round draws more than so many times the fours that a point has.
@@ -28,7 +28,7 @@ constexpr int kRoundGrowth = 3;
 // takes the time of a fan for every twenty points.
 constexpr double kLeastRound = 1.0 / 16;
 // A point's own variance counts by its freedom, that of its neighborhood as so many.
-constexpr double kNeighborhood = 4;
+constexpr double kErrorNeighborhood = 4;
 constexpr int kPixelReach = 2;  // pixels to each side of the neighborhood
 // The largest errors of a picture are about so many standard deviations of its noisiest points, in four pictures.
 constexpr double kDeviations = 1.4;
@@ -181,7 +181,7 @@ class Picture {
 
   struct State {
     Gathered sums;
-    color::Rgb sure;
+    color::Rgb deterministic;
     color::Rgb sharp;   // what is known without samples of the light that the mesh takes and adds
     double needed = 0;  // fours that bring the noise of the neighborhood to the tolerance
     bool certain = false;
@@ -202,13 +202,13 @@ class Picture {
     std::vector<std::uint32_t> wanted;
     for (std::size_t i = 0; i < more.size(); ++i)
       if (more[i] > 0 || !states_[i].looked) wanted.push_back(static_cast<std::uint32_t>(i));
-    const std::size_t chunks = (wanted.size() + kTogether - 1) / kTogether;
+    const std::size_t chunks = (wanted.size() + kSampledTogether - 1) / kSampledTogether;
     const std::size_t step = scattering(chunks);
     parallel_for(chunks, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (!is_needed && deadline_.passed()) return;
         const std::size_t chunk = i * step % chunks;
-        for (std::size_t k = chunk * kTogether; k < std::min(wanted.size(), (chunk + 1) * kTogether); ++k)
+        for (std::size_t k = chunk * kSampledTogether; k < std::min(wanted.size(), (chunk + 1) * kSampledTogether); ++k)
           sample(wanted[k], more[wanted[k]]);
       }
     });
@@ -222,8 +222,8 @@ class Picture {
     const rays::Spot spot = spot_at(transport_.rays(), surface_, point.x, point.y);
     const SeenPoint at(transport_, options_of(i), spot, rays::float3(g.to_viewer(point.x, point.y)));
     state.certain = at.certain();
-    state.sure = at.sure();
-    if (first_round_) show(i, spot, 1, state.sure, rays::float3(g.to_viewer(point.x, point.y)));
+    state.deterministic = at.deterministic();
+    if (first_round_) show(i, spot, 1, state.deterministic, rays::float3(g.to_viewer(point.x, point.y)));
     if (state.certain && state.sums.fours() == 0) return;
     const Round round(fours);
     LightShares means[Round::kSequences];
@@ -233,7 +233,7 @@ class Picture {
   }
 
   // Keeps what the reconstruction needs of a sample that counts by `share` in its pixel.
-  void show(std::size_t i, const rays::Spot& spot, double share, const color::Rgb& sure,
+  void show(std::size_t i, const rays::Spot& spot, double share, const color::Rgb& deterministic,
             const rays::Float3& to_viewer) {
     if (!request_.reconstruct) return;
     State& state = states_[i];
@@ -241,7 +241,8 @@ class Picture {
     const ShownPiece piece{spot.part, spot.shading, spot.position, static_cast<float>(share)};
     if (shown.piece.part < 0) shown = {points_[i].x, points_[i].y, piece};
     if (share < 1 && (even_.empty() || even_[place(points_[i])] == 0)) shown.pieces.push_back(piece);
-    state.sharp += share * (state.hidden ? SeenPoint(transport_, options_, spot, to_viewer).sure() : sure);
+    state.sharp +=
+        share * (state.hidden ? SeenPoint(transport_, options_, spot, to_viewer).deterministic() : deterministic);
   }
 
   void add_round(std::size_t i, const Round& round, const LightShares (&means)[Round::kSequences]) {
@@ -257,7 +258,7 @@ class Picture {
   // What the first round shows of a point, with what is known without samples.
   LightShares first_shares(std::size_t i) const {
     LightShares shares = first_.mean(i);
-    shares.direct += states_[i].sure;
+    shares.direct += states_[i].deterministic;
     if (states_[i].hidden) shares.direct += -1.0 * base_at(points_[i]);
     return shares;
   }
@@ -347,7 +348,7 @@ class Picture {
     const unsigned covered = coverage_.any[place(points_[i].x, points_[i].y)];
     const bool first_time = !state.looked;
     state.looked = true;
-    if (first_time) state.uncertain = 0, state.sure = {};
+    if (first_time) state.uncertain = 0, state.deterministic = {};
     const unsigned first =
         (static_cast<unsigned>(mixed(request_.seed, i) >> 32) + static_cast<unsigned>(state.sums.fours())) % count;
     LightShares means[Round::kSequences];
@@ -360,8 +361,8 @@ class Picture {
       rays::Float3 to_viewer;
       const SeenPoint at = transport_at(i, sample, spot, to_viewer);
       if (first_time) {
-        state.sure += (1.0 / count) * at.sure();
-        show(i, spot, 1.0 / count, at.sure(), to_viewer);
+        state.deterministic += (1.0 / count) * at.deterministic();
+        show(i, spot, 1.0 / count, at.deterministic(), to_viewer);
         if (!at.certain()) state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);
       }
       if (at.certain() || fours == 0) continue;
@@ -380,7 +381,7 @@ class Picture {
 
   // By its own samples.
   void show_own(std::size_t i) {
-    points_[i].radiance = states_[i].sure + states_[i].sums.mean();
+    points_[i].radiance = states_[i].deterministic + states_[i].sums.mean();
     if (states_[i].hidden) points_[i].radiance += -1.0 * base_at(points_[i]);
     if (!kept_.empty()) points_[i].radiance += 0.5 * (kept_[i][0] + kept_[i][1]);
     points_[i].samples = kOfFour * states_[i].sums.fours();
@@ -413,7 +414,7 @@ class Picture {
       beside[i] = base + state.sharp;
       for (std::size_t k = 0; k < 2; ++k) {
         halves[i][k] = state.sums.halves()[k];
-        if (state.hidden) halves[i][k] += state.sure - base - state.sharp;
+        if (state.hidden) halves[i][k] += state.deterministic - base - state.sharp;
         if (!kept_.empty()) halves[i][k] += kept_[i][k];
         if (is_unknown(i)) halves[i][k] = kUnknown;
       }
@@ -449,7 +450,7 @@ class Picture {
     }
   }
 
-  // Few estimates tell little of their variance, and a point none of whose rays was blocked knows nothing of its
+  // Few estimates tell little of their variance, and a point none of whose rays was occluded knows nothing of its
   // neighbor's shadow: the mean over the neighborhood stands in.
   void judge(std::size_t i) {
     PathPoint& point = points_[i];
@@ -470,8 +471,8 @@ class Picture {
     });
     const double freedom = state.sums.freedom();
     for (std::size_t k = 0; k < 6; ++k)
-      point.covariance[k] =
-          (freedom * own[k] + kNeighborhood * (around[k] + own[k]) / (count + 1)) / (freedom + kNeighborhood) / fours;
+      point.covariance[k] = (freedom * own[k] + kErrorNeighborhood * (around[k] + own[k]) / (count + 1)) /
+                            (freedom + kErrorNeighborhood) / fours;
     point.noise_de00 = noise_of(i, point.radiance, point.covariance);
     // How many samples a point is to get is decided by its neighbors alone: were its own sums asked, it would stop
     // where they happen to be bright, and the mean would be too.
@@ -581,12 +582,12 @@ PathPicture path_picture(const Transport& transport, const std::vector<VisibleSu
 PathEstimate path_estimate(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
                            const Vec3& to_viewer, int batches, std::uint64_t seed) {
   const PointTransport at(transport, options, spot, rays::float3(to_viewer));
-  if (at.certain()) return {at.sure(), {}};
+  if (at.certain()) return {at.deterministic(), {}};
   Estimates sums;
   for (int k = 0; k < batches; ++k) sums.add(at.batch(seed_of(seed, 0, k)));
   Covariance covariance = sums.covariance();
   for (double& element : covariance) element /= batches;
-  return {at.sure() + sums.mean(), covariance};
+  return {at.deterministic() + sums.mean(), covariance};
 }
 
 }  // namespace goniochrome::render

@@ -28,7 +28,7 @@ struct PointTransport::Ray {
   Float3 direction;
   bool above = false;
   std::optional<EnvironmentTable::Place> place;  // where the direction was drawn from the environment
-  LaidGround::BrightSample bright;               // with a density above 0 where it was drawn from the brightest texels
+  ProjectedGround::BrightSample bright;          // with a density above 0 where it was drawn from the brightest texels
   std::optional<std::uint32_t> place_triangle;   // where it was drawn toward a bright place of the surface
   bool to_ground = false;                        // whether it goes to where the floor shows that place
   double weight = 1;                             // of the sample in the mean
@@ -42,20 +42,21 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
       to_viewer_(to_viewer),
       painted_(options.white ? PaintedPoint(Float3{kInversePi, kInversePi, kInversePi}, spot.shading, to_viewer)
                              : transport.painted(spot, to_viewer)),
-      is_laid_(transport.is_laid(spot)),
-      correction_(options.correction || is_laid_),
-      over_ground_(!is_laid_ && transport.shaded_ != nullptr && transport.environment_ != nullptr) {
+      on_projected_(transport.is_projected(spot)),
+      correction_(options.correction || on_projected_),
+      over_ground_(!on_projected_ && transport.shaded_ != nullptr && transport.environment_ != nullptr) {
   if (transport.spectral_ != nullptr) {
-    sure_ = transport.spectral_->emitted(spot);
+    deterministic_ = transport.spectral_->emitted(spot);
     certain_ = painted_.black();
     return;
   }
-  sure_ = is_laid_ ? transport.open_ground(spot) : transport.emitters_.radiance(spot.part);
-  if (is_laid_) {
+  deterministic_ = on_projected_ ? transport.open_ground(spot) : transport.emitters_.radiance(spot.part);
+  if (on_projected_) {
     narrow_to_mesh();
     window_ = transport.ground_->window(transport.rays_->world(spot.position), transport.mesh_box_);
-    // Under the mesh most light is blocked: what is left of it is summed, instead of taken from that of the open floor.
-    if (window_->half_width_rad >= kPi) correction_ = false, sure_ = {};
+    // Under the mesh most light is occluded: what is left of it is summed, instead of taken from that of the open
+    // floor.
+    if (window_->half_width_rad >= kPi) correction_ = false, deterministic_ = {};
     // The environment's own table draws a sun within its texel, but most other directions in vain.
     if (transport.environment_)
       light_chance_ = std::clamp(kMostLightChance * static_cast<float>(transport.ground_->light_share(*window_)),
@@ -78,7 +79,7 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
 }
 
 color::Rgb PointTransport::reflect(const Float3& f, const color::Rgb& light) const {
-  return transport_.reflection_ != nullptr && !is_laid_
+  return transport_.reflection_ != nullptr && !on_projected_
              ? color::reflected(*transport_.reflection_, rays::vec3(f), light)
              : rays::vec3(f) * light;
 }
@@ -102,8 +103,8 @@ void PointTransport::add_lights() {
       const Float3 direction = rays::float3(light.direction);
       const Reflection reflection = painted_.at(direction);
       if (!(reflection.pdf > 0)) continue;
-      const bool blocked = transport_.rays_->blocked(spot_.start, direction, lamp.reach);
-      if (blocked == correction_) sure_ += (blocked ? -kPi : kPi) * reflect(reflection.f_cos, light.white);
+      const bool occluded = transport_.rays_->occluded(spot_.start, direction, lamp.reach);
+      if (occluded == correction_) deterministic_ += (occluded ? -kPi : kPi) * reflect(reflection.f_cos, light.white);
       continue;
     }
     const double sine = rays::dot(spot_.shading, rays::float3(light.direction));
@@ -116,9 +117,9 @@ void PointTransport::add_lights() {
       aim(fan, k, Transport::drawn_from(lamp, numbers[0], numbers[1]).direction);
     }
     const int above = std::popcount(fan.wanted);
-    const int blocked = above > 0 ? std::popcount(transport_.rays_->blocked(fan)) : 0;
-    const bool hidden = 2 * blocked <= above;
-    if (hidden != correction_) sure_ += (correction_ ? -1.0 : 1.0) * whole;
+    const int occluded = above > 0 ? std::popcount(transport_.rays_->occluded(fan)) : 0;
+    const bool hidden = 2 * occluded <= above;
+    if (hidden != correction_) deterministic_ += (correction_ ? -1.0 : 1.0) * whole;
     if (!open_) lamps_.push_back({lamp, hidden});
   }
 }
@@ -137,12 +138,12 @@ void PointTransport::aim(rays::Fan& fan, std::uint32_t ray, const Float3& direct
   if (rays::dot(direction, painted_.normal()) > 0) fan.wanted |= 1U << ray;
 }
 
-// What lamps that are discs add to sure(), as the mean over samples. A place on the disc is drawn and, where the paint
-// has lobes narrower than the disc, a direction of the lobes, which may meet it too; together they count the light once
-// (the balance heuristic, [Veach1995] 3.1). By places alone, gloss beside a wide lamp would be specks: few of them lie
-// in a narrow lobe, and those are bright. The paint is asked for those rays alone that add anything.
+// What lamps that are discs add to deterministic(), as the mean over samples. A place on the disc is drawn and, where
+// the paint has lobes narrower than the disc, a direction of the lobes, which may meet it too; together they count the
+// light once (the balance heuristic, [Veach1995] 3.1). By places alone, gloss beside a wide lamp would be specks: few
+// of them lie in a narrow lobe, and those are bright. The paint is asked for those rays alone that add anything.
 color::Rgb PointTransport::lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count,
-                                        bool* any_blocked) const {
+                                        bool* any_occluded) const {
   constexpr std::uint32_t kSet = 60;         // that nothing else draws from
   constexpr float kLeastNarrowShare = 0.1F;  // below it, what is reflected hardly changes across the disc
   const auto lamps = static_cast<std::uint32_t>(lamps_.size());
@@ -157,9 +158,9 @@ color::Rgb PointTransport::lamp_shadows(const Sequence& sequence, std::uint32_t 
     // Calls visit(what the paint shows) for the rays of a fan that add anything.
     const auto visit = [&](const rays::Fan& fan, const auto& visit_one) {
       if (fan.wanted == 0) return;
-      const unsigned blocked = transport_.rays_->blocked(fan);
-      if (any_blocked != nullptr && blocked != 0) *any_blocked = true;
-      for (unsigned left = fan.wanted & (lamp.hidden ? blocked : ~blocked); left != 0; left &= left - 1) {
+      const unsigned occluded = transport_.rays_->occluded(fan);
+      if (any_occluded != nullptr && occluded != 0) *any_occluded = true;
+      for (unsigned left = fan.wanted & (lamp.hidden ? occluded : ~occluded); left != 0; left &= left - 1) {
         const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
         const Reflection reflection = painted_.at({fan.x[i], fan.y[i], fan.z[i]});
         if (reflection.pdf > 0) visit_one(reflection);
@@ -198,15 +199,15 @@ void PointTransport::add_mirror() {
   if (!transport_.lights_.empty()) {
     color::Rgb lamps = transport_.mirrored_lamps(spot_.start, painted_.mirrored(), mirror_hit_);
     if (correction_) lamps += -1.0 * transport_.mirrored_lamps(spot_.start, painted_.mirrored(), {});
-    sure_ += reflect(mirror, lamps);
+    deterministic_ += reflect(mirror, lamps);
   }
   if (!mirror_hit_.any()) {
-    if (!correction_) sure_ += reflect(mirror, open);
+    if (!correction_) deterministic_ += reflect(mirror, open);
     return;
   }
-  if (correction_) sure_ += -1.0 * reflect(mirror, open);
-  sure_ += reflect(mirror, transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle)));
-  if ((options_.bounces == 0 || !options_.into_lobes) && !transport_.is_laid(mirror_hit_)) return;
+  if (correction_) deterministic_ += -1.0 * reflect(mirror, open);
+  deterministic_ += reflect(mirror, transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle)));
+  if ((options_.bounces == 0 || !options_.into_lobes) && !transport_.is_projected(mirror_hit_)) return;
   const double share = weight / (weight + painted_.lobes_weight());
   mirror_samples_ = static_cast<std::uint32_t>(std::clamp(static_cast<int>(std::lround(kBatch * share)), 1, kBatch));
 }
@@ -257,7 +258,7 @@ PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbe
 
 // What a drawn direction is worth. One set of directions serves every lobe and the environment: each is weighed by the
 // density that the mixture gives it, which is the balance heuristic.
-LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const {
+LightShares PointTransport::shown(const Ray& ray, bool occluded, const Sequence& sequence, std::uint32_t index) const {
   const Reflection reflection = painted_.at(ray.direction);
   LightSample light;
   if (!(reflection.pdf > 0)) return {};
@@ -267,7 +268,7 @@ LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& 
     light = transport_.environment_->at(ray.direction);
   }
   const bool passes_on = options_.bounces > 0 || !transport_.emitters_.empty() || transport_.ground_;
-  const Hit hit = blocked && passes_on ? transport_.rays_->closest(spot_.start, ray.direction) : Hit();
+  const Hit hit = occluded && passes_on ? transport_.rays_->closest(spot_.start, ray.direction) : Hit();
   if (ray.place_triangle && hit.triangle != *ray.place_triangle) return {};
   double pdf = light_chance_ * light.pdf + (1 - light_chance_) * drawn_pdf(ray.direction, reflection);
   if (receiver_.chance() > 0)
@@ -279,12 +280,12 @@ LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& 
   }
   if (!(pdf > 0)) return {};
   const auto scaled = static_cast<float>(1 / pdf);
-  if (!blocked) return {reflect(scaled * reflection.f_cos, light.radiance), {}, {}};
+  if (!occluded) return {reflect(scaled * reflection.f_cos, light.radiance), {}, {}};
 
   color::Rgb arriving = correction_ ? -1.0 * light.radiance : color::Rgb{}, sent;
   LightShares shares;
   if (passes_on) {
-    if (transport_.is_laid(hit)) {
+    if (transport_.is_projected(hit)) {
       const Transport::FloorLight floor =
           transport_.off_floor(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
       arriving += floor.fixed, sent = floor.bounced;
@@ -310,7 +311,7 @@ LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& 
 LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, const Sequence& sequence,
                                               std::uint32_t index) const {
   LightShares shares;
-  const bool blocked = hit.any();
+  const bool occluded = hit.any();
   const auto light_from = [&](const Float3& direction) {
     return ray.place ? transport_.environment_->light(*ray.place) : transport_.environment_->at(direction);
   };
@@ -325,7 +326,7 @@ LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, co
       shares.from_floor = -1.0 * reflect(scale(horizon_.pdf(light), reflection) * reflection.f_cos, light.radiance);
     }
   }
-  if (!ray.above || (!blocked && correction_)) return shares;
+  if (!ray.above || (!occluded && correction_)) return shares;
   const Reflection reflection = painted_.at(ray.direction);
   if (!(reflection.pdf > 0)) return shares;
   color::Rgb arriving, sent;
@@ -337,14 +338,14 @@ LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, co
   } else {
     const LightSample light = light_from(ray.direction);
     light_pdf = horizon_.pdf(light);
-    if (blocked == correction_) arriving = (blocked ? -1.0 : 1.0) * light.radiance;
+    if (occluded == correction_) arriving = (occluded ? -1.0 : 1.0) * light.radiance;
   }
   const float scaled = scale(light_pdf, reflection);
-  if (transport_.is_laid(hit)) {
+  if (transport_.is_projected(hit)) {
     const Transport::FloorLight floor =
         transport_.off_floor(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
     shares.from_floor += reflect(scaled * reflection.f_cos, floor.fixed), sent = floor.bounced;
-  } else if (blocked && options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse)) {
+  } else if (occluded && options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse)) {
     sent = transport_.bounced(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
   }
   shares.direct = reflect(scaled * reflection.f_cos, arriving);
@@ -365,7 +366,7 @@ color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) 
   if (!(light.pdf > 0)) return {};
   const Reflection reflection = painted_.at(light.direction);
   if (!(reflection.pdf > 0) ||
-      transport_.rays_->blocked(spot_.start, light.direction, Transport::kShort * light.distance))
+      transport_.rays_->occluded(spot_.start, light.direction, Transport::kShort * light.distance))
     return {};
   const double open_pdf = transport_.environment_ ? transport_.environment_->at(light.direction).pdf : 0;
   const double pdf =
@@ -377,7 +378,7 @@ color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) 
 LightShares PointTransport::mirrored(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const {
   color::Rgb fixed, sent;
   for (std::uint32_t i = begin; i < begin + count; ++i) {
-    if (transport_.is_laid(mirror_hit_)) {
+    if (transport_.is_projected(mirror_hit_)) {
       const Transport::FloorLight floor =
           transport_.off_floor(mirror_hit_, spot_.start, painted_.mirrored(), options_.bounces, sequence, i, 4);
       fixed += floor.fixed, sent += floor.bounced;
@@ -392,15 +393,15 @@ LightShares PointTransport::mirrored(const Sequence& sequence, std::uint32_t beg
 }
 
 LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t begin, std::uint32_t count,
-                                      bool* any_blocked) const {
-  if (any_blocked != nullptr) *any_blocked = mirror_samples_ > 0 || transport_.spectral_ != nullptr;
+                                      bool* any_occluded) const {
+  if (any_occluded != nullptr) *any_occluded = mirror_samples_ > 0 || transport_.spectral_ != nullptr;
   if (certain_) return {};
   LightShares sum;
   if (transport_.spectral_ != nullptr) {
     sum.direct = transport_.spectral_->shown(transport_, options_, spot_, to_viewer_, sequence, begin, count);
     return sum;
   }
-  sum.direct += lamp_shadows(sequence, begin, count, any_blocked);
+  sum.direct += lamp_shadows(sequence, begin, count, any_occluded);
   if (painted_.lobes_weight() > 0) {
     const Sequence::Set numbers = sequence.set(0);
     for (std::uint32_t first = begin; first < begin + count; first += kFan) {
@@ -422,20 +423,20 @@ LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t be
         Hit hits[kFan];
         if (fan.wanted != 0) transport_.rays_->closest(fan, hits);
         for (std::uint32_t i = 0; i < traced; ++i) {
-          if (any_blocked != nullptr && hits[i].any()) *any_blocked = true;
+          if (any_occluded != nullptr && hits[i].any()) *any_occluded = true;
           sum += shown_over_ground(rays[i], hits[i], sequence, first + i);
         }
         continue;
       }
-      const unsigned blocked = fan.wanted != 0 ? transport_.rays_->blocked(fan) : 0;
-      if (any_blocked != nullptr && blocked != 0) *any_blocked = true;
+      const unsigned occluded = fan.wanted != 0 ? transport_.rays_->occluded(fan) : 0;
+      if (any_occluded != nullptr && occluded != 0) *any_occluded = true;
       for (std::uint32_t i = 0; i < traced; ++i) {
-        const bool is_blocked = (blocked >> i & 1U) != 0;
-        if (!rays[i].above || (!is_blocked && (correction_ || !transport_.environment_))) continue;
+        const bool is_occluded = (occluded >> i & 1U) != 0;
+        if (!rays[i].above || (!is_occluded && (correction_ || !transport_.environment_))) continue;
         if (rays[i].weight == 1) {
-          sum += shown(rays[i], is_blocked, sequence, first + i);
+          sum += shown(rays[i], is_occluded, sequence, first + i);
         } else {
-          sum += rays[i].weight * shown(rays[i], is_blocked, sequence, first + i);
+          sum += rays[i].weight * shown(rays[i], is_occluded, sequence, first + i);
         }
       }
     }

@@ -81,7 +81,7 @@ class Radiosity {
         const Vec3 way = lamp_area_.corner + (i + 0.5) / grid * lamp_area_.a + (j + 0.5) / grid * lamp_area_.b - point;
         const double d = length(way), cos_here = dot(normal, way) / d, cos_there = -dot(lamp_normal, way) / d;
         if (cos_here <= 0 || cos_there <= 0) continue;
-        if (!scene_.blocked(point + 1e-5 * normal, (1 / d) * way, 0.9999 * d)) sum += cos_here * cos_there / (d * d);
+        if (!scene_.occluded(point + 1e-5 * normal, (1 / d) * way, 0.9999 * d)) sum += cos_here * cos_there / (d * d);
       }
     }
     return sum / (grid * grid * kPi) * emission_;

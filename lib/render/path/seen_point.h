@@ -23,9 +23,9 @@ class SeenPoint {
     for (const Behind& point : behind_) certain = certain && point.at.certain();
     return certain;
   }
-  color::Rgb sure() const {
-    color::Rgb sum = front_.sure();
-    for (const Behind& point : behind_) sum += static_cast<double>(point.passed) * point.at.sure();
+  color::Rgb deterministic() const {
+    color::Rgb sum = front_.deterministic();
+    for (const Behind& point : behind_) sum += static_cast<double>(point.passed) * point.at.deterministic();
     return sum;
   }
   LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count) const {

@@ -70,7 +70,7 @@ Float3 between_four(const Float3* upper, const Float3* lower, float right, float
 // 256 for the default tolerance. Twice the directions have some .6 of the error.
 int ground_directions(double tolerance_de00) {
   constexpr double kDefault_de00 = 0.5;
-  int directions = 128;
+  int directions = kFewestGroundDirections;
   for (double kept = 1.6 * kDefault_de00; kept > tolerance_de00 && directions < 4096; kept *= 0.6) directions *= 2;
   return directions;
 }
@@ -112,9 +112,11 @@ std::optional<ShadedGround::Place> ShadedGround::Grid::find(const Float3& place)
 }
 
 // Directions that lie together are traced together: sectors of azimuth, and within each from the horizon up.
-ShadedGround::Directions ShadedGround::directions(const std::vector<LaidGround::SharedRay>& rays) {
-  std::vector<LaidGround::SharedRay> sorted = rays;
-  const auto azimuth = [](const LaidGround::SharedRay& ray) { return std::atan2(ray.direction.x, ray.direction.z); };
+ShadedGround::Directions ShadedGround::directions(const std::vector<ProjectedGround::SharedRay>& rays) {
+  std::vector<ProjectedGround::SharedRay> sorted = rays;
+  const auto azimuth = [](const ProjectedGround::SharedRay& ray) {
+    return std::atan2(ray.direction.x, ray.direction.z);
+  };
   std::ranges::sort(sorted, {}, azimuth);
   const auto across = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(rays.size()) * kFanRays)));
   for (std::size_t first = 0; first < sorted.size(); first += std::max<std::size_t>(kFanRays, across)) {
@@ -128,7 +130,7 @@ ShadedGround::Directions ShadedGround::directions(const std::vector<LaidGround::
     rays::Fan fan;
     for (std::size_t i = 0; i < kFanRays; ++i) {
       const bool real = first + i < sorted.size();
-      const LaidGround::SharedRay& ray = sorted[real ? first + i : first];
+      const ProjectedGround::SharedRay& ray = sorted[real ? first + i : first];
       const Float3 direction = rays::float3(ray.direction);
       fan.x[i] = direction.x, fan.y[i] = direction.y, fan.z[i] = direction.z;
       if (real) fan.wanted |= 1U << i;
@@ -140,7 +142,7 @@ ShadedGround::Directions ShadedGround::directions(const std::vector<LaidGround::
 }
 
 ShadedGround::Source ShadedGround::source(
-    const std::function<std::vector<LaidGround::SharedRay>(std::uint32_t count)>& drawn) {
+    const std::function<std::vector<ProjectedGround::SharedRay>(std::uint32_t count)>& drawn) {
   Source source{directions(drawn(kFew)), directions(drawn(kMany)), {}, {}, {}};
   for (const Float3& share : source.many.shares) source.share = source.share + share;
   return source;
@@ -152,8 +154,8 @@ void ShadedGround::add_lamp(const Light& light, const color::Rgb& irradiance) {
   for (int c = 0; c < 3; ++c) share[c] = irradiance[c] > 0 ? lit[c] / irradiance[c] : 0;
   if (share == color::Rgb{}) return;
   sources_.push_back(source([&](std::uint32_t count) {
-    std::vector<LaidGround::SharedRay> rays;
-    if (!(light.radius_rad > 0)) return std::vector<LaidGround::SharedRay>{{light.direction, share}};
+    std::vector<ProjectedGround::SharedRay> rays;
+    if (!(light.radius_rad > 0)) return std::vector<ProjectedGround::SharedRay>{{light.direction, share}};
     const Sequence sequence(0x1A3B, count);
     double above = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -161,12 +163,12 @@ void ShadedGround::add_lamp(const Light& light, const color::Rgb& irradiance) {
       const Vec3 direction = disc_direction(light, numbers[0], numbers[1]);
       if (direction.y > 0) rays.push_back({direction, share}), above += direction.y;
     }
-    for (LaidGround::SharedRay& ray : rays) ray.share = (ray.direction.y / above) * ray.share;
+    for (ProjectedGround::SharedRay& ray : rays) ray.share = (ray.direction.y / above) * ray.share;
     return rays;
   }));
 }
 
-ShadedGround::ShadedGround(std::shared_ptr<const rays::RayScene> scene, const LaidGround& ground,
+ShadedGround::ShadedGround(std::shared_ptr<const rays::RayScene> scene, const ProjectedGround& ground,
                            const std::vector<Light>& lights, const mesh::Box& box, float mesh_radius,
                            const GroundRequest& request)
     : scene_(std::move(scene)), mesh_radius_(mesh_radius), bent_(1.0F / static_cast<float>(request.directions)) {
@@ -195,8 +197,8 @@ void ShadedGround::fill(Grid& grid, const Value& value) const {
 }
 
 void ShadedGround::shade(const std::vector<float>& x, const std::vector<float>& z) {
-  blocked_.x = x, blocked_.z = z;
-  fill(blocked_, [&](const Float3& start, std::size_t) { return blocked(soft_, start); });
+  occluded_.x = x, occluded_.z = z;
+  fill(occluded_, [&](const Float3& start, std::size_t) { return occluded(soft_, start); });
   divide();
   for (Source& source : sources_) mark(source), smooth(source);
 }
@@ -204,7 +206,7 @@ void ShadedGround::shade(const std::vector<float>& x, const std::vector<float>& 
 // Marks the cells that the shadows of boxes about neighboring triangles meet, so that no place in shadow is missed.
 void ShadedGround::mark(Source& source) const {
   constexpr std::size_t kBoxes = 4096;
-  const std::size_t columns = blocked_.x.size() - 1, triangles = scene_->triangles(),
+  const std::size_t columns = occluded_.x.size() - 1, triangles = scene_->triangles(),
                     each = std::max<std::size_t>(1, triangles / kBoxes);
   std::vector<mesh::Box> boxes;
   for (std::size_t first = 0; first < triangles; first += each) {
@@ -218,7 +220,7 @@ void ShadedGround::mark(Source& source) const {
     }
     if (box.high.y > height_) boxes.push_back(box);
   }
-  source.states.assign(columns * (blocked_.z.size() - 1), Source::kFree);
+  source.states.assign(columns * (occluded_.z.size() - 1), Source::kFree);
   std::mutex mutex;
   parallel_for(source.many.fans.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<bool> marked(source.states.size(), false);
@@ -235,16 +237,16 @@ void ShadedGround::mark(const rays::Fan& fan, const std::vector<mesh::Box>& boxe
     const auto end = std::lower_bound(begin, lines.end() - 1, static_cast<float>(high));
     return std::pair(begin - lines.begin() - 1, end - lines.begin());
   };
-  const auto columns = static_cast<std::ptrdiff_t>(blocked_.x.size()) - 1;
+  const auto columns = static_cast<std::ptrdiff_t>(occluded_.x.size()) - 1;
   for (const mesh::Box& box : boxes) {
     const double bottom = std::max(0.0, box.low.y - height_), top = box.high.y - height_;
     for (unsigned i = 0; i < kFanRays; ++i) {
       if ((fan.wanted >> i & 1U) == 0) continue;
       const double x = fan.x[i] / fan.y[i], z = fan.z[i] / fan.y[i];
       const auto [left, right] =
-          cells(blocked_.x, box.low.x - std::max(bottom * x, top * x), box.high.x - std::min(bottom * x, top * x));
+          cells(occluded_.x, box.low.x - std::max(bottom * x, top * x), box.high.x - std::min(bottom * x, top * x));
       const auto [back, front] =
-          cells(blocked_.z, box.low.z - std::max(bottom * z, top * z), box.high.z - std::min(bottom * z, top * z));
+          cells(occluded_.z, box.low.z - std::max(bottom * z, top * z), box.high.z - std::min(bottom * z, top * z));
       for (std::ptrdiff_t row = back; row < front; ++row)
         std::fill(marked.begin() + row * columns + left, marked.begin() + row * columns + right, true);
     }
@@ -253,16 +255,16 @@ void ShadedGround::mark(const rays::Fan& fan, const std::vector<mesh::Box>& boxe
 
 // Where a source is hidden in part at all nodes of a cell, and its light does not bend, the nodes tell it.
 void ShadedGround::smooth(Source& source) const {
-  const std::size_t columns = blocked_.x.size() - 1;
-  std::vector<bool> wanted(blocked_.values.size(), false);
+  const std::size_t columns = occluded_.x.size() - 1;
+  std::vector<bool> wanted(occluded_.values.size(), false);
   for (std::size_t cell = 0; cell < source.states.size(); ++cell) {
     if (source.states[cell] == Source::kFree) continue;
     const std::size_t node = cell / columns * (columns + 1) + cell % columns;
     for (const std::size_t corner : {node, node + 1, node + columns + 1, node + columns + 2}) wanted[corner] = true;
   }
-  source.nodes = {blocked_.x, blocked_.z, {}};
+  source.nodes = {occluded_.x, occluded_.z, {}};
   fill(source.nodes,
-       [&](const Float3& start, std::size_t node) { return wanted[node] ? blocked(source, start) : Float3{}; });
+       [&](const Float3& start, std::size_t node) { return wanted[node] ? occluded(source, start) : Float3{}; });
   const float least = 0.01F * mean_of(source.share), most = mean_of(source.share) - least;
   for (std::size_t cell = 0; cell < source.states.size(); ++cell) {
     if (source.states[cell] == Source::kFree) continue;
@@ -298,12 +300,12 @@ float ShadedGround::bent(const Grid& grid, std::size_t column, std::size_t row) 
 
 // Light bends at the edges of shadows, which lie in few cells: these have nodes of their own.
 void ShadedGround::divide() {
-  const std::size_t columns = blocked_.x.size() - 1, rows = blocked_.z.size() - 1;
+  const std::size_t columns = occluded_.x.size() - 1, rows = occluded_.z.size() - 1;
   divided_.assign(columns * rows, kWhole);
   std::vector<std::size_t> curved;
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t column = 0; column < columns; ++column) {
-      if (bent(blocked_, column, row) <= bent_) continue;
+      if (bent(occluded_, column, row) <= bent_) continue;
       divided_[row * columns + column] = static_cast<std::uint32_t>(curved.size());
       curved.push_back(row * columns + column);
     }
@@ -316,8 +318,8 @@ void ShadedGround::divide() {
         const float right = static_cast<float>(node % kFineNodes) / kDivisions,
                     down = static_cast<float>(node / kFineNodes) / kDivisions;
         fine_[k * kFineNodes * kFineNodes + node] =
-            blocked(soft_, start_at(std::lerp(blocked_.x[column], blocked_.x[column + 1], right),
-                                    std::lerp(blocked_.z[row], blocked_.z[row + 1], down)));
+            occluded(soft_, start_at(std::lerp(occluded_.x[column], occluded_.x[column + 1], right),
+                                     std::lerp(occluded_.z[row], occluded_.z[row + 1], down)));
       }
     }
   });
@@ -374,7 +376,7 @@ void ShadedGround::gather(const std::vector<float>& x, const std::vector<float>&
   smooth(bounced_);
 }
 
-Float3 ShadedGround::blocked(const Directions& directions, const Float3& start) const {
+Float3 ShadedGround::occluded(const Directions& directions, const Float3& start) const {
   const Cone toward = cone(start);
   Float3 sum;
   for (std::size_t k = 0; k < directions.fans.size(); ++k) {
@@ -382,27 +384,27 @@ Float3 ShadedGround::blocked(const Directions& directions, const Float3& start) 
     if (wanted == 0) continue;
     rays::Fan fan = directions.fans[k];
     fan.origin = start, fan.wanted = wanted;
-    const unsigned met = scene_->blocked(fan);
+    const unsigned met = scene_->occluded(fan);
     for (unsigned bits = met; bits != 0; bits &= bits - 1)
       sum = sum + directions.shares[kFanRays * k + static_cast<std::size_t>(std::countr_zero(bits))];
   }
   return sum;
 }
 
-Float3 ShadedGround::blocked(const Source& source, const Float3& start) const {
-  const Float3 few = blocked(source.few, start);
+Float3 ShadedGround::occluded(const Source& source, const Float3& start) const {
+  const Float3 few = occluded(source.few, start);
   constexpr float kAll = 1 - 1e-5F;
   if (mean_of(few) == 0) return few;
-  return mean_of(few) >= kAll * mean_of(source.share) ? source.share : blocked(source.many, start);
+  return mean_of(few) >= kAll * mean_of(source.share) ? source.share : occluded(source.many, start);
 }
 
 Float3 ShadedGround::between(const Grid& grid, const Place& at) {
   return between_four(&grid.at(at.column, at.row), &grid.at(at.column, at.row + 1), at.right, at.down);
 }
 
-Float3 ShadedGround::soft_blocked(std::size_t column, std::size_t row, float right, float down) const {
-  const std::uint32_t divided = divided_[row * (blocked_.x.size() - 1) + column];
-  if (divided == kWhole) return between_four(&blocked_.at(column, row), &blocked_.at(column, row + 1), right, down);
+Float3 ShadedGround::soft_occluded(std::size_t column, std::size_t row, float right, float down) const {
+  const std::uint32_t divided = divided_[row * (occluded_.x.size() - 1) + column];
+  if (divided == kWhole) return between_four(&occluded_.at(column, row), &occluded_.at(column, row + 1), right, down);
   const auto cell = [](float& part) {
     part *= kDivisions;
     const std::size_t i = std::min(kDivisions - 1, static_cast<std::size_t>(part));
@@ -417,7 +419,7 @@ Float3 ShadedGround::soft_blocked(std::size_t column, std::size_t row, float rig
 GroundLight ShadedGround::light(const Float3& place, const Place* at) const {
   GroundLight light;
   if (at == nullptr) return light;
-  light.left = color::Rgb{1, 1, 1} - rays::vec3(soft_blocked(at->column, at->row, at->right, at->down));
+  light.left = color::Rgb{1, 1, 1} - rays::vec3(soft_occluded(at->column, at->row, at->right, at->down));
   if (const auto beside = bounced_.find(place); beside) light.bounced = rays::vec3(between(bounced_, *beside));
   return light;
 }
@@ -435,19 +437,19 @@ void keep_positive(GroundLight& light) {
 }  // namespace
 
 GroundLight ShadedGround::seen(const Float3& place) const {
-  const auto at = blocked_.find(place);
+  const auto at = occluded_.find(place);
   GroundLight shown = light(place, at ? &*at : nullptr);
   for (const Source& source : sources_) {
-    const auto state = at ? source.states[at->row * (blocked_.x.size() - 1) + at->column] : Source::kAsked;
+    const auto state = at ? source.states[at->row * (occluded_.x.size() - 1) + at->column] : Source::kAsked;
     if (state == Source::kFree) continue;
-    take(state == Source::kSmooth ? between(source.nodes, *at) : blocked(source, start_at(place.x, place.z)), shown);
+    take(state == Source::kSmooth ? between(source.nodes, *at) : occluded(source, start_at(place.x, place.z)), shown);
   }
   keep_positive(shown);
   return shown;
 }
 
 GroundLight ShadedGround::met(const Float3& place, double number) const {
-  const auto at = blocked_.find(place);
+  const auto at = occluded_.find(place);
   GroundLight shown = light(place, at ? &*at : nullptr);
   const Float3 start = start_at(place.x, place.z);
   for (const Source& source : sources_) {
@@ -459,7 +461,7 @@ GroundLight ShadedGround::met(const Float3& place, double number) const {
     const Float3 direction{fan.x[ray], fan.y[ray], fan.z[ray]};
     const Cone toward = cone(start);
     if (rays::dot(direction, toward.axis) < toward.cosine) continue;
-    if (scene_->blocked(start, direction)) take(source.share, shown);
+    if (scene_->occluded(start, direction)) take(source.share, shown);
   }
   keep_positive(shown);
   return shown;

@@ -120,7 +120,7 @@ Result<Transport> SpectralPaths::transport(const PathScene& path_scene) {
   means.emission.clear();
   for (const color::Bands& bands : spectra.emission) means.emission.push_back(gray(color::mean(bands)));
   if (means.ground) means.ground->paint = paint::mean_lobes(*spectra.floor);
-  GONIO_ASSIGN(Transport transport, Transport::create(means));
+  GONIO_ASSIGN(Transport transport, Transport::in_channels(means));
 
   auto paths = std::make_shared<SpectralPaths>();
   paths->eye_ = spectra.eye.weights();
@@ -240,6 +240,13 @@ color::Rgb SpectralPaths::shown(const Transport& transport, const PathOptions& o
   color::Rgb shown;
   for (std::size_t b = 0; b < sum.size(); ++b) shown += sum[b] * eye_[b];
   return (1.0 / count) * shown;
+}
+
+Result<Transport> Transport::create(const PathScene& path_scene) {
+  const Scene& scene = *path_scene.scene;
+  if (scene.mesh == nullptr) return input_error("a scene without a mesh: there is nothing to trace");
+  const bool in_bands = scene.spectra != nullptr && path_scene.environment == nullptr;
+  return in_bands ? SpectralPaths::transport(path_scene) : in_channels(path_scene);
 }
 
 }  // namespace goniochrome::render

@@ -12,6 +12,7 @@
 #include "render/path/traced_paint.h"
 #include "render/path/visible_surface.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render::traced_surface_test {
@@ -401,10 +402,10 @@ TEST(TracedSurface, TexturesAndBrushedPaintsAreThoseOfTheEngineCpu) {
       PathOptions options;
       options.bounces = 0;
       // Where the other ball shades it, or its own edge does, pictures differ as they should.
-      if (transport.rays().blocked(spot.start, float3(stage.scene.lights[0].direction))) continue;
+      if (transport.rays().occluded(spot.start, float3(stage.scene.lights[0].direction))) continue;
       const PointTransport at(transport, options, spot, float3(g.to_viewer(x, y)));
       const float* pixel = frame.picture.pixel(x, y);
-      const color::Rgb shown{pixel[0], pixel[1], pixel[2]}, d = at.sure() - shown;
+      const color::Rgb shown{pixel[0], pixel[1], pixel[2]}, d = at.deterministic() - shown;
       ++seen[part];
       // A rasterizer's point is off by a hundredth of a pixel; floats and half floats by less.
       if (length(d) > 0.02 * length(shown) + 0.01 * white) ++off[part];

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/clock.h"
 #include "brdf/lobe_model.h"
 #include "render/effects.h"
 #include "render/panes.h"
-#include "render/path/path_loop.h"
-#include "render/path/spectral_paths.h"
+#include "render/scene_effects.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -32,10 +32,8 @@ std::vector<std::vector<brdf::Tilt>> tilts_for(const PathScene& scene) {
 
 }  // namespace
 
-Result<Transport> Transport::create(const PathScene& path_scene) {
+Result<Transport> Transport::in_channels(const PathScene& path_scene) {
   const Scene& scene = *path_scene.scene;
-  if (scene.mesh == nullptr) return input_error("a scene without a mesh: there is nothing to trace");
-  if (scene.spectra != nullptr && path_scene.environment == nullptr) return SpectralPaths::transport(path_scene);
   if (scene.paints.size() != scene.mesh->parts.size())
     return input_error("{} paints for {} parts of the mesh: each part needs one", scene.paints.size(),
                        scene.mesh->parts.size());
@@ -83,7 +81,7 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
     if (transport.environment_->dark()) transport.environment_.reset();
     transport.mirrored_ = path_scene.mirrored != nullptr ? path_scene.mirrored : path_scene.environment;
     if (ground && ground->kind == Ground::Kind::kShadow) {
-      GONIO_ASSIGN(transport.ground_, LaidGround::create(*ground, *path_scene.environment, scene.lights));
+      GONIO_ASSIGN(transport.ground_, ProjectedGround::create(*ground, *path_scene.environment, scene.lights));
       transport.ground_eye_ = transport.rays_->local(ground->probe_eye);
       transport.uneven_ground_ = transport.ground_->ground_extent_sr() < kEvenGround_sr;
     }
@@ -121,7 +119,15 @@ void Transport::shade_ground(GroundRequest request, int bounces) {
   if (bounces > 0)
     request.sent = [&](const Hit& hit, const Float3& from, const Float3& direction, const Sequence& sequence,
                        std::uint32_t index) { return bounced(hit, from, direction, bounces, sequence, index, 1); };
-  shaded_ = std::make_shared<const ShadedGround>(rays_, *ground_, lights_, mesh_box_, mesh_radius_, request);
+  const int most = request.directions;
+  if (request.longest_s > 0) request.directions = std::min(most, kFewestGroundDirections);
+  request.bounced_directions /= most / request.directions;
+  for (const Deadline deadline(request.longest_s);; request.directions *= 2, request.bounced_directions *= 2) {
+    const Stopwatch clock;
+    shaded_ = std::make_shared<const ShadedGround>(rays_, *ground_, lights_, mesh_box_, mesh_radius_, request);
+    constexpr double kTwice = 3;  // times as long take twice the directions, which divide more cells
+    if (request.directions >= most || kTwice * clock.elapsed_s() > deadline.left_s()) return;
+  }
 }
 
 Float3 Transport::toward_ground(const Float3& from, const Float3& from_eye) const {
@@ -165,7 +171,7 @@ double Transport::open_share(const Spot& spot) const {
     for (std::uint32_t i = 0; i < kFan; ++i) {
       if (!hits[i].any()) {
         ++open;
-      } else if (shaded_ != nullptr && is_laid(hits[i])) {
+      } else if (shaded_ != nullptr && is_projected(hits[i])) {
         const Float3 place = spot.start + hits[i].distance * directions[i];
         open += shaded_->met(place, 0.5).left.y;
       }
@@ -196,7 +202,7 @@ std::vector<int> Transport::gaining_parts() const {
   return parts;
 }
 
-bool Transport::is_laid(const Spot& spot) const {
+bool Transport::is_projected(const Spot& spot) const {
   return ground_ && spot.triangle == rays::kFloor;
 }
 
@@ -206,7 +212,7 @@ color::Rgb Transport::open_ground(const Spot& spot) const {
 }
 
 PaintedPoint Transport::painted(const Spot& spot, const Float3& to_viewer) const {
-  if (is_laid(spot)) return {rays::float3(ground_->paint(open_ground(spot))), spot.shading, to_viewer};
+  if (is_projected(spot)) return {rays::float3(ground_->paint(open_ground(spot))), spot.shading, to_viewer};
   return {spot, paints_[static_cast<std::size_t>(spot.part)], to_viewer};
 }
 
@@ -283,30 +289,6 @@ Transport::Onward Transport::onward(const Spot& spot, const BrightPlaces::Receiv
   onward.lobes_chance = 1 - chance;
   if (chance > 0) onward.places_pdf = chance * places_->pdf(receiver, onward.hit, onward.direction);
   return onward;
-}
-
-color::Rgb Transport::bounced(const Hit& hit, const Float3& origin, const Float3& direction, int bounces,
-                              const Sequence& sequence, std::uint32_t index, std::uint32_t set) const {
-  Channels light(reflection_);
-  follow(hit, origin, direction, bounces, sequence, index, set, light);
-  return light.sum();
-}
-
-// This is follow() at a vertex on such a floor, with the light of its first step apart.
-Transport::FloorLight Transport::off_floor(const Hit& hit, const Float3& origin, const Float3& direction, int bounces,
-                                           const Sequence& sequence, std::uint32_t index, std::uint32_t set) const {
-  if (shaded_ != nullptr) {
-    const LightShares shown = met_ground(hit, origin, direction, sequence.point(index, set)[0]);
-    return {shown.direct, bounces > 0 ? shown.into_diffuse : color::Rgb{}};
-  }
-  const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
-  if (vertex.painted.black()) return {vertex.open, {}};
-  Channels fixed(reflection_);
-  const Next next = step(vertex, sequence.point(index, set), sequence.point(index, set + 1), fixed);
-  FloorLight light{vertex.open + fixed.sum(), {}};
-  if (!next.goes_on() || !next.hit.any() || bounces == 0) return light;
-  light.bounced = fixed.shown(bounced(next.hit, next.start, next.direction, bounces, sequence, index, set + 2));
-  return light;
 }
 
 }  // namespace goniochrome::render

@@ -12,8 +12,8 @@
 #include "render/path/bright_places.h"
 #include "render/path/emitters.h"
 #include "render/path/environment_table.h"
-#include "render/path/laid_ground.h"
 #include "render/path/path_product.h"
+#include "render/path/projected_ground.h"
 #include "render/path/sequence.h"
 #include "render/path/shaded_ground.h"
 #include "render/path/traced_paint.h"
@@ -53,7 +53,7 @@ struct PathOptions {
   // reaches its diffuse part.
   bool into_lobes = true, into_diffuse = true;
   // Only what the mesh changes: the radiance with the mesh in the way less the radiance without it. That is 0 without
-  // any noise where no ray is blocked. A floor that shows the environment is there either way, with all its radiance.
+  // any noise where no ray is occluded. A floor that shows the environment is there either way, with all its radiance.
   bool correction = false;
   // The point that is seen is matt white there, whatever its paint is. Surfaces that send light to it keep theirs.
   bool white = false;
@@ -140,10 +140,12 @@ class Transport {
   friend class LobePoint;
   friend class SpectralPaths;
   explicit Transport(std::shared_ptr<const rays::RayScene> rays) : rays_(std::move(rays)) {}
+  // As create(), without spectra.
+  static Result<Transport> in_channels(const PathScene& scene);
   color::Rgb bounced(const rays::Hit& hit, const rays::Float3& origin, const rays::Float3& direction, int bounces,
                      const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
-  // Light that a floor that shows the environment sends back: what no paint of the mesh changes, which is what the
-  // floor shows in the open less what the mesh takes from it, and what the mesh sends to it.
+  // Light off a floor that shows the environment, in two parts. `fixed` depends on no paint of the mesh: it is that of
+  // the unoccluded floor less what the mesh occludes. `bounced` is what the mesh sends to the floor.
   struct FloorLight {
     color::Rgb fixed, bounced;
   };
@@ -177,7 +179,7 @@ class Transport {
               std::uint32_t index, std::uint32_t set, Carrier& carrier) const;
   // Narrow lobes find what they show better than places do.
   BrightPlaces::Receiver receiver(const rays::Spot& spot, const PaintedPoint& painted) const {
-    if (places_ == nullptr || is_laid(spot)) return {};
+    if (places_ == nullptr || is_projected(spot)) return {};
     return places_->receiver(spot.triangle, spot.u, spot.v, 1 - painted.narrow_share(BrightPlaces::kNarrow_sr));
   }
   // What the chance of a path to go on from there is multiplied by.
@@ -220,15 +222,15 @@ class Transport {
   color::Rgb mirrored_environment(const rays::Float3& direction) const;
   // What a mirror sees of lamps in that direction, where a ray meets `hit`.
   color::Rgb mirrored_lamps(const rays::Float3& from, const rays::Float3& toward, const rays::Hit& hit) const;
-  bool is_laid(const rays::Spot& spot) const;
-  bool is_laid(const rays::Hit& hit) const { return ground_ && hit.triangle == rays::kFloor; }
+  bool is_projected(const rays::Spot& spot) const;
+  bool is_projected(const rays::Hit& hit) const { return ground_ && hit.triangle == rays::kFloor; }
   PaintedPoint painted(const rays::Spot& spot, const rays::Float3& to_viewer) const;
 
   std::shared_ptr<const rays::RayScene> rays_;  // stays where it is when the transport is moved
   std::shared_ptr<const rays::RayScene> eye_;   // of a scene with panes
   std::vector<bool> panes_;                     // of its parts
   std::vector<TracedPaint> paints_;             // of the parts, then of the floor
-  std::optional<LaidGround> ground_;            // of a floor that shows the environment
+  std::optional<ProjectedGround> ground_;       // of a floor that shows the environment
   std::shared_ptr<const ShadedGround> shaded_;  // see shade_ground()
   bool uneven_ground_ = false;
   rays::Float3 ground_eye_;  // local: where such a floor's environment was seen from
@@ -255,7 +257,7 @@ class PointTransport {
 
   // What needs no samples: directional lights, the point's own emission, and what the mirror lobe sees without
   // bounces.
-  const color::Rgb& sure() const { return sure_; }
+  const color::Rgb& deterministic() const { return deterministic_; }
   // Whether that is all: then every batch() is 0.
   bool certain() const { return certain_; }
   // The mean of kBatch samples of the rest, drawn from a sequence of this seed. Its expectation is the rest, exactly.
@@ -264,14 +266,14 @@ class PointTransport {
   color::Rgb part_of_batch(std::uint64_t seed, std::uint32_t first, std::uint32_t count) const {
     return batch_shares(seed, first, count).sum();
   }
-  // The same by shares. `any_blocked`, unless null, is told whether any ray of the samples was blocked.
+  // The same by shares. `any_occluded`, unless null, is told whether any ray of the samples was occluded.
   LightShares batch_shares(std::uint64_t seed, std::uint32_t first = 0, std::uint32_t count = kBatch,
-                           bool* any_blocked = nullptr) const {
-    return shares_of(Sequence(seed, kBatch), first, count, any_blocked);
+                           bool* any_occluded = nullptr) const {
+    return shares_of(Sequence(seed, kBatch), first, count, any_occluded);
   }
   // The same of any sequence.
   LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count,
-                        bool* any_blocked = nullptr) const;
+                        bool* any_occluded = nullptr) const;
 
  private:
   struct Ray;
@@ -284,8 +286,8 @@ class PointTransport {
   rays::Fan lamp_fan(const Transport::SeenLamp& lamp) const;
   // Sends a ray of a fan there if that is above the horizon.
   void aim(rays::Fan& fan, std::uint32_t ray, const rays::Float3& direction) const;
-  color::Rgb lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count, bool* any_blocked) const;
-  LightShares shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const;
+  color::Rgb lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count, bool* any_occluded) const;
+  LightShares shown(const Ray& ray, bool occluded, const Sequence& sequence, std::uint32_t index) const;
   LightShares shown_over_ground(const Ray& ray, const rays::Hit& hit, const Sequence& sequence,
                                 std::uint32_t index) const;
   void add_sent(const rays::Float3& direction, const color::Rgb& sent, float scale, LightShares& shares) const;
@@ -298,8 +300,8 @@ class PointTransport {
   rays::Spot spot_;
   rays::Float3 to_viewer_;
   PaintedPoint painted_;
-  bool is_laid_;                              // on a floor that shows the environment
-  std::optional<LaidGround::Window> window_;  // of such a point: directions in which it may see the mesh
+  bool on_projected_;                              // on a floor that shows the environment
+  std::optional<ProjectedGround::Window> window_;  // of such a point: directions in which it may see the mesh
   bool correction_;   // whether samples tell what the mesh changes: as asked, or of such a floor
   bool over_ground_;  // over a floor whose ground is shaded
   // Only directions within this cone can meet the mesh; of other floors and of the mesh itself all of them.
@@ -318,7 +320,7 @@ class PointTransport {
   };
   std::vector<Lamp> lamps_;
   bool open_ = false;  // nothing rises above the horizon
-  color::Rgb sure_;
+  color::Rgb deterministic_;
   bool certain_ = false;
 };
 

@@ -222,12 +222,12 @@ class Reader {
         return wrong(fmt::format("a paint has {} weights for {} columns", group.size(), t_.columns.count()));
     for (const int group : t_.worn.groups.of_part)
       if (group < 0 || group >= t_.worn.groups.count) return wrong(fmt::format("there is no group {}", group));
-    t_.worn.floor_is_laid = t_.worn.has_floor && is_laid(t_.worn.groups.of_part.back());
+    t_.worn.floor_is_projected = t_.worn.has_floor && is_projected(t_.worn.groups.of_part.back());
     return {};
   }
 
   // Whether what a group wears is a floor that shows the environment; a paint reflects less than its weights.
-  bool is_laid(int group) const {
+  bool is_projected(int group) const {
     std::vector<color::Rgb> laid(t_.columns.count());
     laid[LobeColumns::diffuse()] = {1, 1, 1};
     return t_.worn.weights[static_cast<std::size_t>(group)] == laid;

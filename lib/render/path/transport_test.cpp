@@ -10,6 +10,7 @@
 #include "brdf/lobe_model.h"
 #include "render/exact.h"
 #include "render/path/scenes_for_paths_for_test.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render::transport_test {
 namespace {
@@ -119,7 +120,7 @@ TEST(Transport, ABallHidesItsFormFactorFromAPlane) {
   PathStage stage(std::move(mesh), {matt({0.9, 0.6, 0.3}), matt({0, 0, 0})});
   stage.environment = even_environment({1, 2, 0.5});
   stage.build();
-  Worst ours, unblocked;
+  Worst ours, unoccluded;
   for (const Vec3& target : {Vec3{0.2, 0, -0.1}, Vec3{1, 0, 0.4}, Vec3{-2, 0, 1}, Vec3{4, 0, 3}}) {
     const Vec3 toward = Vec3{0.2, 1.5, -0.1} - target;
     const double d = length(toward), hidden = 0.49 / (d * d) * toward.y / d;
@@ -131,12 +132,12 @@ TEST(Transport, ABallHidesItsFormFactorFromAPlane) {
       PathEstimate estimate = stage.seen(options, target + Vec3{0.02, 0.05, 0.01}, target, 400);
       if (correction) estimate.radiance += open;
       judge(estimate, (1 - hidden) * open, ours);
-      judge({open, estimate.covariance}, (1 - hidden) * open, unblocked);
+      judge({open, estimate.covariance}, (1 - hidden) * open, unoccluded);
     }
   }
   EXPECT_LT(ours.errors, kMostErrors);
   EXPECT_LT(ours.relative, 0.01);
-  EXPECT_GT(unblocked.errors, kMostErrors);  // control
+  EXPECT_GT(unoccluded.errors, kMostErrors);  // control
 }
 
 // light.md section 2: an element that sees a rectangle parallel to it, or at a right angle.
@@ -247,7 +248,7 @@ TEST(Transport, AConvexShapeShowsTheReferenceIntegral) {
         options.correction = true;
         const PointTransport at(transport, options, spot, rays::float3(-toward));
         EXPECT_TRUE(at.certain());
-        EXPECT_EQ(at.sure(), color::Rgb{});
+        EXPECT_EQ(at.deterministic(), color::Rgb{});
       }
     }
     EXPECT_LT(ours.errors, kMostErrors) << brushed;

@@ -8,7 +8,7 @@
 #include "color/color.h"
 #include "render/internal/worn_lobes.h"
 #include "render/panes.h"
-#include "render/plan/ray_plan.h"
+#include "render/scene_effects.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -183,6 +183,11 @@ void add_texture_lobes(const Scene& scene, const Effects& all, std::vector<Effec
 }  // namespace
 
 // An empty scene calls for nothing, so that its list has each group once.
+const std::vector<std::string>& ray_effect_names() {
+  static const std::vector<std::string> names = {"shadow", "self", "bounce", "floor"};
+  return names;
+}
+
 const std::vector<std::string>& effect_groups() {
   static const std::vector<std::string> groups = [] {
     std::vector<std::string> names;

@@ -22,6 +22,12 @@ struct EffectSwitch {
   bool left_to_tilts = false;  // Tilted lobes stand for it on some part, and it shows nothing there while they are on.
 };
 
+// The name of the effect that corrects maps by sums over the environment.
+constexpr const char* kSumsName = "sums";
+
+// The names of the effects of rays, in the order in which plans list them.
+const std::vector<std::string>& ray_effect_names();
+
 // The groups, in the order of the list.
 const std::vector<std::string>& effect_groups();
 

@@ -26,7 +26,7 @@ const char* const kReasons[] = {"rays tell where the mesh is in the way of light
                                 "light that the body passes on reaches its diffuse parts",
                                 "the mesh stands on the ground of the environment, which lights it from below"};
 
-std::optional<bool> forced_by(const Words& words, const std::string& name, bool is_ray) {
+std::optional<bool> forced_by(const EffectWords& words, const std::string& name, bool is_ray) {
   std::optional<bool> forced;
   for (const auto& [word, on] : words.forced)
     if (word == name || (is_ray && word == "rays")) forced = on;
@@ -46,7 +46,7 @@ PlanItem unmeasured(const std::string& effect, const std::string& reason) {
 }
 
 // The sums have what these effects draw, so that a picture without one of them would show it nevertheless.
-bool lacks_what_sums_have(const Words& words) {
+bool lacks_what_sums_have(const EffectWords& words) {
   return std::ranges::any_of(words.forced, [](const auto& word) {
     return !word.second && (word.first == "horizon" || word.first == "fresnel");
   });
@@ -59,12 +59,7 @@ bool is_drawn_unasked(const Plan& plan, const std::string& effect) {
   return item != plan.items.end() && item->decision == Decision::kDrawn;
 }
 
-const std::vector<std::string>& ray_effect_names() {
-  static const std::vector<std::string> names = {"shadow", "self", "bounce", "floor"};
-  return names;
-}
-
-std::vector<PlanItem> ray_items(const Words& words, const RayContext& rays, const PlanRequest& request,
+std::vector<PlanItem> ray_items(const EffectWords& words, const RayContext& rays, const PlanRequest& request,
                                 Effects& effects) {
   constexpr std::size_t kEffects = std::size(kFlags);
   const std::vector<std::string>& names = ray_effect_names();
@@ -94,7 +89,7 @@ std::vector<PlanItem> ray_items(const Words& words, const RayContext& rays, cons
   return items;
 }
 
-PlanItem sums_item(const Words& words, const RayContext& rays, bool by_maps, Effects& effects) {
+PlanItem sums_item(const EffectWords& words, const RayContext& rays, bool by_maps, Effects& effects) {
   if (!effects.environment) return unmeasured(kSumsName, "no image light");
   const std::optional<bool> forced = forced_by(words, kSumsName, false);
   PlanItem item = unmeasured(kSumsName, "sums over the environment correct the diffuse part and wide lobes");
@@ -117,38 +112,6 @@ PlanItem sums_item(const Words& words, const RayContext& rays, bool by_maps, Eff
   }
   effects.sums = item.on;
   return item;
-}
-
-namespace {
-
-PlanItem* row_of(Plan& plan, const std::string& effect) {
-  const auto found = std::ranges::find(plan.items, effect, &PlanItem::effect);
-  return found != plan.items.end() ? &*found : nullptr;
-}
-
-void add_finding(double de00_p95, bool stopped, PlanItem& item) {
-  item.de00_p95 = de00_p95;
-  if (!stopped || item.decision != Decision::kDrawn) return;
-  item.decision = Decision::kFirstPass;
-  item.reason += "; the first pass shows what little it changes";
-}
-
-}  // namespace
-
-void add_findings(const CorrectionNoise& rays, const FoundSums& sums, Plan& plan) {
-  if (PlanItem* item = row_of(plan, kSumsName); item != nullptr && sums.de00_p95)
-    add_finding(*sums.de00_p95, sums.stopped, *item);
-  if (!plan.effects.rays.any()) return;
-  for (std::size_t i = 0; i < std::size(kFlags); ++i) {
-    PlanItem* item = row_of(plan, ray_effect_names()[i]);
-    if (item == nullptr || !item->on) continue;
-    if (rays.dark && !plan.effects.rays.floor) {
-      item->needed = item->on = false, item->decision = Decision::kNotInScene;
-      item->reason = "no ray meets the mesh", item->de00_p95 = 0;
-      continue;
-    }
-    add_finding(rays.found[i].de00_p95, rays.found[i].stopped, *item);
-  }
 }
 
 }  // namespace goniochrome::render

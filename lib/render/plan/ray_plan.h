@@ -4,27 +4,22 @@
 #include <string>
 #include <vector>
 
+#include "render/effect_words.h"
 #include "render/plan.h"
-#include "render/plan/effect_words.h"
+#include "render/plan/effect_list.h"
 
 namespace goniochrome::render {
-
-// The name of the effect that corrects maps by sums over the environment.
-constexpr const char* kSumsName = "sums";
 
 // Whether an effect is drawn that nobody asked for by name.
 bool is_drawn_unasked(const Plan& plan, const std::string& effect);
 
-// The names of the effects of rays, in the order in which plans list them.
-const std::vector<std::string>& ray_effect_names();
-
 // The rows of these effects; turns them on in `effects`, which has the other effects of the plan. Effects that need
 // another one are off with it: `self`, `bounce` and `floor` need `shadow`. Forcing one of them on forces `shadow` on,
 // unless that is forced off.
-std::vector<PlanItem> ray_items(const Words& words, const RayContext& rays, const PlanRequest& request,
+std::vector<PlanItem> ray_items(const EffectWords& words, const RayContext& rays, const PlanRequest& request,
                                 Effects& effects);
 
 // The row of the sums. `by_maps`: whether an engine with prefiltered maps draws the picture.
-PlanItem sums_item(const Words& words, const RayContext& rays, bool by_maps, Effects& effects);
+PlanItem sums_item(const EffectWords& words, const RayContext& rays, bool by_maps, Effects& effects);
 
 }  // namespace goniochrome::render

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/scene_effects.h"
 #include "render/textures/textured_scene_for_test.h"
 
 namespace goniochrome::render::layings_test {

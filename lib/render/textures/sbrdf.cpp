@@ -10,8 +10,8 @@
 
 #include "base/angles.h"
 #include "base/parallel.h"
+#include "render/internal/bordered_face.h"
 #include "render/internal/lobe_curves.h"
-#include "render/internal/maps.h"
 
 namespace goniochrome::render {
 

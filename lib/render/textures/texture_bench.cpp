@@ -7,6 +7,7 @@
 #include "base/testdata_for_test.h"
 #include "image/surface_file.h"
 #include "render/exact.h"
+#include "render/picture_error.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 #include "render/surface_layer.h"

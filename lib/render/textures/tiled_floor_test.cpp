@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/random_for_test.h"
 #include "base/text.h"
+#include "render/scene_effects.h"
 #include "render/textures/textured_scene_for_test.h"
 
 namespace goniochrome::render::tiled_floor_test {

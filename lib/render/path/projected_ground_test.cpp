@@ -1,5 +1,5 @@
 // The light of a floor that shows the environment: how directions are drawn from it, and what a mesh takes from it.
-#include "render/path/laid_ground.h"
+#include "render/path/projected_ground.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "base/angles.h"
 #include "render/path/scenes_for_paths_for_test.h"
 
-namespace goniochrome::render::laid_ground_test {
+namespace goniochrome::render::projected_ground_test {
 namespace {
 
 // A dim sky with a sun of one texel.
@@ -26,20 +26,20 @@ Ground ground_at(double height) {
 }
 
 // The mean of cosine by density over directions that are drawn is the integral of the cosine over the window.
-TEST(LaidGround, DrawsEveryDirectionOfAWindowByItsDensity) {
+TEST(ProjectedGround, DrawsEveryDirectionOfAWindowByItsDensity) {
   const envmap::Environment sky = sunny();
-  const auto laid = LaidGround::create(ground_at(0), sky, {});
-  ASSERT_TRUE(laid.ok());
+  const auto ground = ProjectedGround::create(ground_at(0), sky, {});
+  ASSERT_TRUE(ground.ok());
   const mesh::Box box{{-1, 0, -2}, {1, 1.4, 2}};
   for (const Vec3& at : {Vec3{0, 0, 0}, Vec3{1.5, 0, 0}, Vec3{-4, 0, 3}, Vec3{0.2, 0, -9}}) {
-    const LaidGround::Window window = laid->window(at, box);
+    const ProjectedGround::Window window = ground->window(at, box);
     double sum = 0, squares = 0;
     constexpr int kDraws = 1 << 16;
     for (int i = 0; i < kDraws; ++i) {
       const auto numbers =
           Sequence(mixed(7, static_cast<std::uint64_t>(i / 16)), 16).point(static_cast<std::uint32_t>(i % 16), 0);
-      const Vec3 direction = laid->drawn(window, numbers[0], numbers[1], numbers[2]);
-      const double density = laid->density(window, direction);
+      const Vec3 direction = ground->drawn(window, numbers[0], numbers[1], numbers[2]);
+      const double density = ground->density(window, direction);
       ASSERT_GT(density, 0);
       // Cells at the edge reach out of the window: there only the light is drawn.
       const bool inside = direction.y <= std::sin(window.top_rad) &&
@@ -54,8 +54,8 @@ TEST(LaidGround, DrawsEveryDirectionOfAWindowByItsDensity) {
   }
 }
 
-// Against a sum over the texels of the sky in parts, each of which is blocked or not: black boxes send nothing back.
-TEST(LaidGround, ShowsWhatTheMeshLeavesOfTheLight) {
+// Against a sum over the texels of the sky in parts, each of which is occluded or not: black boxes send nothing back.
+TEST(ProjectedGround, ShowsWhatTheMeshLeavesOfTheLight) {
   mesh::Mesh box = box_mesh(true);
   for (auto& t : box.triangles) std::swap(t[1], t[2]);  // facing outward
   for (Vec3& n : box.normals) n = -n;
@@ -65,8 +65,8 @@ TEST(LaidGround, ShowsWhatTheMeshLeavesOfTheLight) {
   stage.ground = ground_at(0);
   stage.build();
   const Transport& transport = *stage.transport;
-  const auto laid = LaidGround::create(*stage.ground, *stage.environment, {});
-  ASSERT_TRUE(laid.ok());
+  const auto ground = ProjectedGround::create(*stage.ground, *stage.environment, {});
+  ASSERT_TRUE(ground.ok());
   constexpr int kParts = 8;
   for (const Vec3& at : {Vec3{0, 0, 0}, Vec3{1.3, 0, 0.2}, Vec3{-1.4, 0, -0.6}, Vec3{0.4, 0, 1.6}, Vec3{-3, 0, 2}}) {
     color::Rgb left;
@@ -75,41 +75,41 @@ TEST(LaidGround, ShowsWhatTheMeshLeavesOfTheLight) {
       const double weight = 2 * kPi / (64 * kParts) * (high * high - low * low) / 2;
       for (int column = 0; column < 64 * kParts; ++column) {
         const Vec3 direction = stage.environment->direction_at((column + 0.5) / kParts, (row + 0.5) / kParts);
-        if (transport.rays().blocked(at + Vec3{0, 1e-5, 0}, direction)) continue;
+        if (transport.rays().occluded(at + Vec3{0, 1e-5, 0}, direction)) continue;
         const float* rgb = stage.environment->radiance(column / kParts, row / kParts);
         left += weight * color::Rgb{rgb[0], rgb[1], rgb[2]};
       }
     }
-    const color::Rgb truth = laid->paint(laid->open_radiance(at)) * left;
+    const color::Rgb truth = ground->paint(ground->open_radiance(at)) * left;
     PathOptions options;
     options.correction = true;
     const PathEstimate seen = stage.seen(options, at + Vec3{0, 0.2, 0}, at, 512);
     for (int c = 0; c < 3; ++c) {
-      // Parts of texels at the edge of the box's shadow are blocked as a whole: 0.4 % of the open light.
-      EXPECT_NEAR(seen.radiance[c], truth[c], 4 * deviation(seen, c) + 0.004 * laid->open_radiance(at)[c])
+      // Parts of texels at the edge of the box's shadow are occluded as a whole: 0.4 % of the open light.
+      EXPECT_NEAR(seen.radiance[c], truth[c], 4 * deviation(seen, c) + 0.004 * ground->open_radiance(at)[c])
           << at.x << " " << at.z << ", channel " << c;
     }
     // What a mesh can change is more than what it changes.
-    const double hidden = laid->light_share(laid->window(at, bounding_box(box)));
-    const color::Rgb open = laid->open_radiance(at);
+    const double hidden = ground->light_share(ground->window(at, bounding_box(box)));
+    const color::Rgb open = ground->open_radiance(at);
     EXPECT_LE(1 - seen.radiance[1] / open[1], hidden + 4 * deviation(seen, 1) / open[1] + 1e-3);
   }
 }
 
 // Far away it can change little, but for the long shadow of a low sun.
-TEST(LaidGround, TellsWhereAMeshChangesNothing) {
+TEST(ProjectedGround, TellsWhereAMeshChangesNothing) {
   const envmap::Environment even = even_environment();
-  const auto laid = LaidGround::create(ground_at(0), even, {});
-  ASSERT_TRUE(laid.ok());
+  const auto ground = ProjectedGround::create(ground_at(0), even, {});
+  ASSERT_TRUE(ground.ok());
   const mesh::Box box{{-1, 0, -2}, {1, 1.4, 2}};
-  EXPECT_EQ(laid->light_share(laid->window({0.5, 0, 1}, box)), 1);
-  EXPECT_LT(laid->light_share(laid->window({0, 0, 40}, box)), 1e-3);
+  EXPECT_EQ(ground->light_share(ground->window({0.5, 0, 1}, box)), 1);
+  EXPECT_LT(ground->light_share(ground->window({0, 0, 40}, box)), 1e-3);
   std::vector<Light> low = {{normalized({0, 0.05, -1}), {3, 3, 3}}};
-  const auto lit = LaidGround::create(ground_at(0), even, low);
+  const auto lit = ProjectedGround::create(ground_at(0), even, low);
   ASSERT_TRUE(lit.ok());
   EXPECT_GT(lit->light_share(lit->window({0, 0, 20}, box)), 0.01) << "the shadow of the light falls there";
   EXPECT_LT(lit->light_share(lit->window({0, 0, -40}, box)), 1e-3);
 }
 
 }  // namespace
-}  // namespace goniochrome::render::laid_ground_test
+}  // namespace goniochrome::render::projected_ground_test

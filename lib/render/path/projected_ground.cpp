@@ -1,4 +1,4 @@
-#include "render/path/laid_ground.h"
+#include "render/path/projected_ground.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,21 +82,21 @@ bool is_fine(const envmap::Environment& environment) {
 
 }  // namespace
 
-Result<LaidGround> LaidGround::create(const Ground& ground, const envmap::Environment& environment,
-                                      const std::vector<Light>& lights) {
+Result<ProjectedGround> ProjectedGround::create(const Ground& ground, const envmap::Environment& environment,
+                                                const std::vector<Light>& lights) {
   if (!(ground.probe_eye.y > ground.height))
     return input_error(
         "the environment was seen from a height of {}, and the floor lies at {}: the eye must be above it",
         ground.probe_eye.y, ground.height);
-  LaidGround laid;
-  laid.environment_ = &environment;
-  laid.eye_ = ground.probe_eye;
-  laid.sums_.assign(place_of(kColumns + 1, 0), 0.0F);
+  ProjectedGround result;
+  result.environment_ = &environment;
+  result.eye_ = ground.probe_eye;
+  result.sums_.assign(place_of(kColumns + 1, 0), 0.0F);
   const bool fine = is_fine(environment);
-  if (!fine) laid.gather_light(environment);
+  if (!fine) result.gather_light(environment);
   // Each texel is a constant patch.
   std::vector<BrightTexel> texels;
-  laid.soft_rows_.assign(static_cast<std::size_t>(environment.height()) + 1, 0.0);
+  result.soft_rows_.assign(static_cast<std::size_t>(environment.height()) + 1, 0.0);
   double below = 0, below_squares = 0;
   const bool rows_agree = environment.layout() == envmap::Environment::Layout::kLatLong;
   for (int row = 0; row < environment.height(); ++row) {
@@ -110,32 +110,32 @@ Result<LaidGround> LaidGround::create(const Ground& ground, const envmap::Enviro
       if (column == 0 || !rows_agree) weight = upward_weight(environment, column, row);
       if (!(weight > 0)) continue;
       const color::Rgb light = weight * texel(environment, column, row);
-      laid.irradiance_ += light;
-      laid.soft_rows_[static_cast<std::size_t>(row) + 1] += gray_of(light);
+      result.irradiance_ += light;
+      result.soft_rows_[static_cast<std::size_t>(row) + 1] += gray_of(light);
       if (gray_of(texel(environment, column, row)) > 0) texels.push_back({column, row, gray_of(light)});
-      if (fine) laid.add_light(environment.direction_at(column + 0.5, row + 0.5), gray_of(light));
+      if (fine) result.add_light(environment.direction_at(column + 0.5, row + 0.5), gray_of(light));
     }
   }
-  if (below_squares > 0) laid.ground_extent_sr_ = below * below / below_squares;
-  laid.soft_irradiance_ = laid.irradiance_;
+  if (below_squares > 0) result.ground_extent_sr_ = below * below / below_squares;
+  result.soft_irradiance_ = result.irradiance_;
   for (const Light& light : lights) {
     const color::Rgb lit = (kPi * brdf::disc_irradiance(light.direction.y, light.radius_rad)) * light.white;
-    laid.irradiance_ += lit;
-    if (gray_of(lit) > 0) laid.add_light(light.direction, gray_of(lit));
+    result.irradiance_ += lit;
+    if (gray_of(lit) > 0) result.add_light(light.direction, gray_of(lit));
   }
-  laid.sum_up();
-  laid.find_bright(std::move(texels));
-  for (std::size_t row = 1; row < laid.soft_rows_.size(); ++row)
-    laid.soft_rows_[row] = laid.soft_rows_[row - 1] + std::max(0.0, laid.soft_rows_[row]);
-  return laid;
+  result.sum_up();
+  result.find_bright(std::move(texels));
+  for (std::size_t row = 1; row < result.soft_rows_.size(); ++row)
+    result.soft_rows_[row] = result.soft_rows_[row - 1] + std::max(0.0, result.soft_rows_[row]);
+  return result;
 }
 
-void LaidGround::add_light(const Vec3& direction, double light) {
+void ProjectedGround::add_light(const Vec3& direction, double light) {
   const std::size_t at = place_of(column_of(azimuth_of(direction)) + 1, row_of(elevation_of(direction)));
   sums_[at] += static_cast<float>(light);
 }
 
-void LaidGround::gather_light(const envmap::Environment& environment) {
+void ProjectedGround::gather_light(const envmap::Environment& environment) {
   for (int column = 0; column < kColumns; ++column) {
     const double azimuth = (column + 0.5) * kColumnRad - kPi;
     for (int row = 0; row < kRows; ++row) {
@@ -149,7 +149,7 @@ void LaidGround::gather_light(const envmap::Environment& environment) {
 
 // A cell holds the light of texels whose middle it holds, or of its own middle. Texels reach into the cells around: a
 // part of their light keeps any direction from being drawn much more seldom than its light asks for.
-void LaidGround::sum_up() {
+void ProjectedGround::sum_up() {
   constexpr float kAround = 0.1F;
   const std::vector<float> own = sums_;
   for (int column = 1; column <= kColumns; ++column) {
@@ -165,13 +165,13 @@ void LaidGround::sum_up() {
 }
 
 // The irradiance of a row from before a column, which may lie one turn further on.
-double LaidGround::before(int column, int row) const {
+double ProjectedGround::before(int column, int row) const {
   return column <= kColumns
              ? static_cast<double>(sums_[place_of(column, row)])
              : static_cast<double>(sums_[place_of(kColumns, row)]) + sums_[place_of(column - kColumns, row)];
 }
 
-LaidGround::Window LaidGround::window(const Vec3& position, const mesh::Box& box) const {
+ProjectedGround::Window ProjectedGround::window(const Vec3& position, const mesh::Box& box) const {
   Window window;
   const Vec3 nearest = {std::clamp(position.x, box.low.x, box.high.x), 0,
                         std::clamp(position.z, box.low.z, box.high.z)};
@@ -206,13 +206,13 @@ LaidGround::Window LaidGround::window(const Vec3& position, const mesh::Box& box
   return window;
 }
 
-double LaidGround::light_share(const Window& window) const {
+double ProjectedGround::light_share(const Window& window) const {
   const double light = gray_of(irradiance_);
   return light > 0 ? std::min(1.0, window.light[static_cast<std::size_t>(window.rows)] / light) : 0;
 }
 
 // Those that are so many times as bright as the mean, if they hold enough of the irradiance.
-void LaidGround::find_bright(std::vector<BrightTexel> texels) {
+void ProjectedGround::find_bright(std::vector<BrightTexel> texels) {
   constexpr double kTimes = 30, kPart = 0.1;
   const double mean = gray_of(irradiance_) / kPi;
   double sum = 0;
@@ -236,7 +236,7 @@ void LaidGround::find_bright(std::vector<BrightTexel> texels) {
   soft_irradiance_ += -1.0 * bright_irradiance_;
 }
 
-bool LaidGround::is_bright(const Vec3& direction) const {
+bool ProjectedGround::is_bright(const Vec3& direction) const {
   if (is_bright_.empty()) return false;
   const envmap::GridPosition at = environment_->grid().position(direction);
   const int column = std::clamp(static_cast<int>(at.column), 0, environment_->width() - 1),
@@ -245,7 +245,7 @@ bool LaidGround::is_bright(const Vec3& direction) const {
                     static_cast<std::size_t>(column)];
 }
 
-LaidGround::BrightSample LaidGround::drawn_bright(double which, double u, double v) const {
+ProjectedGround::BrightSample ProjectedGround::drawn_bright(double which, double u, double v) const {
   const double total = bright_sums_.back();
   const auto above = std::upper_bound(bright_sums_.begin(), bright_sums_.end(), which * total);
   const auto i = std::min(static_cast<std::size_t>(above - bright_sums_.begin()), bright_.size() - 1);
@@ -256,13 +256,13 @@ LaidGround::BrightSample LaidGround::drawn_bright(double which, double u, double
           texel(*environment_, at.column, at.row)};
 }
 
-color::Rgb LaidGround::share_of(const color::Rgb& irradiance) const {
+color::Rgb ProjectedGround::share_of(const color::Rgb& irradiance) const {
   const auto by = [](double part, double whole) { return whole > 0 ? std::max(0.0, part / whole) : 0; };
   return {by(irradiance.x, irradiance_.x), by(irradiance.y, irradiance_.y), by(irradiance.z, irradiance_.z)};
 }
 
 // Where a channel has no light in the draws, it is shared evenly.
-void LaidGround::scale_to(const color::Rgb& irradiance, std::vector<SharedRay>& rays) const {
+void ProjectedGround::scale_to(const color::Rgb& irradiance, std::vector<SharedRay>& rays) const {
   const color::Rgb wanted = share_of(irradiance);
   color::Rgb drawn;
   for (const SharedRay& ray : rays) drawn += ray.share;
@@ -274,7 +274,7 @@ void LaidGround::scale_to(const color::Rgb& irradiance, std::vector<SharedRay>& 
 }
 
 // Rows are drawn by what light they hold, columns by that within the row, and places within a texel evenly.
-std::vector<LaidGround::SharedRay> LaidGround::soft_rays(std::uint32_t count) const {
+std::vector<ProjectedGround::SharedRay> ProjectedGround::soft_rays(std::uint32_t count) const {
   const double total = soft_rows_.back();
   if (!(total > 1e-9 * gray_of(irradiance_))) return {};
   const auto width = static_cast<std::size_t>(environment_->width());
@@ -311,7 +311,7 @@ std::vector<LaidGround::SharedRay> LaidGround::soft_rays(std::uint32_t count) co
   return rays;
 }
 
-std::vector<LaidGround::SharedRay> LaidGround::bright_rays(std::uint32_t count) const {
+std::vector<ProjectedGround::SharedRay> ProjectedGround::bright_rays(std::uint32_t count) const {
   std::vector<SharedRay> rays;
   if (!has_bright()) return rays;
   const Sequence sequence(0xB816, count);
@@ -328,7 +328,7 @@ std::vector<LaidGround::SharedRay> LaidGround::bright_rays(std::uint32_t count) 
 // The part of the draws that follow the light.
 constexpr double kByLight = 0.5;
 
-Vec3 LaidGround::drawn(const Window& window, double choice, double u, double v) const {
+Vec3 ProjectedGround::drawn(const Window& window, double choice, double u, double v) const {
   const float total = window.light[static_cast<std::size_t>(window.rows)];
   double azimuth = 0, sine = 0;
   if (choice < kByLight && total > 0) {
@@ -361,7 +361,7 @@ Vec3 LaidGround::drawn(const Window& window, double choice, double u, double v) 
 }
 
 // Both parts are even by the cosine within a cell and within the window.
-double LaidGround::density(const Window& window, const Vec3& direction) const {
+double ProjectedGround::density(const Window& window, const Vec3& direction) const {
   if (!(direction.y > 0) || !(window.cosine > 0)) return 0;
   const double total = window.light[static_cast<std::size_t>(window.rows)];
   const double azimuth = azimuth_of(direction), top = std::sin(window.top_rad);
@@ -377,13 +377,13 @@ double LaidGround::density(const Window& window, const Vec3& direction) const {
   return density * direction.y;
 }
 
-color::Rgb LaidGround::open_radiance(const Vec3& position) const {
+color::Rgb ProjectedGround::open_radiance(const Vec3& position) const {
   const Vec3 seen = position - eye_;
   const double distance = length(seen);
   return distance > 0 ? environment_->blended((1 / distance) * seen) : color::Rgb{};
 }
 
-color::Rgb LaidGround::paint(const color::Rgb& open_radiance) const {
+color::Rgb ProjectedGround::paint(const color::Rgb& open_radiance) const {
   const auto by = [](double radiance, double irradiance) { return irradiance > 0 ? radiance / irradiance : 0; };
   return {by(open_radiance.x, irradiance_.x), by(open_radiance.y, irradiance_.y), by(open_radiance.z, irradiance_.z)};
 }

@@ -1,4 +1,4 @@
-// The lower half of an environment, laid on a floor. goniochrome-theory(7), PATHS, Ground.
+// The lower half of an environment, projected onto a floor. goniochrome-theory(7), PATHS, Ground.
 #pragma once
 
 #include <array>
@@ -16,11 +16,11 @@ namespace goniochrome::render {
 // A floor that shows what a probe saw of the ground it stood on. Where nothing takes light from it, a point of the
 // floor has the radiance of the environment in the direction in which the probe saw that point. It is matt: shaded
 // points have that radiance times the share of their irradiance that is left, channel by channel.
-class LaidGround {
+class ProjectedGround {
  public:
   // The environment must outlive it. Error: an eye that is not above the floor.
-  static Result<LaidGround> create(const Ground& ground, const envmap::Environment& environment,
-                                   const std::vector<Light>& lights);
+  static Result<ProjectedGround> create(const Ground& ground, const envmap::Environment& environment,
+                                        const std::vector<Light>& lights);
 
   // What the point of the floor shows in the open; `position` in units of the mesh.
   color::Rgb open_radiance(const Vec3& position) const;
@@ -49,7 +49,7 @@ class LaidGround {
   double density(const Window& window, const Vec3& direction) const;
 
   // The brightest texels above the horizon, such as those of a sun: light from them is drawn apart from all else, so
-  // that where all of it is blocked its share has no noise. None where they hold little of the irradiance.
+  // that where all of it is occluded its share has no noise. None where they hold little of the irradiance.
   bool has_bright() const { return !bright_.empty(); }
   bool is_bright(const Vec3& direction) const;
   // A direction of theirs, in proportion to the irradiance that they give.

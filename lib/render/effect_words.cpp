@@ -1,19 +1,18 @@
-#include "render/plan/effect_words.h"
+#include "render/effect_words.h"
 
 #include <algorithm>
 #include <iterator>
 #include <string_view>
 
 #include "base/text.h"
-#include "render/plan.h"
 #include "render/plan/effect_list.h"
 
 namespace goniochrome::render {
 
-Result<Words> words_of(const std::string& text) {
+Result<EffectWords> words_of(const std::string& text) {
   static constexpr std::pair<const char*, Start> kStarts[] = {
       {"auto", Start::kAuto}, {"all", Start::kAll}, {"none", Start::kNone}};
-  Words words;
+  EffectWords words;
   for (const std::string_view piece : split(text, ',')) {
     const std::string word(trimmed(piece));
     const auto start = std::ranges::find(kStarts, word, [](const auto& known) { return known.first; });
@@ -36,26 +35,8 @@ Result<Words> words_of(const std::string& text) {
   return words;
 }
 
-const char* spelled(Decision decision) {
-  switch (decision) {
-    case Decision::kNotInScene:
-      return "not in the scene";
-    case Decision::kDrawn:
-      return "drawn";
-    case Decision::kDropped:
-      return "dropped";
-    case Decision::kForcedOn:
-      return "forced on";
-    case Decision::kForcedOff:
-      return "forced off";
-    case Decision::kFirstPass:
-      break;
-  }
-  return "first pass alone";
-}
-
 Result<void> check_effects(const std::string& effects) {
-  GONIO_ASSIGN(const Words words, words_of(effects));
+  GONIO_ASSIGN(const EffectWords words, words_of(effects));
   return {};
 }
 

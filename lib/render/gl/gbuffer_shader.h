@@ -1,0 +1,22 @@
+// The program that draws the G-buffer, and how all programs begin. goniochrome-theory(7), RENDERING.
+#pragma once
+
+#include <string>
+
+namespace goniochrome::render {
+
+// The first line of every program.
+inline constexpr const char* kHead = "#version 330 core\n";
+
+// Pixels as rays; both programs see the same, so a viewing direction needs no position.
+inline constexpr const char* kRays =
+    R"(uniform vec3 corner, right, down;  // the ray through (x, y), in pixels from the upper left
+vec3 ray() { return normalize(corner + gl_FragCoord.x * right + gl_FragCoord.y * down); }
+)";
+
+// Draws the G-buffer: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from inside);
+// and, as a second picture unless it is left out, the number of the triangle.
+std::string gbuffer_vertex_shader();
+std::string gbuffer_fragment_shader(bool with_triangles = true);
+
+}  // namespace goniochrome::render

@@ -1,0 +1,77 @@
+#include "render/picture_error.h"
+
+#include <algorithm>
+
+#include "base/clock.h"
+#include "render/exact.h"
+#include "render/internal/seen.h"
+#include "render/panes.h"
+#include "render/scene_effects.h"
+#include "render/surface_layer.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+// `count` of the n numbers 0..n-1, evenly drawn, in ascending order (Fisher-Yates on splitmix64).
+std::vector<std::size_t> drawn(std::size_t n, std::size_t count, std::uint64_t seed) {
+  std::vector<std::size_t> all(n);
+  for (std::size_t i = 0; i < n; ++i) all[i] = i;
+  for (std::size_t i = 0; i < std::min(count, n); ++i) {
+    std::uint64_t z = (seed += 0x9E3779B97F4A7C15U);
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
+    z ^= z >> 31;
+    std::swap(all[i], all[i + z % (n - i)]);
+  }
+  all.resize(std::min(count, n));
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+}  // namespace
+
+PixelSample sampled_pixels(const Gbuffer& g, const Scene& scene, int count, std::uint64_t seed) {
+  std::vector<std::array<int, 2>> visible;
+  for (int y = 0; y < g.height; ++y) {
+    for (int x = 0; x < g.width; ++x) {
+      const int part = g.part(x, y);
+      if (part >= 0 && !is_pane(scene, static_cast<std::size_t>(part))) visible.push_back({x, y});
+    }
+  }
+  std::vector<TexturePlace> places;
+  if (scene.layer != nullptr) places = scene.layer->filtered_places(g);
+  PixelSample sample;
+  for (const std::size_t i : drawn(visible.size(), static_cast<std::size_t>(count), seed)) {
+    const auto [x, y] = visible[i];
+    sample.places.push_back(visible[i]);
+    sample.points.push_back(g.point(x, y, places, scene.mesh));
+  }
+  return sample;
+}
+
+PictureError picture_error(const Frame& frame, const Scene& scene, const envmap::Environment* env,
+                           double white_luminance, int count, std::uint64_t seed) {
+  const Stopwatch clock;
+  const double white = white_luminance > 0 ? white_luminance : 1;  // in the dark all is black
+  const PixelSample sample = sampled_pixels(*frame.gbuffer, scene, count, seed);
+  const std::vector<std::array<int, 2>>& chosen = sample.places;
+  const std::vector<color::Rgb> truth = exact_radiance(sample.points, scene, effects_of(scene), env);
+
+  PictureError error;
+  error.checked_pixels = static_cast<int>(chosen.size());
+  std::vector<double> de00;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const float* pixel = frame.centers.pixel(chosen[i][0], chosen[i][1]);
+    de00.push_back(seen_difference({pixel[0], pixel[1], pixel[2]}, truth[i], white));
+    error.de00_mean += de00.back() / static_cast<double>(chosen.size());
+    if (de00.back() <= error.de00_max) continue;
+    error.de00_max = de00.back();
+    error.worst_x = chosen[i][0], error.worst_y = chosen[i][1];
+  }
+  error.de00_p95 = percentile_95(std::move(de00));
+  error.time_s = clock.elapsed_s();
+  return error;
+}
+
+}  // namespace goniochrome::render

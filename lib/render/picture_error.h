@@ -1,0 +1,36 @@
+// A picture beside the reference integrator. goniochrome-theory(7), REFERENCE INTEGRATOR.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "render/gbuffer.h"
+#include "render/renderer.h"
+#include "render/scene.h"
+
+namespace goniochrome::render {
+
+// How far a picture is from the reference.
+struct PictureError {
+  int checked_pixels = 0;
+  double de00_mean = 0, de00_p95 = 0, de00_max = 0;
+  int worst_x = 0, worst_y = 0;
+  double time_s = 0;
+};
+
+// Random visible pixels that show no panes, `count` of them or all where there are fewer: their places in the picture
+// and their points.
+struct PixelSample {
+  std::vector<std::array<int, 2>> places;
+  std::vector<VisiblePoint> points;
+};
+PixelSample sampled_pixels(const Gbuffer& gbuffer, const Scene& scene, int count, std::uint64_t seed);
+
+// Compares the centers of `count` random visible pixels (all, where there are fewer) with the reference, as CIEDE2000
+// of Lab values relative to `white_luminance`, D65. The frame must hold its centers. The reference has everything that
+// the scene calls for.
+PictureError picture_error(const Frame& frame, const Scene& scene, const envmap::Environment* env,
+                           double white_luminance, int count, std::uint64_t seed);
+
+}  // namespace goniochrome::render

@@ -1,0 +1,34 @@
+// The effects that a scene calls for, and the table of weights that all engines with prefiltered maps read.
+// goniochrome-theory(7), RENDERING.
+#pragma once
+
+#include <vector>
+
+#include "base/result.h"
+#include "brdf/ward.h"
+#include "render/effects.h"
+#include "render/scene.h"
+
+namespace goniochrome::render {
+
+// Everything that the scene's paints and lights call for.
+Effects effects_of(const Scene& scene);
+
+// A paint with the diffuse part, lobes, mirror, views and coat that are on alone.
+paint::LobeFit with_effects(const paint::LobeFit& paint, const Effects& effects);
+
+// These, and then the bright spots of the environment that are cut one by one, which scene_maps() takes out of the
+// maps.
+std::vector<Light> single_lights(const Scene& scene, const Effects& effects);
+
+// The tilted normals that each part's lobes are drawn about; a single one where the part is isotropic.
+std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects& effects);
+
+// Error: a paint that is seen shows the extent of a lamp at a place. What its lobes gather of a disc is tabulated for
+// one radius, and the lamp has another at each point. `engine` is the name of the engine that asks.
+Result<void> draws_placed_lamps(const Scene& scene, const char* engine);
+
+// `stretched` tells of each part whether other lobes stand for the gloss of its rough coat; empty: of none.
+WeightTable weight_table(const Scene& scene, const Effects& effects, const std::vector<bool>& stretched = {});
+
+}  // namespace goniochrome::render
