@@ -144,6 +144,26 @@ TEST(ShadedGround, ErrsLessTheMoreDirectionsItHas) {
   }
 }
 
+// Without time for twice the directions, the grid is that of the fewest. The control has all that are asked for.
+TEST(ShadedGround, ATimeLimitTakesDirections) {
+  constexpr double kNoTime_s = 1e-3, kCell = 0.05;
+  const Stage stage;
+  const rays::Float3 down{0, -1, 0};
+  const auto light = [&](const GroundRequest& request) {
+    Transport shaded = *stage.transport;
+    shaded.shade_ground(request, 1);
+    const rays::Float3 from = shaded.rays().local({1.2, 0.05, 0.3});
+    return shaded.shaded_ground(shaded.rays().spot(shaded.rays().closest(from, down), from, down)).sum();
+  };
+  constexpr int kFew = kFewestGroundDirections;
+  const color::Rgb few = light({.directions = kFew, .cell = kCell, .bounced_directions = 4 * kFew});
+  const auto many = [&](double longest_s) {
+    return light({.directions = 8 * kFew, .cell = kCell, .bounced_directions = 32 * kFew, .longest_s = longest_s});
+  };
+  EXPECT_EQ(many(kNoTime_s), few);
+  EXPECT_NE(many(0), few);
+}
+
 // Points of the body see the floor through the grid, and the light of the ground that it hides is drawn with what is
 // shown in its place: the sums are those of paths.
 TEST(ShadedGround, LightsTheBodyAsPathsDo) {
