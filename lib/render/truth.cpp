@@ -26,6 +26,8 @@ constexpr int kMoreRounds = 8;
 constexpr double kSpare = 1.2;
 // The part of the difference that the truth's own error may be, and the noise below which nobody sees any.
 constexpr double kPart = 0.1, kUnseen = 0.02;
+// Of the tolerance: a verdict needs no less.
+constexpr double kPartOfTolerance = 0.05;
 
 // Independent batches, added one after the other.
 struct PointTruth {
@@ -182,7 +184,9 @@ class Judge {
       truth.add(point.batch_shares(mixed(seed, static_cast<std::uint64_t>(truth.batches.count()))));
   }
 
-  double allowed_noise() const { return std::max(kUnseen, kPart * total_); }
+  double allowed_noise() const {
+    return std::max({kUnseen, kPart * total_, kPartOfTolerance * request_.tolerance_de00});
+  }
   bool is_sharp() const { return judged_ && noise_ <= allowed_noise(); }
   void judge() {
     judged_ = true;

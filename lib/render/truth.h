@@ -30,7 +30,7 @@ struct TrueWorth {
 struct TruthError {
   PictureError total;
   double standard_error = 0;  // of the truth itself: the 95th percentile of its noise
-  bool sharp = false;         // whether that is below a tenth of total.de00_p95, or of the least that matters
+  bool sharp = false;         // whether that is below a tenth of total.de00_p95, or small beside the tolerance
   TruthShares shares;
   TrueWorth worth;  // 0 where the picture was drawn by paths alone
 };
@@ -39,6 +39,7 @@ struct TruthRequest {
   const envmap::Environment* environment = nullptr;
   double white_luminance = 1;
   int count = 100;
+  double tolerance_de00 = 0;  // of the picture: noise of the truth below a twentieth of it is small
   int bounces = 8;
   std::uint64_t seed = 1;
   // Batches of 16 directions: of every pixel, and of those that are noisier than they may be.

@@ -179,7 +179,7 @@ void add_checking(cli::ToolSpec& spec, Options& o) {
           "Differences are CIEDE2000, relative to the brightest white diffuser. AGAINST is truth where rays are "
           "traced, and else model:\n- model: exact lobes of every texel of the image, with nothing in the way of "
           "light.\n- truth: with shadows and bounced light, traced until their standard error is below a tenth of the "
-          "difference. Over --tolerance, at 95 of 100 pixels, the exit status is 1.");
+          "difference or a twentieth of --tolerance. Over --tolerance, at 95 of 100 pixels, the exit status is 1.");
   spec.option("check-source", "FILE", "testdata/studio.exr", &o.check_source,
               "image that a prefiltered environment was made from, if it was moved")
       .more("The engines integral and path use it too.");

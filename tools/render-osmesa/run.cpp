@@ -399,6 +399,7 @@ Result<cli::Verdict> Shooting::check_picture() {
   request.white_luminance =
       frame_.noise && frame_.noise->white_luminance > 0 ? frame_.noise->white_luminance : white_.luminance;
   request.count = options_.check;
+  request.tolerance_de00 = session_.common().tolerance;
   request.bounces = options_.bounces;
   request.seed = session_.common().seed;
   request.whole = by_rays();

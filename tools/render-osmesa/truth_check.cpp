@@ -38,8 +38,10 @@ void tell_truth(const render::TruthError& error, const std::string& source, doub
                   "{:.2f}; beside it the fit of the paints to their readings {:.2f}",
                   shares.prefilter, shares.occlusion, shares.bounce, shares.noise, shares.fit));
   if (!error.sharp)
-    session.warn(fmt::format("the truth is known to {:.2f} dE00 only, which is more than a tenth of the difference",
-                             error.standard_error));
+    session.warn(
+        fmt::format("the truth is known to {:.2f} dE00 only, which is more than a tenth of the difference and a "
+                    "twentieth of --tolerance",
+                    error.standard_error));
   if (total.de00_p95 > tolerance)
     session.say(fmt::format("the picture is farther from the truth than --tolerance {:g} allows", tolerance));
 }
