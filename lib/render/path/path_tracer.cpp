@@ -19,6 +19,9 @@ namespace goniochrome::render {
 namespace {
 
 // Points that one thread takes at a time.
+// An error of so many tolerances is a speck. Its point gets at most so many times its samples, and all of these points
+// such a part of all samples or, where few points have any, as many for each point.
+constexpr double kSpeck = 2, kMostOfSpeck = 15, kSpecksShare = 0.5;
 constexpr std::size_t kSampledTogether = 64;
 // Most points need no more than a few samples: the first round takes as many fours as tell a variance.
 constexpr int kFirstFours = 2;
@@ -72,7 +75,7 @@ class Picture {
   PathPicture draw() {
     std::vector<int> more = first_fours();
     double noise = 0;
-    bool reached = false;
+    bool reached = false, mended = false;
     if (request_.stop_de00 > 0) first_.resize(points_.size());
     while (true) {
       const double before = drawn();
@@ -86,7 +89,9 @@ class Picture {
       judging_s_ = judging.elapsed_s();
       if (request_.progress) request_.progress(std::hypot(noise, found_.stopped_de00), clock_.elapsed_s());
       reached = request_.tolerance_de00 > 0 && noise <= tolerance();
-      if (reached || deadline_.passed() || !plan(noise, more) || !cut(more)) break;
+      const bool goes_on = !deadline_.passed() && (reached ? !mended && plan_worst(more) : plan(noise, more));
+      mended = reached;
+      if (!goes_on || !cut(more)) break;
     }
     PathPicture picture;
     picture.reached = reached, picture.found = found_.of;
@@ -527,6 +532,22 @@ class Picture {
       if (in_vain) return false;
       if (limited || scale > 1e6) return asked > 0;
     }
+  }
+
+  // A picture that is within its tolerance at 95 of 100 points may have specks at the others, most of them at edges,
+  // which no neighbor tells. One round more goes to these alone, and takes no more than a part of all samples.
+  bool plan_worst(std::vector<int>& more) const {
+    if (!request_.reconstruct) return false;
+    double asked = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const double n = counted(i), wanted = states_[i].needed / (kSpeck * kSpeck) - n;
+      more[i] = static_cast<int>(std::clamp(wanted, 0.0, kMostOfSpeck * n));
+      asked += more[i];
+    }
+    const double share = kSpecksShare * std::max(drawn(), static_cast<double>(points_.size())) / asked;
+    if (share < 1)
+      for (int& fours : more) fours = static_cast<int>(share * fours);
+    return asked > 0;
   }
 
   double drawn() const {

@@ -337,6 +337,58 @@ TEST(PathPicture, PointsWithoutSamplesAreToldByTheirNeighbors) {
   EXPECT_LT(sparse.noise_p95_de00, 1.25 * error);
 }
 
+// Two boxes with a gap between them that a few pixels show, under a bright lamp. The first round is within the
+// tolerance at 95 of 100 points, and one more mends the worst of the others. Control: the first round alone.
+TEST(PathPicture, TheWorstPointsGetOneRoundMore) {
+  mesh::Mesh box = box_mesh(true), boxes;
+  for (auto& t : box.triangles) std::swap(t[1], t[2]);  // facing outward
+  for (Vec3& n : box.normals) n = -n;
+  for (const double x : {-1.03, 1.03}) add_mesh(boxes, box, 1, {x, 0, 0});
+  PathStage stage(boxes, {matt({0.7, 0.6, 0.5})});
+  stage.environment = environment_of(64, 32, [](int x, int y) {
+    return x >= 20 && x < 23 && y >= 5 && y < 8 ? color::Rgb{60, 60, 60} : color::Rgb{0.3, 0.4, 0.5};
+  });
+  stage.build();
+  Camera camera;
+  camera.eye = {0.2, 5, 1};
+  camera.fov_deg = 30;
+  constexpr int kWidth = 128, kHeight = 96;
+  const Rays center = *rays(camera, kWidth, kHeight);
+  std::vector<VisibleSurface> samples;
+  for (const auto& [dx, dy] : sample_shifts(4))
+    samples.push_back(visible_surface(stage.transport->rays(), center.shifted(dx, dy), kWidth, kHeight));
+  PathRequest request;
+  request.options.bounces = 2, request.options.correction = true;
+  constexpr color::Rgb kBase{0.2, 0.2, 0.2};
+  image::Image base;
+  base.width = kWidth, base.height = kHeight, base.channels = 3;
+  base.data.assign(std::size_t{kWidth} * kHeight * 3, 0.2F);
+  request.tolerance_de00 = 0, request.most_samples = 8;
+  constexpr int kPictures = 64;
+  std::vector<color::Rgb> truth;
+  for (int i = 0; i < kPictures; ++i) {
+    request.seed = 100 + static_cast<std::uint64_t>(i);
+    const PathPicture one = path_picture(*stage.transport, samples, &base, request);
+    truth.resize(one.points.size(), kBase);
+    for (std::size_t k = 0; k < truth.size(); ++k) truth[k] += (1.0 / kPictures) * one.points[k].radiance;
+  }
+  request.reconstruct = true, request.seed = 1;
+  const PathPicture first = path_picture(*stage.transport, samples, &base, request);
+  request.tolerance_de00 = 1, request.most_samples = 1 << 16;
+  const PathPicture mended = path_picture(*stage.transport, samples, &base, request);
+  const auto worst = [&](const PathPicture& picture) {
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < truth.size(); ++i)
+      errors.push_back(seen_difference(kBase + picture.points[i].radiance, truth[i], 1));
+    std::ranges::sort(errors);
+    return errors[errors.size() * 995 / 1000];
+  };
+  ASSERT_LT(first.noise_p95_de00, request.tolerance_de00);
+  EXPECT_TRUE(mended.reached);
+  EXPECT_LE(mended.samples_mean, first.samples_mean + 2);
+  EXPECT_LT(worst(mended), 0.5 * worst(first));
+}
+
 TEST(Noise, IsTheSpreadOfSmallErrors) {
   TestNumbers next(2);
   const auto normal = [&] { return std::sqrt(-2 * std::log(1 - next())) * std::cos(6.283185307179586 * next()); };
