@@ -45,10 +45,12 @@ Result<void> check_quantity(const Limit& limit) {
   return {};
 }
 
-// A cell of a number; nothing where it is empty.
-Result<std::optional<double>> bound_in(std::string_view cell, const char* column) {
+// A cell of a number, whose decimal sign may be a comma where that does not separate cells; nothing where it is empty.
+Result<std::optional<double>> bound_in(std::string_view cell, char separator, const char* column) {
   if (cell.empty()) return std::optional<double>();
-  const auto value = parse_number(cell);
+  std::string number(cell);
+  if (separator != ',') std::ranges::replace(number, ',', '.');
+  const auto value = parse_number(number);
   if (!value) return input_error("{} is \"{}\", which is no number", column, shown(cell));
   return value;
 }
@@ -64,8 +66,8 @@ Result<Limit> limit_in(std::string_view line, char separator) {
     limit.at = paint::geometry_name(*geometry);
   }
   GONIO_TRY(check_quantity(limit));
-  GONIO_ASSIGN(limit.low, bound_in(trimmed(cells[2]), "low"));
-  GONIO_ASSIGN(limit.high, bound_in(trimmed(cells[3]), "high"));
+  GONIO_ASSIGN(limit.low, bound_in(trimmed(cells[2]), separator, "low"));
+  GONIO_ASSIGN(limit.high, bound_in(trimmed(cells[3]), separator, "high"));
   if (!limit.low && !limit.high) return input_error("has neither low nor high: give one of them");
   if (limit.low && limit.high && *limit.low > *limit.high)
     return input_error("low is {}, above high, which is {}", shortest(*limit.low), shortest(*limit.high));

@@ -91,6 +91,17 @@ TEST(Limits, ComeBackFromTheirTableAndFromAPaint) {
   EXPECT_EQ(options.illuminants, std::vector<std::string>{"A"});
 }
 
+TEST(Limits, HaveADecimalCommaWhereCellsAreSeparatedOtherwise) {
+  for (const char separator : {';', '\t'}) {
+    std::string table = "geometry;quantity;low;high\n*;dL;-1,5;0,25\n";
+    std::ranges::replace(table, ';', separator);
+    const auto parsed = parse_limits(table, "limits.csv");
+    ASSERT_TRUE(parsed.ok()) << parsed.error().message;
+    EXPECT_EQ(parsed->front().low, -1.5);
+    EXPECT_EQ(parsed->front().high, 0.25);
+  }
+}
+
 TEST(Limits, AreRefusedWithTheirLine) {
   for (const char* wrong : {"*,dL,1,-1", "*,dQ,1,2", "*,dL,,", "*,dL,x,2", "*,dL,1", "x,dL,1,2", "mean,dL,1,2",
                             "45as15,gloss60,1,2", "*,dE_cie99,,2", "*,dL,nan,2", "*,texture:,,2", "*,metamerism_,,2"}) {
