@@ -97,9 +97,12 @@ std::string fault_of(const Deviation& d, const AngleDifference* angle, bool up) 
   if (q.starts_with("gloss")) return up ? "too glossy" : "too matt";
   if (q.starts_with("metamerism")) return "matches in the light of the readings alone";
   if (q.starts_with("texture:")) return (up ? "too much " : "too little ") + q.substr(8);
-  return (up ? "too much " : "too little ") + std::string(q == "flop_index"       ? "flop"
-                                                          : q == "hue_travel_deg" ? "hue travel"
-                                                                                  : q);
+  const char* word = q == "flop_index"        ? "flop"
+                     : q == "chroma_index"    ? "chroma travel"
+                     : q == "hue_shift_index" ? "hue shift"
+                     : q == "hue_travel_deg"  ? "hue travel"
+                                              : q.c_str();
+  return (up ? "too much " : "too little ") + std::string(word);
 }
 
 // Two numbers with as few decimals as tell them apart, two at least.
@@ -122,8 +125,13 @@ Excess excess_of(const Deviation& d, const Limit& limit, bool up, const Comparis
   const auto angle = std::ranges::find_if(
       comparison.angles, [&](const AngleDifference& a) { return paint::geometry_name(a.geometry) == d.at; });
   const AngleDifference* at = angle == comparison.angles.end() ? nullptr : &*angle;
-  std::string words = fmt::format("{}: {} {}, limit {}: {}{}", d.at, d.quantity, value, passed, fault_of(d, at, up),
-                                  at ? place_of(at->geometry) : "");
+  std::string where = at ? place_of(at->geometry) : "";
+  // The largest dE names its angle.
+  for (const AngleDifference& a : comparison.angles)
+    if (d.at == kLargest && where.empty() && std::ranges::find(a.by_formula, d.value) != a.by_formula.end())
+      where = " at " + paint::geometry_name(a.geometry);
+  std::string words =
+      fmt::format("{}: {} {}, limit {}: {}{}", d.at, d.quantity, value, passed, fault_of(d, at, up), where);
   return {d, up ? std::nullopt : limit.low, up ? limit.high : std::nullopt, std::move(words)};
 }
 
@@ -144,11 +152,15 @@ std::string unescaped(std::string text) {
 }
 
 bool is_limits_element(const std::string& element) {
-  const std::string_view tag = std::string_view(element).substr(0, element.find('>'));
-  return tag.find(kQualityNamespace) != std::string_view::npos && tag.find("limits") < tag.find(' ');
+  return is_quality_element(element, "limits");
 }
 
 }  // namespace
+
+bool is_quality_element(std::string_view element, std::string_view name) {
+  const std::string_view tag = element.substr(0, element.find('>'));
+  return tag.find(kQualityNamespace) != std::string_view::npos && tag.find(name) < tag.find(' ');
+}
 
 Result<std::vector<Limit>> parse_limits(std::string_view table, const std::string& name) {
   std::vector<Limit> limits;
@@ -159,7 +171,7 @@ Result<std::vector<Limit>> parse_limits(std::string_view table, const std::strin
   for (std::string_view line : split(table, '\n')) {
     ++number;
     line = trimmed(line);
-    if (line.empty() || line.starts_with('#')) continue;
+    if (line.empty() || line.starts_with('#') || (!has_head && line.starts_with("sep="))) continue;
     if (!has_head) {
       for (const char each : {'\t', ';'})
         if (line.find(each) != std::string_view::npos) separator = each;
