@@ -5,6 +5,7 @@
 
 #include <condition_variable>
 #include <cstddef>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -29,20 +30,44 @@ class Pipeline {
       : slots_(slots), stages_(stages), states_(slots.size(), State::kFree) {}
 
   void run(int finishers) {
-    std::vector<std::thread> threads;
-    threads.emplace_back([this] { fetch_all(); });
-    for (int i = 0; i < finishers; ++i) threads.emplace_back([this] { finish_all(); });
-    work_and_settle_all();
     {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      stopped_ = true;
+      Threads threads{*this, {}};
+      threads.all.emplace_back([this] { keep_failure([this] { fetch_all(); }); });
+      for (int i = 0; i < finishers; ++i) threads.all.emplace_back([this] { keep_failure([this] { finish_all(); }); });
+      work_and_settle_all();
     }
-    changed_.notify_all();
-    for (std::thread& thread : threads) thread.join();
+    if (failure_) std::rethrow_exception(failure_);
   }
 
  private:
   enum class State { kFree, kFetched, kWorked, kFinished };
+
+  // Threads that stop and end where the caller leaves, also by an exception.
+  struct Threads {
+    Pipeline& pipeline;
+    std::vector<std::thread> all;
+    ~Threads() {
+      {
+        const std::lock_guard<std::mutex> lock(pipeline.mutex_);
+        pipeline.stopped_ = true;
+      }
+      pipeline.changed_.notify_all();
+      for (std::thread& thread : all) thread.join();
+    }
+  };
+
+  // Runs a thread; its exception ends all, and goes to the caller.
+  void keep_failure(const std::function<void()>& thread) {
+    try {
+      thread();
+    } catch (...) {
+      {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        failure_ = std::current_exception();
+      }
+      changed_.notify_all();
+    }
+  }
 
   std::size_t place(std::size_t number) const { return number % slots_.size(); }
   State& state(std::size_t number) { return states_[place(number)]; }
@@ -95,10 +120,11 @@ class Pipeline {
       {
         std::unique_lock<std::mutex> lock(mutex_);
         changed_.wait(lock, [&] {
-          return (is_ended_ && settled == end_) || (settled < worked_ && state(settled) == State::kFinished) ||
+          return failure_ || (is_ended_ && settled == end_) ||
+                 (settled < worked_ && state(settled) == State::kFinished) ||
                  (worked_ < settled + slots_.size() && state(worked_) == State::kFetched);
         });
-        if (is_ended_ && settled == end_) return;
+        if (failure_ || (is_ended_ && settled == end_)) return;
         to_settle = settled < worked_ && state(settled) == State::kFinished;
       }
       if (to_settle) {
@@ -125,12 +151,14 @@ class Pipeline {
   std::size_t to_finish_ = 0;  // the next that a finisher takes
   std::size_t end_ = 0;
   bool is_ended_ = false, stopped_ = false;
+  std::exception_ptr failure_;  // of a thread of its own
 };
 
 }  // namespace internal
 
 // Passes all things through the stages, with `finishers` threads for the third one; without any, all runs on the thread
-// of the caller, one thing after the other. `slots` has at least one, and several where stages are to run at once.
+// of the caller, one thing after the other. `slots` has at least one, and several where stages are to run at once. An
+// exception of any stage goes to the caller.
 template <class Slot>
 void run_stages(std::vector<Slot>& slots, int finishers, const Stages<Slot>& stages) {
   if (finishers > 0) {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <new>
 #include <numeric>
 
 namespace goniochrome::pipeline_test {
@@ -66,6 +67,28 @@ TEST(Pipeline, StopsWhereAStageSaysSo) {
     EXPECT_EQ(got.worked.size(), 18u);
     EXPECT_LE(got.settled.size(), 17u);
   }
+}
+
+TEST(Pipeline, HandsTheExceptionOfAnyStageToTheCaller) {
+  for (const int finishers : {0, 1, 3})
+    for (int failing = 0; failing < 4; ++failing) {
+      int next = 0;
+      std::vector<Slot> slots(4);
+      const auto stage = [failing](int place) {
+        return [=](Slot& slot) {
+          if (place == failing && slot.number == 9) throw std::bad_alloc();
+          return true;
+        };
+      };
+      Stages<Slot> stages;
+      stages.fetch = [&](Slot& slot) {
+        slot.number = next++;
+        return stage(0)(slot) && next < 1000;
+      };
+      stages.work = stage(1), stages.finish = stage(2), stages.settle = stage(3);
+      EXPECT_THROW(run_stages(slots, finishers, stages), std::bad_alloc)
+          << finishers << " finishers, stage " << failing;
+    }
 }
 
 // No more things are on their way than there are slots.

@@ -148,15 +148,24 @@ void average_items(const Readings& readings, std::vector<Item>& mean, double Ite
   });
 }
 
-// The span of the dates, and the serials of all instruments.
-void gather_origins(const Readings& readings, paint::Measurement& mean) {
-  std::vector<std::string> serials;
+// All words of the readings that are not empty, each once.
+template <class WordOf>
+std::string all_words(const Readings& readings, WordOf&& word_of) {
+  std::vector<std::string> words;
   for (const paint::Paint* reading : readings) {
-    const paint::Measurement& one = *reading->measurement;
-    mean.date = paint::span_of_dates(mean.date, one.date);
-    if (!one.serial.empty() && std::ranges::find(serials, one.serial) == serials.end()) serials.push_back(one.serial);
+    const std::string& word = word_of(*reading);
+    if (!word.empty() && std::ranges::find(words, word) == words.end()) words.push_back(word);
   }
-  mean.serial = joined(serials, ", ");
+  return joined(words, ", ");
+}
+
+// The span of the dates, the codes, and the serials of all instruments.
+void gather_origins(const Readings& readings, paint::Paint& mean) {
+  for (const paint::Paint* reading : readings)
+    mean.measurement->date = paint::span_of_dates(mean.measurement->date, reading->measurement->date);
+  mean.code = all_words(readings, [](const paint::Paint& p) -> const std::string& { return p.code; });
+  mean.measurement->serial =
+      all_words(readings, [](const paint::Paint& p) -> const std::string& { return p.measurement->serial; });
 }
 
 Result<void> check_alike(const std::vector<paint::Paint>& readings) {
@@ -193,7 +202,7 @@ Result<Average> average(const std::vector<paint::Paint>& readings, bool drop_out
     mean.paint_class = paint::PaintClass::kUnknown;
   if (readings.size() > 1) mean.appearance.reset(), mean.lobes.reset(), mean.color_map.reset();
   mean.measurement->date.clear();
-  gather_origins(kept, *mean.measurement);
+  gather_origins(kept, mean);
   GONIO_TRY(average_rows(kept, *mean.measurement));
   average_items(
       kept, mean.gloss, &paint::GlossReading::gloss_units, [](const paint::Paint& p) -> auto& { return p.gloss; },

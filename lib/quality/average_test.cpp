@@ -32,15 +32,17 @@ TEST(Average, HasMeanDeviationAndNumber) {
   EXPECT_EQ(average->paint.gloss.front().gloss_units, 82);
 }
 
-TEST(Average, KeepsTheSpanOfDatesAndAllSerials) {
+TEST(Average, KeepsTheSpanOfDatesAllCodesAndAllSerials) {
   std::vector<paint::Paint> readings = {reading("x", {50, 1, 2}), reading("x", {52, 1, 2}), reading("x", {52, 1, 2})};
   const char* dates[] = {"2021-11-27", "2021-11-26T09:00", ""};
   for (std::size_t i = 0; i < 3; ++i) readings[i].measurement->date = dates[i];
   readings[0].measurement->serial = readings[1].measurement->serial = "7", readings[2].measurement->serial = "8";
+  readings[0].code = "X1", readings[2].code = "X2";
   const auto average = quality::average(readings, false);
   ASSERT_TRUE(average.ok());
   EXPECT_EQ(average->paint.measurement->date, "2021-11-26T09:00..2021-11-27");
   EXPECT_EQ(average->paint.measurement->serial, "7, 8");
+  EXPECT_EQ(average->paint.code, "X1, X2");
 }
 
 TEST(Average, OfSpectraIsTheColorOfTheMeanSpectrum) {

@@ -143,7 +143,8 @@ Result<Comparison> compare(const Subject& standard, const Subject& sample, const
   const Subject& moved = moves_sample ? sample : standard;
   if (!has_spectra(moved.paint))
     return input_error(
-        "the standard is stated for {}, the sample for {}, and neither has spectra: measure or convert one of them",
+        "the standard is stated for {}, the sample for {}, and neither has spectra to convert: measure both in one "
+        "light",
         light_name(of_standard), light_name(of_sample));
   GONIO_ASSIGN(paint::Paint lit, paint::in_light(moved.paint, moves_sample ? of_standard : of_sample));
   GONIO_ASSIGN(const Subject subject, subject_of(std::move(lit)));

@@ -45,10 +45,12 @@ Result<void> check_quantity(const Limit& limit) {
   return {};
 }
 
-// A cell of a number; nothing where it is empty.
-Result<std::optional<double>> bound_in(std::string_view cell, const char* column) {
+// A cell of a number, whose decimal sign may be a comma where that does not separate cells; nothing where it is empty.
+Result<std::optional<double>> bound_in(std::string_view cell, char separator, const char* column) {
   if (cell.empty()) return std::optional<double>();
-  const auto value = parse_number(cell);
+  std::string number(cell);
+  if (separator != ',') std::ranges::replace(number, ',', '.');
+  const auto value = parse_number(number);
   if (!value) return input_error("{} is \"{}\", which is no number", column, shown(cell));
   return value;
 }
@@ -64,8 +66,8 @@ Result<Limit> limit_in(std::string_view line, char separator) {
     limit.at = paint::geometry_name(*geometry);
   }
   GONIO_TRY(check_quantity(limit));
-  GONIO_ASSIGN(limit.low, bound_in(trimmed(cells[2]), "low"));
-  GONIO_ASSIGN(limit.high, bound_in(trimmed(cells[3]), "high"));
+  GONIO_ASSIGN(limit.low, bound_in(trimmed(cells[2]), separator, "low"));
+  GONIO_ASSIGN(limit.high, bound_in(trimmed(cells[3]), separator, "high"));
   if (!limit.low && !limit.high) return input_error("has neither low nor high: give one of them");
   if (limit.low && limit.high && *limit.low > *limit.high)
     return input_error("low is {}, above high, which is {}", shortest(*limit.low), shortest(*limit.high));
@@ -95,9 +97,12 @@ std::string fault_of(const Deviation& d, const AngleDifference* angle, bool up) 
   if (q.starts_with("gloss")) return up ? "too glossy" : "too matt";
   if (q.starts_with("metamerism")) return "matches in the light of the readings alone";
   if (q.starts_with("texture:")) return (up ? "too much " : "too little ") + q.substr(8);
-  return (up ? "too much " : "too little ") + std::string(q == "flop_index"       ? "flop"
-                                                          : q == "hue_travel_deg" ? "hue travel"
-                                                                                  : q);
+  const char* word = q == "flop_index"        ? "flop"
+                     : q == "chroma_index"    ? "chroma travel"
+                     : q == "hue_shift_index" ? "hue shift"
+                     : q == "hue_travel_deg"  ? "hue travel"
+                                              : q.c_str();
+  return (up ? "too much " : "too little ") + std::string(word);
 }
 
 // Two numbers with as few decimals as tell them apart, two at least.
@@ -120,8 +125,13 @@ Excess excess_of(const Deviation& d, const Limit& limit, bool up, const Comparis
   const auto angle = std::ranges::find_if(
       comparison.angles, [&](const AngleDifference& a) { return paint::geometry_name(a.geometry) == d.at; });
   const AngleDifference* at = angle == comparison.angles.end() ? nullptr : &*angle;
-  std::string words = fmt::format("{}: {} {}, limit {}: {}{}", d.at, d.quantity, value, passed, fault_of(d, at, up),
-                                  at ? place_of(at->geometry) : "");
+  std::string where = at ? place_of(at->geometry) : "";
+  // The largest dE names its angle.
+  for (const AngleDifference& a : comparison.angles)
+    if (d.at == kLargest && where.empty() && std::ranges::find(a.by_formula, d.value) != a.by_formula.end())
+      where = " at " + paint::geometry_name(a.geometry);
+  std::string words =
+      fmt::format("{}: {} {}, limit {}: {}{}", d.at, d.quantity, value, passed, fault_of(d, at, up), where);
   return {d, up ? std::nullopt : limit.low, up ? limit.high : std::nullopt, std::move(words)};
 }
 
@@ -142,11 +152,15 @@ std::string unescaped(std::string text) {
 }
 
 bool is_limits_element(const std::string& element) {
-  const std::string_view tag = std::string_view(element).substr(0, element.find('>'));
-  return tag.find(kQualityNamespace) != std::string_view::npos && tag.find("limits") < tag.find(' ');
+  return is_quality_element(element, "limits");
 }
 
 }  // namespace
+
+bool is_quality_element(std::string_view element, std::string_view name) {
+  const std::string_view tag = element.substr(0, element.find('>'));
+  return tag.find(kQualityNamespace) != std::string_view::npos && tag.find(name) < tag.find(' ');
+}
 
 Result<std::vector<Limit>> parse_limits(std::string_view table, const std::string& name) {
   std::vector<Limit> limits;
@@ -157,7 +171,7 @@ Result<std::vector<Limit>> parse_limits(std::string_view table, const std::strin
   for (std::string_view line : split(table, '\n')) {
     ++number;
     line = trimmed(line);
-    if (line.empty() || line.starts_with('#')) continue;
+    if (line.empty() || line.starts_with('#') || (!has_head && line.starts_with("sep="))) continue;
     if (!has_head) {
       for (const char each : {'\t', ';'})
         if (line.find(each) != std::string_view::npos) separator = each;

@@ -16,6 +16,9 @@ namespace goniochrome::quality {
 // The namespace of the elements that hold limits and verdicts in paint XML.
 inline constexpr const char* kQualityNamespace = "urn:goniochrome:quality:1";
 
+// True for the element of this name in that namespace, as paint::Paint::foreign has it.
+bool is_quality_element(std::string_view element, std::string_view name);
+
 // A number within 1e-9 of a limit keeps it, since differences of decimals carry rounding.
 inline constexpr double kLimitSlack = 1e-9;
 

@@ -57,6 +57,11 @@ TEST(Limits, FailInWordsThatTellPlaceAmountAndDirection) {
   EXPECT_NE(words(moved({0, -1, 2}, kOptions), kOptions, "45as45,dH,-1,1\n").front().find("too yellow"),
             std::string::npos);
   EXPECT_EQ(words(dark, kOptions, "max,dE,,1\nmean,dE_cmc:2:1,,0.1\n").size(), 2u);
+  EXPECT_EQ(words(dark, kOptions, "max,dE,,1\n").front(), "max: dE_ciede2000 1.87, limit 1: too far off at 45as15");
+  paint::Paint gray = kRed;
+  gray.measurement->rows[0].lab = {60, 25, 15};
+  const Comparison flat = *compare(*subject_of(kRed), *subject_of(gray), kOptions);
+  EXPECT_TRUE(words(flat, kOptions, "*,chroma_index,-9,9\n").front().ends_with(": too little chroma travel"));
 }
 
 TEST(Limits, AreKeptByNumbersOnThem) {
@@ -89,6 +94,17 @@ TEST(Limits, ComeBackFromTheirTableAndFromAPaint) {
   ASSERT_TRUE(add_needed(all, options).ok());
   EXPECT_EQ(options.formulas.size(), 2u);
   EXPECT_EQ(options.illuminants, std::vector<std::string>{"A"});
+}
+
+TEST(Limits, HaveADecimalCommaWhereCellsAreSeparatedOtherwise) {
+  for (const char separator : {';', '\t'}) {
+    std::string table = "sep=;\ngeometry;quantity;low;high\n*;dL;-1,5;0,25\n";
+    std::ranges::replace(table, ';', separator);
+    const auto parsed = parse_limits(table, "limits.csv");
+    ASSERT_TRUE(parsed.ok()) << parsed.error().message;
+    EXPECT_EQ(parsed->front().low, -1.5);
+    EXPECT_EQ(parsed->front().high, 0.25);
+  }
 }
 
 TEST(Limits, AreRefusedWithTheirLine) {

@@ -462,6 +462,10 @@ cornell() {
   paint-convert -q two.xml#red --illuminant A | fit-paint -q --basis "$basis" -o piped.xml
   diff <(sed -n '/<paint name="red"/,/<\/paint>/p' lit.xml) <(sed -n '/<paint name="red"/,/<\/paint>/p' piped.xml)
   grep -q 'illuminant="A"' lit.xml
+  for name in a INCA A/10; do
+    fit-paint -q --basis "$basis" --illuminant $name two.xml#red -o named.xml
+    diff <(grep '<lobe\|<measurement' named.xml) <(grep '<lobe\|<measurement' piped.xml)
+  done
   run fit-paint --basis "$basis" --illuminant B two.xml
   [ "$status" -eq 2 ]
   run fit-paint --basis "$basis" --illuminant A,F11 two.xml

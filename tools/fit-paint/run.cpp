@@ -177,10 +177,12 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(fit::FitOptions fit, fit_options(options));
   fit.by_incidence = !options.common.report.empty();
   GONIO_ASSIGN(formats::Basis basis, formats::basis_or_default(options.basis));
+  std::string illuminant;
   if (!options.illuminant.empty()) {
     GONIO_ASSIGN(const std::vector<std::string> illuminants, illuminants_of({options.illuminant}));
-    if (illuminants != std::vector{options.illuminant})
+    if (illuminants.size() != 1)
       return usage_error("--illuminant is \"{}\": give one, and run once for each", options.illuminant);
+    illuminant = illuminants.front();
   }
   session.explain(plan(options, fit, basis));
   const fit::PaintFitter fitter(std::move(basis), std::move(fit));
@@ -195,7 +197,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_TRY(maps.begin());
   Tilts tilts(options, fitter.basis(), session);
   GONIO_TRY(tilts.begin());
-  GONIO_TRY(Run(fitter, options.illuminant, inputs, writer, tally, maps, tilts, session).all());
+  GONIO_TRY(Run(fitter, illuminant, inputs, writer, tally, maps, tilts, session).all());
   GONIO_TRY(writer.finish());
   maps.finish();
   tilts.finish();

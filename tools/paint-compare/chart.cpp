@@ -19,6 +19,10 @@ namespace {
 
 // The most samples that one page shows one by one; those that fail come first.
 constexpr std::size_t kMostSections = 200;
+// The most failures of a sample in words, which leave its section on one page.
+constexpr std::size_t kMostFailures = 12;
+// The most a*b* planes that are four in a row on paper; more are small, and six in a row.
+constexpr std::size_t kFewPlanes = 8;
 // The most standards whose limits are drawn.
 constexpr std::size_t kMostFamilies = 12;
 
@@ -31,7 +35,7 @@ p { margin: 3px 0; } .note { color: #555; font-size: 12.5px; }
 .fail { color: #b3261e; font-weight: 600; } .pass { color: #1b6e3c; font-weight: 600; }
 ul { margin: 4px 0; padding-left: 20px; } .failures { columns: 2; font-size: 12.5px; }
 img, svg { display: block; max-width: 100%; height: auto; } .planes { display: flex; flex-wrap: wrap; }
-.planes svg { width: 33.3%; } .top { display: flex; align-items: center; gap: 1%; } .top img { width: 46%; } .top svg { width: 53%; }
+.planes svg { width: 33.3%; } .many.planes svg { width: 25%; } .top { display: flex; align-items: center; gap: 1%; } .top img { width: 46%; } .top svg { width: 53%; }
 table { border-collapse: collapse; font-size: 12px; font-variant-numeric: tabular-nums; margin: 6px 0; }
 th, td { padding: 2px 7px; text-align: right; border-top: 1px solid #ccc; font-weight: 400; }
 th:first-child, td:first-child { text-align: left; } thead th { color: #555; border: 0; }
@@ -41,7 +45,8 @@ th:first-child, td:first-child { text-align: left; } thead th { color: #555; bor
 section, .chart, tr { break-inside: avoid; } section + section { break-before: page; }
 @media print {
   body { padding: 0; max-width: none; } h2 { margin-top: 8px; }
-  .planes svg { width: 31%; } th, td { padding: 1px 7px; }
+  .planes svg { width: 24.5%; } .many.planes svg { width: 16.3%; }
+  th, td { padding: 1px 7px; } .failures { font-size: 11px; }
 }
 )";
 
@@ -79,9 +84,16 @@ std::string table_of(const Judgement& judgement, const quality::CompareOptions& 
   text += "</tr></thead><tbody>\n";
   const auto row = [&](const std::string& at, const std::string& colors, const quality::AngleDifference& angle) {
     text += fmt::format("<tr><td>{}</td><td>{}</td>", at, colors);
+    const auto cell = [&](const std::string& quantity, double value) {
+      const bool fails = std::ranges::any_of(judgement.excesses, [&](const quality::Excess& excess) {
+        return excess.deviation.at == at && excess.deviation.quantity == quantity;
+      });
+      text += (fails ? "<td class=\"fail\">" : "<td>") + column_number(value) + "</td>";
+    };
     const color::LabDifference& d = angle.lab;
-    for (const double value : {d.dL, d.da, d.db, d.dC, d.dH}) text += "<td>" + column_number(value) + "</td>";
-    for (const double value : angle.by_formula) text += "<td>" + column_number(value) + "</td>";
+    cell("dL", d.dL), cell("da", d.da), cell("db", d.db), cell("dC", d.dC), cell("dH", d.dH);
+    for (std::size_t i = 0; i < compare.formulas.size(); ++i)
+      cell(quality::quantity_of(compare.formulas[i]), angle.by_formula[i]);
     text += "</tr>\n";
   };
   for (const quality::AngleDifference& angle : judgement.comparison.angles)
@@ -159,7 +171,7 @@ class Charts {
                     xml_escaped(judgement.comparison.sample, ""), xml_escaped(judgement.comparison.standard, ""));
     if (!judgement.excesses.empty()) {
       text += "<ul class=\"failures\">";
-      for (const quality::Excess& excess : judgement.excesses) text += "<li>" + xml_escaped(excess.words, "") + "</li>";
+      for (const std::string& words : judgement.words(kMostFailures)) text += "<li>" + xml_escaped(words, "") + "</li>";
       text += "</ul>\n";
     }
     const auto picture = picture_of(each);
@@ -168,10 +180,11 @@ class Charts {
       text += fmt::format("<img alt=\"standard and sample\" src=\"data:image/png;base64,{}\">\n", base64(*picture));
     else
       session_.warn(fmt::format("paint \"{}\": there is no picture: {}", each.sample.name, picture.error().message));
+    const bool many = judgement.comparison.angles.size() > kFewPlanes;
     text += report::svg(angle_plot(judgement, compare_)) + "</div>\n" + table_of(judgement, compare_) +
-            "<div class=\"planes\">";
+            fmt::format("<div class=\"{}planes\">", many ? "many " : "");
     for (const quality::AngleDifference& angle : judgement.comparison.angles)
-      text += report::svg(plane_plot(judgement, angle, compare_));
+      text += report::svg(plane_plot(judgement, angle, compare_, many));
     return text + "</div></section>\n";
   }
 
@@ -214,7 +227,8 @@ class Charts {
       if (dated) times_s.push_back(time_s);
     }
     std::string text = fmt::format(
-        "<h2>Control charts</h2>\n<p class=\"note\">{} samples {}. Sigma is the mean moving range divided by "
+        "<h2>Control charts</h2>\n<p class=\"note\">{} samples {}. Red points lie more than three sigma from the mean; "
+        "sigma is the mean moving range divided by "
         "1.128.</p>\n",
         judgements.size(), dated ? "by their dates" : "in their order");
     for (std::size_t i = 0; i < judgements.front()->comparison.angles.size(); ++i)

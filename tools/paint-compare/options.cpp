@@ -52,11 +52,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("chart", "PATH", "page.html", &o.chart, "page of charts to write, .html, or a folder of pages")
       .more(
           "The page needs no other file and prints on A4. It has control charts of dL at each geometry from three "
-          "samples on, against the date where every sample has one and else in the order of the samples; and for each "
-          "sample "
-          "its verdict, a picture that is split between "
-          "standard and sample, the table, the a*b* plane with the tolerance of the first formula at each geometry, "
-          "and dE by angle. One page shows up to 200 samples one by one, those that fail first; a folder has a page "
+          "samples on, against the date where every sample has one and else in the order of the samples, with points "
+          "beyond three sigma in red; and for each sample its verdict, a picture that is split between standard and "
+          "sample, the table, the a*b* plane with the tolerance of the first formula at each geometry, and dE by "
+          "angle. One page shows up to 200 samples one by one, those that fail first; a folder has a page "
           "for each. Charts hold all samples in memory.");
   spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh, "mesh of the pictures of --chart")
       .more("Without it they show a ball.");
@@ -113,8 +112,12 @@ cli::ToolSpec tool_spec(Options& o) {
       "Where standard and sample are stated for different illuminants or observers, the one that has spectra is "
       "brought to the light of the other, and a warning tells so; without spectra the pair is refused.",
       "The exit status is 1 where a sample fails. Each failure is told in a sentence, as in \"45as15: dL -2.1, limit "
-      "-1.5: too dark near gloss\". Limits that name something that was not measured fail.",
-      "LIMITS: The table has the columns geometry, quantity, low and high. The geometry is a name, * for every "
+      "-1.5: too dark near gloss\"; the line of a sample has the first four, and JSON, paint XML and the report have "
+      "all. "
+      "Limits that name something that was not measured fail.",
+      "LIMITS: The table has the columns geometry, quantity, low and high, separated by commas, or by semicolons or "
+      "tabs, "
+      "where numbers may have a decimal comma. The geometry is a name, * for every "
       "geometry or for the paint, or mean or max for dE over the geometries. The quantity is dL, da, db, dC, dH, "
       "dE (by the first formula), dE_FORMULA, flop_index, chroma_index, hue_shift_index, hue_travel_deg, gloss20, "
       "gloss60, gloss85, metamerism_ILLUMINANT, or texture:NAME with the instrument's name of it. One of low and high "

@@ -57,6 +57,9 @@ field() {
   run ! paint-compare -q -s std.paints.xml -l limits.csv dark.paints.xml -o judged.paints.xml
   grep -q '<verdict xmlns="urn:goniochrome:quality:1" standard="batch" result="fail">45as15: dL -2.4, limit -1.5: too dark near gloss</verdict>' judged.paints.xml
   paint-stats -q judged.paints.xml
+  # A new verdict takes the place of the old one.
+  paint-compare -q -s dark.paints.xml -l limits.csv judged.paints.xml -o again.paints.xml
+  [ "$(grep -o 'result="[a-z]*"' again.paints.xml)" = 'result="pass"' ]
 }
 
 @test "standards are found by name, code and nearness" {
@@ -121,6 +124,36 @@ field() {
   paint-compare -q -s std.paints.xml --chart plain.html plain.paints.xml -o table.tsv
   grep -q '3 samples in their order' plain.html
   ! grep -q '>date</text>' plain.html
+}
+
+@test "a control chart of a tile marks the readings beyond three sigma" {
+  { echo 'sample,date,geometry,illuminant,observer,L,a,b'
+    for day in $(seq 10 27); do printf 'd%s,2026-11-%s,45as15,D65,10,%s,-1.2,2.1\n' $day $day $((day == 25 ? 126 : 124)).$((day % 2)); done; } >tile.csv
+  paint-convert -q tile.csv -o tile.paints.xml
+  paint-compare -q -s std.paints.xml --chart page.html tile.paints.xml -o table.tsv
+  sed -n '/>dL at 45as15</,/>moving range at 45as15</p' page.html >chart
+  [ "$(grep -c '<circle.*fill="#b3261e"' chart)" -eq 2 ] # one in the legend
+  grep -q '>beyond</text>' chart
+  sed -i 's/,126/,124/' tile.csv
+  paint-convert -q tile.csv -o tile.paints.xml
+  paint-compare -q -s std.paints.xml --chart page.html tile.paints.xml -o table.tsv
+  ! grep -q '>beyond</text>' page.html
+}
+
+@test "a control chart has one word for both of its limits" {
+  for dL in 0.5 0.2 -0.3; do paint-edit -q "$standard" --lightness-shift "$dL" -o "batch$dL.paints.xml"; done
+  paint-compare -q -s "$standard" -l limits.csv --chart page.html batch*.paints.xml -o table.tsv
+  [ "$(sed -n '/>dL at 45as15</,/>moving range at 45as15</p' page.html | grep -c '>limit</text>')" -eq 1 ]
+}
+
+@test "a sample that fails everywhere has a line of four failures, and a page that marks all of them" {
+  printf 'geometry,quantity,low,high\n*,dL,-0.1,0.1\n*,da,-0.01,0.01\n*,db,-0.01,0.01\n*,dE,,0.01\n*,dC,-0.001,0.001\n' >strict.csv
+  run paint-compare -s std.paints.xml -l strict.csv --chart page.html dark.paints.xml -o table.tsv
+  [ "$status" -eq 1 ]
+  [[ ${lines[0]} == *'; and 11 more' ]]
+  [ "$(grep -o '; ' <<<"${lines[0]}" | wc -l)" -eq 4 ]
+  [ "$(grep -o '<li>' page.html | wc -l)" -eq 13 ]
+  [ "$(grep -o '<td class="fail">' page.html | wc -l)" -eq 15 ]
 }
 
 @test "the page draws the paints of --show-limit around their standard" {

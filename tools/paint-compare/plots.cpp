@@ -71,7 +71,7 @@ Series level(const std::string& label, double value, double from, double to, Ser
 }  // namespace
 
 report::Plot plane_plot(const Judgement& judgement, const quality::AngleDifference& angle,
-                        const quality::CompareOptions& compare) {
+                        const quality::CompareOptions& compare, bool small) {
   constexpr int kDirections = 72;
   const color::DifferenceFormula& formula = compare.formulas.front();
   const auto limit = tolerance_of(judgement, angle, compare);
@@ -84,14 +84,19 @@ report::Plot plane_plot(const Judgement& judgement, const quality::AngleDifferen
     widest = std::max(widest, r);
   }
   widest *= 1.15;
+  // One grid for both axes: 0, and on either side the largest of 1, 2 and 5 times a power of ten.
+  const double power = std::pow(10, std::floor(std::log10(widest))), times = widest / power;
+  const double outer = power * (times >= 5 ? 5 : times >= 2 ? 2 : 1);
+  std::vector<report::Tick> ticks;
+  for (const double at : {-outer, 0.0, outer}) ticks.push_back({at, fmt::format("{:g}", at)});
   return {.title = fmt::format("{}, dE {:.3g}", paint::geometry_name(angle.geometry), limit.value_or(kNoLimit_dE)),
-          .x = {.label = "da*", .low = -widest, .high = widest},
-          .y = {.label = "db*", .low = -widest, .high = widest},
+          .x = {.label = "da*", .low = -widest, .high = widest, .ticks = ticks},
+          .y = {.label = "db*", .low = -widest, .high = widest, .ticks = ticks},
           .series = {ellipse,
                      {.x = {0}, .y = {0}, .style = Series::Style::kRings, .color = kSigmaInk},
                      {.x = {angle.lab.da}, .y = {angle.lab.db}, .style = Series::Style::kPoints, .color = kInk}},
-          .width = 246,
-          .height = 248};
+          .width = small ? 170 : 246,
+          .height = small ? 172 : 248};
 }
 
 report::Plot angle_plot(const Judgement& judgement, const quality::CompareOptions& compare) {
@@ -146,9 +151,14 @@ std::vector<report::Plot> control_plots(const std::vector<const Judgement*>& jud
       individuals.series.push_back(level(side > 0 ? fmt::format("{} sigma", k) : "",
                                          chart.mean + side * k * chart.sigma, from, to, Series::Style::kDashed,
                                          k < 3 ? "#bbbbbb" : kToleranceInk));
+  Series beyond{.label = "beyond", .style = Series::Style::kPoints, .color = kLimitInk};
+  for (const std::size_t i : chart.beyond) beyond.x.push_back(values.x[i]), beyond.y.push_back(values.y[i]);
+  if (!beyond.x.empty()) individuals.series.push_back(beyond);
   if (const auto limit = limit_of(*judgements.front(), at, {"dL"}))
-    for (const auto& bound : {limit->low, limit->high})
-      if (bound) individuals.series.push_back(level("limit", *bound, from, to, Series::Style::kLine, kLimitInk));
+    for (const auto* bound : {&limit->low, &limit->high})
+      if (*bound)
+        individuals.series.push_back(level(bound == &limit->high && limit->low ? "" : "limit", **bound, from, to,
+                                           Series::Style::kLine, kLimitInk));
   moving.series = {ranges, level("mean", chart.mean_range, from, to, Series::Style::kLine, kSigmaInk),
                    level("limit", chart.range_limit, from, to, Series::Style::kDashed, kToleranceInk)};
   const double highest = std::ranges::max(chart.ranges);

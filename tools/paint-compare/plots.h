@@ -12,7 +12,7 @@ namespace goniochrome::tool {
 // The a*b* plane at an angle, as differences from the standard: the sample, and the tolerance, where the difference by
 // the first formula reaches its limit, or 1 where it has none.
 report::Plot plane_plot(const Judgement& judgement, const quality::AngleDifference& angle,
-                        const quality::CompareOptions& compare);
+                        const quality::CompareOptions& compare, bool small);
 
 // dE by the first formula over the aspecular angle, with its limits.
 report::Plot angle_plot(const Judgement& judgement, const quality::CompareOptions& compare);

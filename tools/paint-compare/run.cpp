@@ -16,7 +16,8 @@ namespace goniochrome::tool {
 
 namespace {
 
-constexpr std::size_t kFailuresShown = 10;
+constexpr std::size_t kFailuresShown = 10;  // samples
+constexpr std::size_t kWordsShown = 4;      // failures of one sample; the output has all
 
 // One run, which turns a stream of samples into judgements.
 class Run {
@@ -94,7 +95,7 @@ class Run {
     for (const std::string& remark : judgement.comparison.remarks) remarks_.note(remark, sample.name);
     if (!judgement.excesses.empty() && ++failed_ <= kFailuresShown)
       session_.say(fmt::format("{}: \"{}\" fails against \"{}\": {}", session_.tool(), sample.name,
-                               judgement.comparison.standard, judgement.words()));
+                               judgement.comparison.standard, joined(judgement.words(kWordsShown), "; ")));
     if (!options_.make_limits.empty()) maker_.add(judgement.comparison, compare_);
     session_.add("judgements", [&] { return judgement_json(judgement, compare_); });
     GONIO_TRY(sink_->write(judgement, made.text, sample));

@@ -87,19 +87,26 @@ Json angle_json(const quality::AngleDifference& angle, const quality::CompareOpt
   return json;
 }
 
+// The sample with this verdict in the place of the one that it had.
 paint::Paint with_verdict(paint::Paint sample, const Judgement& judgement) {
+  std::erase_if(sample.foreign,
+                [](const std::string& element) { return quality::is_quality_element(element, "verdict"); });
   sample.foreign.push_back(fmt::format("<verdict xmlns=\"{}\" standard=\"{}\" result=\"{}\">{}</verdict>",
                                        quality::kQualityNamespace, xml_escaped(judgement.comparison.standard),
-                                       judgement.verdict(), xml_escaped(judgement.words(), "")));
+                                       judgement.verdict(), xml_escaped(joined(judgement.words(), "; "), "")));
   return sample;
 }
 
 }  // namespace
 
-std::string Judgement::words() const {
+std::vector<std::string> Judgement::words(std::size_t most) const {
   std::vector<std::string> words;
   for (const quality::Excess& excess : excesses) words.push_back(excess.words);
-  return joined(words, "; ");
+  if (words.size() > most) {
+    words.resize(most);
+    words.push_back(fmt::format("and {} more", excesses.size() - most));
+  }
+  return words;
 }
 
 Json judgement_json(const Judgement& judgement, const quality::CompareOptions& compare) {

@@ -23,8 +23,8 @@ struct Judgement {
 
   // "pass", "fail", or "-" where there are no limits.
   const char* verdict() const { return standard->limits.empty() ? "-" : excesses.empty() ? "pass" : "fail"; }
-  // All that fails, in words.
-  std::string words() const;
+  // All that fails, in words; beyond `most` their number.
+  std::vector<std::string> words(std::size_t most = std::string::npos) const;
 };
 
 Json judgement_json(const Judgement& judgement, const quality::CompareOptions& compare);

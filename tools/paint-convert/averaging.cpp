@@ -68,12 +68,19 @@ Result<void> Averaging::finish(const std::function<Result<void>(paint::Paint, co
                       "is {:.2f}: {}",
                       group.readings[outlier.place].name, group.readings.size(), group.key, outlier.distance,
                       outlier.median_distance, drop ? "left out" : "kept; --outliers drop leaves it out"));
+    average->paint.name = name_of(group);
     session_.add("averages", [&] { return average_json(*average, group.readings); });
-    if (options_.average != "code") average->paint.name = group.key;
     GONIO_TRY(pass(std::move(average->paint), group.place));
     group.readings.clear();
   }
   return {};
+}
+
+// The key, or where that is a code the name of the readings, with the code behind it where another code has that name.
+std::string Averaging::name_of(const Group& group) {
+  if (options_.average != "code") return group.key;
+  const std::string name = quality::base_name(group.readings.front().name);
+  return names_.insert(name).second ? name : fmt::format("{} ({})", name, group.key);
 }
 
 }  // namespace goniochrome::tool

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,13 @@ class Averaging {
     std::string key, place;
     std::vector<paint::Paint> readings;
   };
+  std::string name_of(const Group& group);
+
   const Options& options_;
   cli::Session& session_;
   std::map<std::string, std::size_t> places_;
   std::vector<Group> groups_;
+  std::set<std::string> names_;  // of the means of codes
 };
 
 }  // namespace goniochrome::tool

@@ -428,6 +428,7 @@ repeated() {
     printf 'tile,2021-11-27T08:00:00Z,S7,45as45,D65,10,51,0,0\n'; } >in.csv
   paint-convert -q --average date in.csv -o days.paints.xml --report report.json
   [ "$(grep -o 'name="[^"]*"' days.paints.xml | xargs)" = "name=tile (2021-11-26) name=tile (2021-11-27)" ]
+  [ "$(jq -r '.results.averages[].name' report.json | xargs)" = "tile (2021-11-26) tile (2021-11-27)" ]
   grep -q 'serial="S7" date="2021-11-26T08:00..2021-11-26T09:00">' days.paints.xml
   [ "$(jq -r '.results.averages[1] | "\(.date) \(.serial)"' report.json)" = "2021-11-27T08:00:00Z S7" ]
   grep '<measurement' days.paints.xml >was
@@ -442,6 +443,14 @@ repeated() {
   run paint-convert -q --average date in.csv -o days.paints.xml
   [ "$status" -eq 3 ]
   [[ $output == *'paint "tile (3)" has the date "11/27/2021", whose day is not known'* ]]
+}
+
+@test "means of codes have the name of their readings, and the code where two codes have one name" {
+  { echo 'sample,code,date,geometry,illuminant,observer,L,a,b'
+    printf 'red,%s,45as45,D65,10,%s,0,0\n' X1,2021-11-26 50 X1,2021-11-27 52 X2,2021-11-27 60 X2,2021-11-28 62; } >in.csv
+  paint-convert -q --average code in.csv -o codes.paints.xml
+  [ "$(grep -o '<paint [^>]*' codes.paints.xml | cut -d '"' -f 2,4 | xargs -d '\n')" = 'red"X1 red (X2)"X2' ]
+  paint-convert -q --average name in.csv | grep -q '<paint name="red" code="X1, X2">'
 }
 
 @test "paints of one name in several files are told apart by date and code, and refused without" {
