@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "base/angles.h"
-#include "base/file.h"
+#include "base/csv_records.h"
 #include "base/text.h"
 
 namespace goniochrome::capture {
@@ -23,7 +23,7 @@ enum Column { kImage, kLight, kCamera = 4, kExposure = 7, kLightDistance = 8, kC
 // Where each of kColumns stands in a row; none for a distance that is not there.
 using Places = std::array<std::optional<std::size_t>, kColumns.size()>;
 
-Result<Places> places_of(const std::vector<std::string_view>& header, const std::string& where) {
+Result<Places> places_of(const std::vector<std::string>& header, const std::string& where) {
   Places places;
   for (std::size_t i = 0; i < header.size(); ++i) {
     const std::string name = lower(trimmed(header[i]));
@@ -48,13 +48,13 @@ Result<Places> places_of(const std::vector<std::string_view>& header, const std:
 
 class Row {
  public:
-  Row(const std::vector<std::string_view>& cells, const Places& places, std::string where)
+  Row(const std::vector<std::string>& cells, const Places& places, std::string where)
       : cells_(cells), places_(places), where_(std::move(where)) {}
 
   std::string_view text(std::size_t column) const { return trimmed(cells_[*places_[column]]); }
 
   Result<double> number(std::size_t column) const {
-    const auto value = parse_number(text(column));
+    const auto value = number_in_cell(text(column));
     if (!value)
       return input_error("{}: {} is \"{}\": write a number with a decimal point", where_, kColumns[column],
                          shown(text(column)));
@@ -86,7 +86,7 @@ class Row {
   }
 
  private:
-  const std::vector<std::string_view>& cells_;
+  const std::vector<std::string>& cells_;
   const Places& places_;
   std::string where_;
 };
@@ -109,20 +109,14 @@ Result<Photo> photo_of(const Row& row, const std::string& where, const std::file
 }  // namespace
 
 Result<PhotoTable> read_photo_table(const std::string& path) {
-  GONIO_ASSIGN(const std::string content, file_content(path));
-  std::string_view text = content;
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  GONIO_ASSIGN(InputFile input, InputFile::open(path));
+  GONIO_ASSIGN(const std::vector<TableRow> rows, table_rows(CsvRecords(std::move(input)), true));
   PhotoTable table{path, {}};
   const std::filesystem::path folder = path == "-" ? "" : std::filesystem::path(path).parent_path();
   std::optional<Places> places;
   std::size_t columns = 0;
-  int line = 0;
-  for (const std::string_view raw : split(text, '\n')) {
-    ++line;
-    const std::string_view row_text = trimmed(raw);
-    if (row_text.empty() || row_text.front() == '#') continue;
+  for (const auto& [line, cells] : rows) {
     const std::string where = fmt::format("{}:{}", path, line);
-    const auto cells = split(row_text, ',');
     if (!places) {
       GONIO_ASSIGN(places, places_of(cells, where));
       columns = cells.size();

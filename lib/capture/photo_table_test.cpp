@@ -35,6 +35,18 @@ TEST(PhotoTable, ReadsPlacesAndDirections) {
   EXPECT_EQ(table->photos[2].light.where.z, 4);
 }
 
+TEST(PhotoTable, IsReadAsSpreadsheetsSaveIt) {
+  const ScratchFolder folder;
+  const auto table =
+      read_photo_table(folder.file("photos.csv",
+                                   "# a rig, two\nimage;light_x;light_y;light_z;camera_x;camera_y;camera_z;"
+                                   "exposure\n\"a;1.png\";0;0;1,5;0;0;1;2\n;;;;;;;\n"));
+  ASSERT_TRUE(table.ok()) << table.error().message;
+  ASSERT_EQ(table->photos.size(), 1u);
+  EXPECT_EQ(table->photos[0].image, folder.path("a;1.png"));
+  EXPECT_EQ(table->photos[0].light.where.z, 1.5);
+}
+
 TEST(PhotoTable, NamesTheLineAndTheRemedy) {
   EXPECT_NE(told("").find("is empty"), std::string::npos);
   EXPECT_NE(told(kHead).find("names no photograph"), std::string::npos);

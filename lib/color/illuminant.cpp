@@ -54,7 +54,7 @@ std::optional<std::string> illuminant_named(std::string_view text) {
 int observer_in(std::string_view text) {
   text = trimmed(text);
   const auto digits = text.substr(0, std::min(text.find_first_not_of("0123456789"), text.size()));
-  return digits == "2" ? 2 : digits == "10" ? 10 : 0;
+  return digits == "2" || digits == "1931" ? 2 : digits == "10" || digits == "1964" ? 10 : 0;
 }
 
 std::optional<ViewingCondition> condition_in(std::string_view text) {

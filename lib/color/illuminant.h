@@ -26,7 +26,8 @@ ViewingCondition condition_among(std::string_view text);
 // stays as it is where it is no known illuminant's.
 ViewingCondition condition_of(std::string_view name, int observer_deg);
 
-// The observer, 2 or 10, at the beginning of `text` (`10 degree`, `2`); 0 for others.
+// The observer, 2 or 10, at the beginning of `text`, by its degrees or its year (`10 degree`, `2`, `1931`); 0 for
+// others.
 int observer_in(std::string_view text);
 
 }  // namespace goniochrome::color

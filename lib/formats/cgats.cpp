@@ -6,6 +6,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "base/csv_records.h"
 #include "base/text.h"
 #include "color/illuminant.h"
 #include "formats/internal/spectral_records.h"
@@ -96,7 +97,7 @@ class CgatsParser {
         tables = true;
         GONIO_TRY(data());
       } else if (!words_.empty()) {
-        keyword(first);
+        GONIO_TRY(keyword(first));
       }
     }
     if (!tables) return input_error("{}: has no BEGIN_DATA: it is no CGATS table, or it was cut off", name_);
@@ -120,13 +121,15 @@ class CgatsParser {
 
   Error error(const std::string& what) const { return input_error("{}:{}: {}", name_, line_, what); }
 
-  void keyword(const std::string& key) {
+  Result<void> keyword(const std::string& key) {
     const auto rest = trimmed(current_).substr(std::min(words_[0].size(), trimmed(current_).size()));
     const std::string value = unquoted(rest.substr(0, rest.find('#')));
     if (key == "NUMBER_OF_SETS") {
       announced_ = parse_integer(value);
     } else if (key == "SPECTRAL_NORM") {
-      if (const auto norm = parse_number(value); norm && *norm > 0) spectral_norm_ = *norm;
+      spectral_norm_ = number_in_cell(value);
+      if (!spectral_norm_ || !(*spectral_norm_ > 0))
+        return error(fmt::format("SPECTRAL_NORM is \"{}\": write the value of the perfect diffuser", shown(value)));
     } else if (key == "INSTRUMENTATION") {
       instrument_ = value;
     } else if (key == "MEASUREMENT_GEOMETRY") {
@@ -134,17 +137,14 @@ class CgatsParser {
     } else if (key == "ILLUMINANT" || key == "ILLUMINATION_NAME") {
       take_illuminant(key, value);
     } else if (key == "OBSERVER" || key == "OBSERVER_ANGLE") {
-      if (const int found = color::observer_in(value)) stated_.observer_deg = found;
+      take_observer(key, value);
     } else if (key == "WEIGHTING_FUNCTION") {
       const auto comma = value.find(',');
       const std::string kind = upper(trimmed(value.substr(0, comma)));
       const std::string what = comma == std::string::npos ? "" : value.substr(comma + 1);
-      if (kind == "ILLUMINANT")
-        take_illuminant(key, what);
-      else if (kind == "OBSERVER" && color::observer_in(what))
-        stated_.observer_deg = color::observer_in(what);
-      else
-        note_unheard(key, value);
+      kind == "ILLUMINANT" ? take_illuminant(key, what)
+      : kind == "OBSERVER" ? take_observer(key, what)
+                           : note_unheard(key, value);
     } else if (key == "MEASUREMENT_SOURCE") {
       if (stated_.illuminant.empty())
         stated_.illuminant = color::condition_among(after(value, "Illumination=")).illuminant;
@@ -155,6 +155,12 @@ class CgatsParser {
     } else if (std::ranges::find(kChangesMeaning, key) != kChangesMeaning.end() && !is_none(value)) {
       note_unheard(key, value);
     }
+    return {};
+  }
+
+  void take_observer(std::string_view key, std::string_view value) {
+    if (const int found = color::observer_in(value)) return void(stated_.observer_deg = found);
+    note_unheard(key, value);
   }
 
   void take_illuminant(std::string_view key, std::string_view value) {
@@ -173,13 +179,7 @@ class CgatsParser {
                                                                      "n/a", "0",  "output", "input"};
     return std::ranges::find(kNothingSaid, lower(trimmed(value))) != kNothingSaid.end();
   }
-  void note_unheard(std::string_view key, std::string_view value) {
-    remarks_.note(
-        fmt::format("{} \"{}\" may change what the readings are, and has no place in a paint: they are kept as "
-                    "they stand",
-                    key, shown(value)),
-        "");
-  }
+  void note_unheard(std::string_view key, std::string_view value) { remarks_.note(unheard(key, value), ""); }
 
   Result<void> format() {
     columns_ = {};
@@ -413,9 +413,13 @@ class CgatsParser {
       if (!own.ok()) return error(own.error().message);
       condition = {own->illuminant, own->observer_deg == 0 ? condition.observer_deg : own->observer_deg};
     }
-    if (condition.illuminant.empty() && condition.observer_deg == 0 && options_.illuminant.empty() &&
-        options_.observer_deg == 0)
-      remarks_.note("states neither illuminant nor observer: taken as D50/2; give --illuminant and --observer if not",
+    const bool lacks_illuminant = condition.illuminant.empty() && options_.illuminant.empty(),
+               lacks_observer = condition.observer_deg == 0 && options_.observer_deg == 0;
+    if (lacks_illuminant || lacks_observer)
+      remarks_.note(!lacks_observer     ? "states no illuminant: taken as D50; give --illuminant if not"
+                    : !lacks_illuminant ? "states no observer: taken as 2 deg; give --observer if not"
+                                        : "states neither illuminant nor observer: taken as D50/2; give --illuminant "
+                                          "and --observer if not",
                     "");
     return completed(condition, options_, {"D50", 2});
   }

@@ -82,6 +82,21 @@ TEST_F(Cgats, ReadsXyzAndAssumesUnstatedConditions) {
   EXPECT_EQ(good(text, {"D65", 10, false}).paints[0].measurement->condition, (color::ViewingCondition{"D65", 10}));
 }
 
+// An observer by its year was dropped, and half a condition was completed in silence.
+TEST_F(Cgats, HalfAConditionIsCompletedAloud) {
+  const std::string rows = "MEASUREMENT_GEOMETRY 45/0\n" + table("SAMPLE_NAME LAB_L LAB_A LAB_B", "p 1 2 3");
+  const auto light = good("CGATS.17\nILLUMINANT D65\n" + rows);
+  EXPECT_EQ(light.paints[0].measurement->condition, (color::ViewingCondition{"D65", 2}));
+  EXPECT_THAT(light.warnings, ElementsAre(HasSubstr("states no observer: taken as 2 deg")));
+  const auto observer = good("CGATS.17\nOBSERVER 1964\n" + rows);
+  EXPECT_EQ(observer.paints[0].measurement->condition, (color::ViewingCondition{"D50", 10}));
+  EXPECT_THAT(observer.warnings, ElementsAre(HasSubstr("states no illuminant: taken as D50")));
+  EXPECT_THAT(good("CGATS.17\nILLUMINANT D65\nOBSERVER 1931\n" + rows).warnings, IsEmpty());
+  const auto four = good("CGATS.17\nILLUMINANT D65\nOBSERVER 4\n" + rows);
+  EXPECT_THAT(four.warnings, ElementsAre(HasSubstr("OBSERVER \"4\" may change"), HasSubstr("taken as 2 deg")));
+  EXPECT_THAT(refusal("CGATS.17\nSPECTRAL_NORM abc\n" + rows), HasSubstr(":2: SPECTRAL_NORM is \"abc\": write"));
+}
+
 // Keywords that change what readings are were passed over in silence.
 TEST_F(Cgats, KeywordsThatChangeReadingsAreTold) {
   const std::string rows = table("SAMPLE_NAME LAB_L LAB_A LAB_B", "p 1 2 3"),

@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "base/csv_records.h"
 #include "base/text.h"
 #include "color/illuminant.h"
 #include "formats/imported.h"
 #include "formats/internal/csv_header.h"
-#include "formats/internal/csv_records.h"
 #include "formats/internal/spectral_rows.h"
 #include "formats/xml.h"
 #include "paint/date.h"

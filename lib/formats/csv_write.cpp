@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/csv_records.h"
 #include "base/text.h"
 #include "formats/csv.h"
-#include "formats/internal/csv_records.h"
+#include "formats/internal/csv_header.h"
 #include "formats/internal/spectral_rows.h"
 
 namespace goniochrome::formats {

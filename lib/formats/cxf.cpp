@@ -103,6 +103,9 @@ class CxfHandler final : public XmlHandler {
       specification_ = &specifications_[attribute("Id")];
     } else if (in("TristimulusSpec", "Illuminant")) {
       custom_illuminant_ = attribute("Name");
+    } else if (in("TristimulusSpec", "CustomIlluminant") && specification_) {
+      const std::string name = attribute("Name");
+      specification_->condition.illuminant = color::condition_of(name.empty() ? "Custom" : name, 0).illuminant;
     } else if (in("MultiAngle", "BRDFAngle") || in("GeometryChoice", "SingleAngle")) {
       angle_ = {}, measurement_deg_ = 0;
       angle_.aspecular_deg = std::numeric_limits<double>::quiet_NaN();  // until it is told
@@ -316,7 +319,10 @@ class CxfHandler final : public XmlHandler {
       specification.condition.illuminant =
           color::condition_of(content == "Custom" && !custom_illuminant_.empty() ? custom_illuminant_ : content, 0)
               .illuminant;
-    if (in("TristimulusSpec", "Observer")) specification.condition.observer_deg = observer_of(content);
+    if (in("TristimulusSpec", "Observer")) {
+      specification.condition.observer_deg = observer_of(content);
+      if (observer_of(content) == 0) specification.remarks.push_back(unheard("Observer", content));
+    }
     if (in("BRDFAngle", "IlluminationAngle")) return take(angle_.incidence_deg, "IlluminationAngle", content);
     if (in("BRDFAngle", "Aspecular")) return take(angle_.aspecular_deg, "Aspecular", content);
     if (in("BRDFAngle", "Azimuth")) {
@@ -325,6 +331,10 @@ class CxfHandler final : public XmlHandler {
     }
     if (in("MultiAngle", "BRDFAngle")) {
       GONIO_ASSIGN(const paint::Geometry angle, noted_angle());
+      if (const auto noted = paint::parse_geometry(notation_); noted.ok() && !(*noted == angle))
+        specification.remarks.push_back(
+            fmt::format("the Notation \"{}\" stands beside the angles of {}, which were taken", shown(notation_),
+                        paint::geometry_name(angle)));
       specification.angles.push_back(angle);
     }
     if (in("SingleAngle", "IlluminationAngle")) return take(angle_.incidence_deg, "IlluminationAngle", content);
@@ -342,6 +352,13 @@ class CxfHandler final : public XmlHandler {
     if (in("GeometryChoice", "EmissiveMode")) specification.other = "emissive";
     if (in("Device", "Model")) specification.instrument = content;
     if (in("Device", "SerialNumber")) specification.serial = content;
+    const bool is_filtered = in("Device", "DeviceFilter") && content != "Filter_None";
+    const bool is_polarized = in("Device", "DevicePolarization") && (content == "true" || content == "1");
+    // M0 and M1 differ where a paint glows in ultraviolet light; M2 and M3 stand for filters. [ISO 13655:2017]
+    const bool is_lit_otherwise =
+        in("Device", "DeviceIllumination") && (content.starts_with("M2") || content.starts_with("M3"));
+    if (is_filtered || is_polarized || is_lit_otherwise)
+      specification.remarks.push_back(unheard(path_.back(), content));
     if (in("MeasurementSpec", "MeasurementType") && (content.ends_with("ransmittance") || content.ends_with("missive")))
       specification.unlike_reflectance = content;
     if (in("ColorSpecificationCollection", "ColorSpecification")) specification_ = nullptr;

@@ -309,6 +309,30 @@ TEST_F(Cxf, NamesWhatItDoesNotRead) {
   EXPECT_TRUE(looks_cxf("<?xml version=\"1.0\"?><a:CXF xmlns:a=\"urn:old\">"));
 }
 
+// Filters were passed over in silence, and a light of its own was said to be unstated.
+TEST_F(Cxf, TellsWhatChangesReadings) {
+  const auto text = [](const std::string& light, const std::string& device, const char* notation) {
+    std::string all = specification(
+        "a",
+        "<MultiAngle><BRDFAngle Notation=\"" + std::string(notation) +
+            "\"><IlluminationAngle>45</IlluminationAngle><Aspecular>15</Aspecular></BRDFAngle></MultiAngle>",
+        "", light + "<Observer>10_Degree</Observer>");
+    const std::size_t end = all.find("</MeasurementSpec>");
+    return cxf(object("p", lab("a")), all.insert(end, "<Device>" + device + "</Device>"));
+  };
+  const std::string d65 = "<Illuminant>D65</Illuminant>";
+  EXPECT_THAT(good(text(d65, "<DeviceFilter>Filter_None</DeviceFilter>", "45as15")).warnings, IsEmpty());
+  const auto filtered = good(text(d65, "<DeviceFilter>Filter_UVExcluded</DeviceFilter>", "45as15"));
+  EXPECT_THAT(filtered.warnings, ElementsAre(HasSubstr("DeviceFilter \"Filter_UVExcluded\" may change")));
+  const auto polarized = good(text(d65, "<DevicePolarization>true</DevicePolarization>", "45as15"));
+  EXPECT_THAT(polarized.warnings, ElementsAre(HasSubstr("DevicePolarization \"true\" may change")));
+  const auto noted = good(text(d65, "", "45as-15"));
+  EXPECT_THAT(noted.warnings, ElementsAre(HasSubstr("the Notation \"45as-15\" stands beside the angles of 45as15")));
+  const auto custom = good(text("<CustomIlluminant Name=\"shop\"/>", "", "45as15"));
+  EXPECT_THAT(custom.warnings, IsEmpty());
+  EXPECT_EQ(custom.paints.at(0).measurement->condition.illuminant, "shop");
+}
+
 TEST_F(Cxf, ReadsUtf16) {
   const std::string text =
       "<?xml version=\"1.0\" encoding=\"UTF-16\"?>" + cxf(object("p", lab("a")), measured_at("a", 15));

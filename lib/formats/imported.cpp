@@ -117,13 +117,6 @@ Result<int> observer_in(std::string_view text) {
   return input_error("is \"{}\": write 2 or 10 (degrees)", shown(text));
 }
 
-std::optional<std::string> with_decimal_point(std::string_view text) {
-  if (std::ranges::count(text, ',') != 1 || text.find('.') != std::string_view::npos) return std::nullopt;
-  std::string pointed(text);
-  pointed[pointed.find(',')] = '.';
-  return pointed;
-}
-
 Result<color::ViewingCondition> stated_condition(std::string_view illuminant, int observer_deg) {
   const color::ViewingCondition condition = color::condition_of(illuminant, observer_deg);
   if (observer_deg != 0 && condition.observer_deg != observer_deg)
@@ -148,6 +141,12 @@ void Remarks::note(const std::string& what, std::string_view example) {
     return;
   }
   kinds_.push_back({what, std::string(example), 1});
+}
+
+std::string unheard(std::string_view key, std::string_view value) {
+  return fmt::format(
+      "{} \"{}\" may change what the readings are, and has no place in a paint: they are kept as they stand", key,
+      shown(value));
 }
 
 std::vector<std::string> Remarks::lines() const {

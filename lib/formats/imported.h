@@ -36,9 +36,6 @@ Result<void> check_lab(const color::Lab& lab);
 // domain. The error names the paint. An exponent may be infinite, which is a mirror.
 Result<void> check_writable(const paint::Paint& paint);
 
-// `text` with a point in place of its comma, if it has one comma and no point; nothing otherwise.
-std::optional<std::string> with_decimal_point(std::string_view text);
-
 // The unit of reflectances in a file: factors, where 1 is the perfect diffuser, or percent.
 enum class Scale { kUnstated, kFactor, kPercent };
 
@@ -79,6 +76,9 @@ class Remarks {
   };
   std::vector<Kind> kinds_;
 };
+
+// The remark on a statement of a file that changes what its readings are and has no place in a paint.
+std::string unheard(std::string_view key, std::string_view value);
 
 // The geometry that a file's words on light and detector name (`45/0`, `15`, `45as15`), or that an option has for them;
 // nothing for any other, such as a sphere, which is remarked.

@@ -210,9 +210,11 @@ class JcampParser {
     const double expected = first + step * static_cast<double>(y_.size());
     const double stated = x * block_.number("XFACTOR").value_or(1);
     if (std::abs(stated - expected) > 1.5 * std::abs(step))
-      return input_error("the line begins at {}, and after {} of {} values from {} to {} comes {}: lines are missing",
+      return input_error("the line begins at {}, and after {} of {} values from {} to {} comes {}: {}",
                          shortest(stated), y_.size(), shortest(points), shortest(first), shortest(last),
-                         shortest(expected));
+                         shortest(expected),
+                         (stated - expected) * step > 0 ? "lines are missing"
+                                                        : "lines have too many values; commas stand between values");
     return {};
   }
 

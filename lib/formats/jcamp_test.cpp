@@ -92,6 +92,8 @@ TEST_F(Jcamp, RefusalsNameLineAndCount) {
   std::string lost = kPlain;
   lost.erase(lost.find("510"), lost.find("610") - lost.find("510"));
   EXPECT_THAT(refusal(block(lost)), HasSubstr(":16: the line begins at 610, and after 11 of 31 values"));
+  EXPECT_THAT(refusal(block(lost)), HasSubstr("lines are missing"));
+  EXPECT_THAT(refusal(block("400 0,2\n410 0,2\n420 0,2\n430 0,2\n")), HasSubstr("lines have too many values"));
   EXPECT_THAT(refusal(block("400A0JJJ\n430A4J\n")),
               HasSubstr(":16: the line begins with 14, and the line before ends with 13"));
   EXPECT_THAT(refusal(block("400 10 ? 12\n")), HasSubstr("\"?"));

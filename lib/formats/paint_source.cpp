@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/encoding.h"
 #include "base/text.h"
 #include "formats/csv.h"
 #include "formats/cxf.h"
-#include "formats/encoding.h"
 #include "formats/importers.h"
 
 namespace goniochrome::formats {

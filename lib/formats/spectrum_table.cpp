@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include "base/file.h"
+#include "base/csv_records.h"
 #include "base/text.h"
-#include "formats/encoding.h"
 #include "formats/internal/spectral_rows.h"
 
 namespace goniochrome::formats {
@@ -23,14 +22,12 @@ std::string without_unit(std::string_view name) {
   return std::string(trimmed(has_unit ? name.substr(0, bracket) : name));
 }
 
-std::string_view without_return(std::string_view line) {
-  return line.ends_with('\r') ? line.substr(0, line.size() - 1) : line;
-}
-
 }  // namespace
 
 Result<std::vector<double>> SpectrumTable::column(const std::string& name) const {
   const auto found = std::ranges::find(names, name);
+  if (std::ranges::count(names, name) > 1)
+    return input_error("{} columns are named \"{}\": rename all but one", std::ranges::count(names, name), shown(name));
   if (found != names.end()) return columns[static_cast<std::size_t>(found - names.begin())];
   std::string all;
   for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i) all += (i == 0 ? "" : ", ") + shown(names[i]);
@@ -51,21 +48,14 @@ Result<std::vector<double>> SpectrumTable::factors(const std::string& name) cons
 }
 
 Result<SpectrumTable> read_spectrum_table(const std::string& path) {
-  GONIO_ASSIGN(const std::string bytes, file_content(path));
-  const std::string text = as_utf8(bytes);
-  std::string_view rest = text;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  GONIO_ASSIGN(InputFile input, InputFile::open(path));
+  GONIO_ASSIGN(const std::vector<TableRow> rows, table_rows(CsvRecords(std::move(input))));
   SpectrumTable table;
-  int line = 0;
-  for (const std::string_view raw : split(rest, '\n')) {
-    ++line;
-    const std::string_view row = without_return(raw);
-    if (trimmed(row).empty()) continue;
-    const auto words = split(row, ',');
+  for (const auto& [line, cells] : rows) {
     if (table.names.empty()) {
-      for (std::size_t i = 1; i < words.size(); ++i) {
-        table.names.push_back(without_unit(words[i]));
-        table.scales.push_back(scale_in(words[i]));
+      for (std::size_t i = 1; i < cells.size(); ++i) {
+        table.names.push_back(without_unit(cells[i]));
+        table.scales.push_back(scale_in(cells[i]));
       }
       if (table.names.empty())
         return input_error("{}:{}: a table of spectra has the names of its columns here, separated by commas", path,
@@ -73,24 +63,24 @@ Result<SpectrumTable> read_spectrum_table(const std::string& path) {
       table.columns.resize(table.names.size());
       continue;
     }
-    const auto nm = parse_number(trimmed(words.front()));
+    const auto nm = number_in_cell(cells.front());
     if (!nm && table.wavelengths_nm.empty()) {
-      for (std::size_t i = 1; i < std::min(words.size(), table.scales.size() + 1); ++i)
-        if (const Scale stated = scale_in(words[i]); stated != Scale::kUnstated) table.scales[i - 1] = stated;
+      for (std::size_t i = 1; i < std::min(cells.size(), table.scales.size() + 1); ++i)
+        if (const Scale stated = scale_in(cells[i]); stated != Scale::kUnstated) table.scales[i - 1] = stated;
       continue;
     }
-    if (words.size() != table.names.size() + 1)
-      return input_error("{}:{}: {} cells where the first row has {}", path, line, words.size(),
+    if (cells.size() != table.names.size() + 1)
+      return input_error("{}:{}: {} cells where the first row has {}", path, line, cells.size(),
                          table.names.size() + 1);
     if (!nm || (!table.wavelengths_nm.empty() && !(*nm > table.wavelengths_nm.back())))
       return input_error("{}:{}: the wavelength is \"{}\": wavelengths in nanometers ascend", path, line,
-                         shown(words.front()));
+                         shown(cells.front()));
     table.wavelengths_nm.push_back(*nm);
-    for (std::size_t i = 1; i < words.size(); ++i) {
-      const auto value = parse_number(trimmed(words[i]));
+    for (std::size_t i = 1; i < cells.size(); ++i) {
+      const auto value = number_in_cell(cells[i]);
       if (!value)
         return input_error("{}:{}: {} is \"{}\": write a number", path, line, shown(table.names[i - 1]),
-                           shown(words[i]));
+                           shown(cells[i]));
       table.columns[i - 1].push_back(*value);
     }
   }

@@ -48,6 +48,14 @@ TEST(SpectrumTable, FactorsAreOfTheScaleThatTheTableStates) {
   EXPECT_FALSE(unstated->factors("c").ok());
 }
 
+TEST(SpectrumTable, IsReadAsSpreadsheetsSaveIt) {
+  const auto table = read_spectrum_table(written("sep=;\nnm;\"a\"\n400;0,5\n410;\"0,25\"\n;\n"));
+  ASSERT_TRUE(table.ok()) << table.error().message;
+  EXPECT_EQ(table->column("a").value(), (std::vector<double>{.5, .25}));
+  const auto twice = read_spectrum_table(written("nm,a,a\n400,1,2\n410,1,2\n"));
+  EXPECT_EQ(twice->column("a").error().message, "2 columns are named \"a\": rename all but one");
+}
+
 TEST(SpectrumTable, NamesTheLineOfWhatIsWrong) {
   const std::pair<const char*, const char*> cases[] = {
       {"nm\n400\n410\n", ":1:"},     {"nm,a\n400,1\n", "two wavelengths"}, {"nm,a\n400,1\n390,2\n", ":3:"},

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "base/csv_records.h"
 #include "base/text.h"
 #include "color/illuminant.h"
 #include "formats/internal/spectral_rows.h"
@@ -33,7 +34,8 @@ struct TextureColumn {
 
 // What the columns below a row of headings mean.
 struct Table {
-  int name = kNoColumn, code = kNoColumn, date = kNoColumn, serial = kNoColumn, geometry = kNoColumn;
+  int name = kNoColumn, code = kNoColumn, date = kNoColumn, serial = kNoColumn, geometry = kNoColumn,
+      illuminant = kNoColumn, observer = kNoColumn;
   std::vector<LabColumns> colors;
   std::vector<WavelengthColumn> wavelengths;
   std::string wavelength_fault;  // why they make no spectrum
@@ -63,6 +65,9 @@ constexpr std::array<std::string_view, 13> kNameHeadings = {"name",   "sample", 
 constexpr std::array<std::string_view, 6> kDateHeadings = {"date", "date/time", "datetime", "time", "datum", "zeit"};
 constexpr std::array<std::string_view, 4> kCodeHeadings = {"code", "paintcode", "colorcode", "farbcode"};
 constexpr std::array<std::string_view, 4> kSerialHeadings = {"serial", "serialnumber", "serialno", "seriennummer"};
+constexpr std::array<std::string_view, 3> kIlluminantHeadings = {"illuminant", "lichtart", "normlichtart"};
+constexpr std::array<std::string_view, 4> kObserverHeadings = {"observer", "beobachter", "normalbeobachter",
+                                                               "observerangle"};
 constexpr std::array<std::string_view, 6> kGeometryHeadings = {"geometry", "geometrie",  "angle",
                                                                "winkel",   "messwinkel", "messgeometrie"};
 
@@ -122,12 +127,6 @@ bool states_reflectance(const SheetRow& row) {
          scale_in(text) != Scale::kUnstated;
 }
 
-// The number that a cell holds, also with a decimal comma.
-std::optional<double> number_of_cell(std::string_view text) {
-  if (const auto value = parse_number(text)) return value;
-  return parse_number(with_decimal_point(text).value_or(""));
-}
-
 class WorkbookReader {
  public:
   WorkbookReader(std::string file, const ImportOptions& options) : file_(std::move(file)), options_(options) {}
@@ -151,6 +150,8 @@ class WorkbookReader {
   Result<void> read_row(const Sheet& sheet, const SheetRow& row, const Table& table);
   Result<void> read_lab(const Sheet& sheet, const SheetRow& row, const Table& table, const paint::Geometry& geometry,
                         OpenPaint& open);
+  Result<void> take_stated(const Sheet& sheet, const SheetRow& row, const Table& table,
+                           color::ViewingCondition& condition) const;
   Result<void> read_spectrum(const Sheet& sheet, const SheetRow& row, const Table& table,
                              const paint::Geometry& geometry, Gathered& gathered);
   Result<void> read_textures(const Sheet& sheet, const SheetRow& row, const Table& table, std::string_view geometry,
@@ -174,6 +175,7 @@ class WorkbookReader {
   Remarks remarks_;
   ImportedPaints result_;
   std::string sheets_;  // names of those that were looked at
+  bool any_table_ = false;
 };
 
 // Reads the row of headings. A column without a known heading is that of the geometry if every cell below, until the
@@ -188,6 +190,8 @@ Table WorkbookReader::table_below(const Sheet& sheet, std::size_t heading) const
     if (table.code == kNoColumn && is_one_of(word, kCodeHeadings)) table.code = cell.column;
     if (table.serial == kNoColumn && is_one_of(word, kSerialHeadings)) table.serial = cell.column;
     if (table.geometry == kNoColumn && is_one_of(word, kGeometryHeadings)) table.geometry = cell.column;
+    if (table.illuminant == kNoColumn && is_one_of(word, kIlluminantHeadings)) table.illuminant = cell.column;
+    if (table.observer == kNoColumn && is_one_of(word, kObserverHeadings)) table.observer = cell.column;
     if (const auto nm = wavelength_in(cell.text)) {
       table.wavelengths.push_back({*nm, cell.column});
       if (const auto taken = take_scale(cell.text, table.scale); !taken.ok())
@@ -233,7 +237,7 @@ Result<void> WorkbookReader::read_lab(const Sheet& sheet, const SheetRow& row, c
     int empty = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::string_view text = row.at(columns.at[k]);
-      const auto value = number_of_cell(text);
+      const auto value = number_in_cell(text);
       empty += text.empty();
       if (!text.empty() && !value)
         return error(sheet, row, fmt::format("{}* is \"{}\": write a number", "Lab"[k], shown(text)));
@@ -244,6 +248,7 @@ Result<void> WorkbookReader::read_lab(const Sheet& sheet, const SheetRow& row, c
     const color::Lab lab{values[0], values[1], values[2]};
     if (const auto checked = check_lab(lab); !checked.ok()) return error(sheet, row, checked.error().message);
     color::ViewingCondition condition = columns.condition;
+    GONIO_TRY(take_stated(sheet, row, table, condition));
     if (condition.illuminant.empty()) condition.illuminant = stated_.illuminant;
     if (condition.observer_deg == 0) condition.observer_deg = stated_.observer_deg;
     if (condition.illuminant.empty() || condition.observer_deg == 0)
@@ -251,6 +256,19 @@ Result<void> WorkbookReader::read_lab(const Sheet& sheet, const SheetRow& row, c
                     open.paint.name);
     open.readings.push_back({completed(condition, options_, {"D65", 10}), {geometry, lab}});
   }
+  return {};
+}
+
+// Fills in what the row states in columns of their own.
+Result<void> WorkbookReader::take_stated(const Sheet& sheet, const SheetRow& row, const Table& table,
+                                         color::ViewingCondition& condition) const {
+  const std::string_view light = table.illuminant == kNoColumn ? "" : row.at(table.illuminant),
+                         observer = table.observer == kNoColumn ? "" : row.at(table.observer);
+  if (condition.illuminant.empty() && !light.empty()) condition = color::condition_of(light, condition.observer_deg);
+  if (condition.observer_deg != 0 || observer.empty()) return {};
+  condition.observer_deg = color::observer_in(observer);
+  if (condition.observer_deg == 0)
+    return error(sheet, row, fmt::format("the observer is \"{}\": write 2 or 10 (degrees)", shown(observer)));
   return {};
 }
 
@@ -263,7 +281,7 @@ Result<void> WorkbookReader::read_spectrum(const Sheet& sheet, const SheetRow& r
   for (const auto& [nm, column] : table.wavelengths) {
     const std::string_view text = row.at(column);
     if (text.empty() && factors.empty()) return {};
-    const auto value = number_of_cell(text);
+    const auto value = number_in_cell(text);
     if (!value || !(std::abs(*value) <= kMostLab))
       return error(sheet, row, fmt::format("the reflectance at {} nm is \"{}\": write a number", nm, shown(text)));
     factors.push_back(*value);
@@ -278,7 +296,7 @@ Result<void> WorkbookReader::read_textures(const Sheet& sheet, const SheetRow& r
   for (const TextureColumn& column : table.textures) {
     const std::string_view text = row.at(column.at);
     if (text.empty()) continue;
-    const auto value = number_of_cell(text);
+    const auto value = number_in_cell(text);
     if (!value)
       return error(sheet, row, fmt::format("{} is \"{}\": write a number", shown(column.quantity), shown(text)));
     const auto same = [&](const paint::TextureReading& other) {
@@ -297,7 +315,7 @@ Result<void> WorkbookReader::read_textures(const Sheet& sheet, const SheetRow& r
 bool WorkbookReader::is_row_of_units(const SheetRow& row, const Table& table) {
   if (table.wavelengths.size() < kFewestWavelengths) return false;
   const std::string_view cell = row.at(table.wavelengths.front().at);
-  return !number_of_cell(cell) && scale_in(cell) != Scale::kUnstated;
+  return !number_in_cell(cell) && scale_in(cell) != Scale::kUnstated;
 }
 
 // All sheets have one scale. Error: another was stated before.
@@ -338,6 +356,7 @@ Result<void> WorkbookReader::read(const Sheet& sheet) {
     if (Table below = table_below(sheet, i); below.has_values()) {
       table = std::move(below);
       if (table.wavelengths.size() >= kFewestWavelengths) GONIO_TRY(state_scale(sheet, row, table.scale));
+      any_table_ = any_table_ || table.geometry != kNoColumn;
       if (table.geometry != kNoColumn) continue;
       remarks_.note("a table without a column of geometries was left out", sheet.name);
       table = {};
@@ -423,7 +442,7 @@ Result<ImportedPaints> WorkbookReader::finish() {
                     "up to {:.2g} dE00",
                     disagreements_, disagreement_de00_),
         worst_);
-  if (result_.paints.empty() && result_.skipped.empty())
+  if (!any_table_)
     return input_error(
         "{}: none of its sheets ({}) has a table of geometries beside L*, a* and b*, or beside reflectances under "
         "their wavelengths",

@@ -157,6 +157,16 @@ TEST_F(Workbook, FindsColumnsByWhatTheyHold) {
   EXPECT_EQ(paints.paints[0].measurement->rows[1].geometry, geometry("45as110"));
 }
 
+// Columns of illuminant and observer were passed over, and D65/10 was said to be unstated.
+TEST_F(Workbook, HearsIlluminantAndObserverInColumns) {
+  const std::vector<std::string> heads = {"Name", "Geometry", "Illuminant", "Observer", "L*", "a*", "b*"};
+  const auto paints = good_workbook(parts_of({{"s", data({heads, {"p", "45as15", "A", "2", "50", "1", "2"}})}}));
+  EXPECT_EQ(paints.paints.at(0).measurement->condition, (color::ViewingCondition{"A", 2}));
+  EXPECT_THAT(paints.warnings, IsEmpty());
+  EXPECT_THAT(refused(parts_of({{"s", data({heads, {"p", "45as15", "A", "4", "50", "1", "2"}})}})),
+              HasSubstr("row 2: the observer is \"4\": write 2 or 10"));
+}
+
 TEST_F(Workbook, SharedStringsMergedCellsAndDates) {
   Parts parts = parts_of(
       {{"s",
@@ -257,6 +267,12 @@ TEST_F(Workbook, RefusesReflectancesBelowBlack) {
 
 TEST_F(Workbook, RefusesWhatIsNoTableOfReadings) {
   EXPECT_THAT(refused(parts_of({{"One", data({{"a", "b"}, {"1", "2"}})}})), HasSubstr("none of its sheets (\"One\")"));
+  // A table without rows is one, and so is one of spectra that no observer sees, which are named.
+  EXPECT_THAT(good_workbook(parts_of({{"One", data({kHeadings})}})).paints, IsEmpty());
+  const auto infrared = good_workbook(parts_of({{"s", data({{"Name", "Geometry", "900", "920", "940", "960", "980"},
+                                                            {"p", "45as15", "0.2", "0.2", "0.2", "0.2", "0.2"}})}}));
+  EXPECT_THAT(infrared.paints, IsEmpty());
+  EXPECT_THAT(infrared.warnings, testing::Contains(HasSubstr("leaves out 100 % of what the observer sees")));
   EXPECT_THAT(refused({{"a.txt", "x"}}), HasSubstr("ZIP archive without a workbook"));
   Parts parts = parts_of({{"One", data({kHeadings})}});
   parts.erase("xl/worksheets/sheet1.xml");

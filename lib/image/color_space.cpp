@@ -69,7 +69,8 @@ Result<Space> space_of(const ImagePart& part, const std::string& file) {
   const std::string name = text("oiio:ColorSpace");
   // OpenImageIO says Rec709 of PNM and DPX files, and programs that use it pass this on to PNG. Of whole numbers it
   // means the curve of a display with these primaries, as PNM defines it, and in practice that of sRGB.
-  const auto named = name.empty()                               ? Space{}
+  // Whole numbers are for a display, which takes them as sRGB; floats are linear.
+  const auto named = name.empty() ? Space{kRec709, whole_numbers ? Curve::kSrgb : Curve::kLinear}
                      : whole_numbers && lower(name) == "rec709" ? Space{kRec709, Curve::kSrgb}
                                                                 : named_space(name);
   const auto* xy = find_attribute<std::vector<float>>(part.attributes, "chromaticities");

@@ -128,17 +128,63 @@ bool is_camera_raw(std::string_view content) {
 
 constexpr const char* kAdvice = "convert it to EXR, or to a TIFF or PNG of 16 bits";
 
+bool is_tiff_header(std::string_view header) {
+  return header.starts_with("II\x2a") || header.starts_with("MM");
+}
+
+// Where the value of a tag stands in a directory of a TIFF header, or its place where it takes more than 4 bytes.
+std::optional<std::size_t> tiff_entry(std::string_view header, std::size_t directory, std::uint32_t tag) {
+  const TiffNumbers number(header);
+  for (std::uint32_t i = 0; directory != 0 && i < number.at(directory, 2); ++i) {
+    const std::size_t entry = directory + 2 + 12 * std::size_t{i};
+    if (entry + 12 > header.size()) return std::nullopt;
+    if (number.at(entry, 2) == tag) return entry + 8;
+  }
+  return std::nullopt;
+}
+
 // The EXIF tag Orientation in the first directory of a TIFF header; 1 where there is none.
 int tiff_orientation(std::string_view header) {
-  if (!header.starts_with("II\x2a") && !header.starts_with("MM")) return 1;
+  if (!is_tiff_header(header)) return 1;
   const TiffNumbers number(header);
-  const std::size_t directory = number.at(4, 4);
-  for (std::uint32_t i = 0; i < number.at(directory, 2); ++i) {
-    const std::size_t entry = directory + 2 + 12 * std::size_t{i};
-    if (entry + 12 > header.size()) return 1;
-    if (number.at(entry, 2) == 0x112) return static_cast<int>(number.at(entry + 8, 2));
+  const auto entry = tiff_entry(header, number.at(4, 4), 0x112);
+  return entry ? static_cast<int>(number.at(*entry, 2)) : 1;
+}
+
+// True where the interoperability index, behind the pointers of two directories, is R03, which cameras write beside
+// values in Adobe RGB. [DCF 2.0, optional color space]
+bool is_adobe_rgb(std::string_view header) {
+  constexpr std::uint32_t kExif = 0x8769, kInteroperability = 0xa005, kIndex = 1;
+  if (!is_tiff_header(header)) return false;
+  const TiffNumbers number(header);
+  const auto place = [&](std::size_t directory, std::uint32_t tag) -> std::size_t {
+    const auto entry = tiff_entry(header, directory, tag);
+    return entry ? number.at(*entry, 4) : 0;
+  };
+  const std::size_t first = number.at(4, 4), exif = place(first, kExif);
+  for (const std::size_t directory : {exif, first})
+    if (const auto index = tiff_entry(header, place(directory, kInteroperability), kIndex))
+      return header.substr(*index, 3) == "R03";
+  return false;
+}
+
+// Red, green, blue and white by PrimaryChromaticities and WhitePoint of a TIFF; none where one is missing or is 0/0.
+std::vector<float> tiff_chromaticities(std::string_view header) {
+  constexpr std::uint32_t kPrimaries = 319, kWhite = 318;
+  if (!is_tiff_header(header)) return {};
+  const TiffNumbers number(header);
+  std::vector<float> xy;
+  for (const auto& [tag, count] : {std::pair{kPrimaries, std::size_t{6}}, {kWhite, std::size_t{2}}}) {
+    const auto entry = tiff_entry(header, number.at(4, 4), tag);
+    if (!entry || number.at(*entry - 4, 4) != count) return {};
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t at = number.at(*entry, 4) + 8 * i;
+      const std::uint32_t below = number.at(at + 4, 4);
+      if (below == 0) return {};
+      xy.push_back(static_cast<float>(number.at(at, 4)) / static_cast<float>(below));
+    }
   }
-  return 1;
+  return xy;
 }
 
 // The number of so many bytes, the first of which is the highest.
@@ -148,14 +194,14 @@ std::size_t big_endian(std::string_view bytes) {
   return value;
 }
 
-// The EXIF data of a file; empty where there are none. Behind "RIFF", a size and "WEBP" come chunks of a type, a size
-// and bytes, of which there are an even number.
-std::string_view exif_of_webp(std::string_view content) {
+// A chunk of a WebP file; empty where there is none. Behind "RIFF", a size and "WEBP" come chunks of a type, a size and
+// bytes, of which there are an even number.
+std::string_view chunk_of_webp(std::string_view content, std::string_view type) {
   for (std::size_t at = 12; at + 8 <= content.size();) {
     std::size_t size = 0;
     for (std::size_t i = 8; i-- > 4;) size = size << 8 | static_cast<unsigned char>(content[at + i]);
     if (size > content.size() - at - 8) break;
-    if (content.substr(at, 4) == "EXIF") return content.substr(at + 8, size);
+    if (content.substr(at, 4) == type) return content.substr(at + 8, size);
     at += 8 + size + size % 2;
   }
   return {};
@@ -186,15 +232,36 @@ std::string_view exif_of_jpeg(std::string_view content) {
   return {};
 }
 
-}  // namespace
-
-int exif_orientation(std::string_view content, std::string_view format) {
-  std::string_view exif = format == "webp"   ? exif_of_webp(content)
+// The TIFF header and directories of the EXIF data of a PNG, JPEG or WebP file; empty where there are none.
+std::string_view exif_of(std::string_view content, std::string_view format) {
+  std::string_view exif = format == "webp"   ? chunk_of_webp(content, "EXIF")
                           : format == "png"  ? exif_of_png(content)
                           : format == "jpeg" ? exif_of_jpeg(content)
                                              : std::string_view();
   if (exif.starts_with("Exif")) exif.remove_prefix(std::min<std::size_t>(6, exif.size()));
-  return tiff_orientation(exif);
+  return exif;
+}
+
+}  // namespace
+
+int exif_orientation(std::string_view content, std::string_view format) {
+  return tiff_orientation(exif_of(content, format));
+}
+
+Attributes stated_colors(std::string_view content, std::string_view format) {
+  Attributes attributes;
+  if (const auto profile = chunk_of_webp(content, "ICCP"); format == "webp" && !profile.empty()) {
+    attributes["ICCProfile"] = std::string(profile);
+    return attributes;
+  }
+  const std::string_view header = format == "tiff" ? content : exif_of(content, format);
+  if (is_adobe_rgb(header)) {
+    attributes["oiio:ColorSpace"] = std::string("Gamma2.19921875");
+    attributes["chromaticities"] = std::vector<float>{.64F, .33F, .21F, .71F, .15F, .06F, .3127F, .329F};
+  } else if (const auto xy = tiff_chromaticities(header); format == "tiff" && !xy.empty()) {
+    attributes["chromaticities"] = xy;
+  }
+  return attributes;
 }
 
 Result<std::string> content_format(std::string_view content, const std::string& name) {

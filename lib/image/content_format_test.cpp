@@ -41,5 +41,35 @@ TEST(ContentFormat, OrientationOfAWebpIsFound) {
     EXPECT_EQ(exif_orientation(whole.substr(0, cut), "webp"), 1) << cut;
 }
 
+// The profile of a WebP, the primaries of a TIFF and the Adobe RGB of cameras were dropped in silence.
+TEST(ContentFormat, ColorsThatFilesStateAreFound) {
+  using namespace std::string_literals;
+  const std::string webp = "RIFF\0\0\0\0WEBPVP8 \2\0\0\0abICCP\3\0\0\0xyz\0"s;
+  EXPECT_EQ(std::get<std::string>(stated_colors(webp, "webp").at("ICCProfile")), "xyz");
+  EXPECT_TRUE(stated_colors(webp.substr(0, 22), "webp").empty()) << "control";
+  // Directories of one entry each: EXIF at 26, interoperability at 44.
+  const auto directory = [](const std::string& tag, const std::string& type, const std::string& value) {
+    return "\0\1"s + tag + type + "\0\0\0\4"s + value + "\0\0\0\0"s;
+  };
+  const auto exif = [&](const std::string& index) {
+    return "MM\0\x2a\0\0\0\x08"s + directory("\x87\x69"s, "\0\4"s, "\0\0\0\x1a"s) +
+           directory("\xa0\x05"s, "\0\4"s, "\0\0\0\x2c"s) + directory("\0\1"s, "\0\2"s, index + "\0"s);
+  };
+  const auto jpeg = [&](const std::string& header) {
+    return "\xff\xd8\xff\xe1\0"s + static_cast<char>(header.size() + 8) + "Exif\0\0"s + header + "\xff\xda"s;
+  };
+  const Attributes adobe = stated_colors(jpeg(exif("R03")), "jpeg");
+  EXPECT_EQ(std::get<std::vector<float>>(adobe.at("chromaticities"))[2], .21F);
+  EXPECT_TRUE(stated_colors(jpeg(exif("R98")), "jpeg").empty()) << "sRGB";
+  // Two tags whose rationals stand at 38.
+  std::string tiff =
+      "MM\0\x2a\0\0\0\x08\0\2"s + "\1\x3e\0\5\0\0\0\2\0\0\0\x56"s + "\1\x3f\0\5\0\0\0\6\0\0\0\x26"s + "\0\0\0\0"s;
+  for (int i = 1; i <= 8; ++i) tiff += "\0\0\0"s + static_cast<char>(i) + "\0\0\0\x0a"s;
+  const Attributes primaries = stated_colors(tiff, "tiff");
+  EXPECT_EQ(std::get<std::vector<float>>(primaries.at("chromaticities")),
+            (std::vector<float>{.1F, .2F, .3F, .4F, .5F, .6F, .7F, .8F}));
+  for (std::size_t cut = 0; cut < tiff.size(); ++cut) EXPECT_TRUE(stated_colors(tiff.substr(0, cut), "tiff").empty());
+}
+
 }  // namespace
 }  // namespace goniochrome::image::content_format_test

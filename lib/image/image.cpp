@@ -201,6 +201,7 @@ Result<ImagePart> read_image(const std::string& path, Inks inks) {
                                          : decoded_by_oiiotool(content, format, input.name()));
   Attributes colors = format == "png" ? png_colors(content) : Attributes();
   if (colors.contains("oiio:ColorSpace")) part.attributes.erase("ICCProfile");
+  if (colors.empty() && text_attribute(part, "ICCProfile").empty()) colors = stated_colors(content, format);
   for (auto& [name, value] : colors) part.attributes[name] = std::move(value);
   Image& image = part.image;
   const Turn turn = exif_turn(exif_orientation(content, format));

@@ -11,8 +11,21 @@
 
 namespace goniochrome::image {
 
+namespace {
+
+// Error: a program that converted the colors of the file has said so.
+Result<void> check_working_space(const std::vector<ImagePart>& parts, const std::string& path) {
+  for (const ImagePart& part : parts)
+    if (const std::string id = text_attribute(part, "colorInteropID"); !id.empty() && id != "lin_rec2020_scene")
+      return input_error("{}: colorInteropID is \"{}\", not \"lin_rec2020_scene\": convert its colors back", path, id);
+  return {};
+}
+
+}  // namespace
+
 Result<brdf::ColorMap> read_color_map(const std::string& path) {
   GONIO_ASSIGN(const std::vector<ImagePart> parts, read_exr(path));
+  GONIO_TRY(check_working_space(parts, path));
   const Image& image = parts.front().image;
   // Channels are read in this order where they are there.
   const std::vector<std::string> rgb = {"R", "G", "B"};
@@ -222,6 +235,7 @@ bool halves_do(const brdf::SbrdfTexture& texture) {
 
 Result<brdf::SbrdfTexture> read_sbrdf(const std::string& path) {
   GONIO_ASSIGN(const std::vector<ImagePart> parts, read_exr(path));
+  GONIO_TRY(check_working_space(parts, path));
   GONIO_ASSIGN(const Image image, joined(parts, path));
   brdf::SbrdfTexture texture{image.width, image.height, 0, {}};
   const auto& given = image.channel_names;

@@ -129,6 +129,15 @@ TEST_F(SbrdfFile, FramesOfLobesAreReadBackBesideAlpha) {
   EXPECT_EQ(read_exr(path_)->front().image.channels, 19) << "no channels of frames where the texel's serves";
 }
 
+// A file that another program had converted was read as if it had not been.
+TEST_F(SbrdfFile, ColorsOfAnotherSpaceAreRefused) {
+  const Image image{1, 1, 10, {0.1F, 0.2F, 0.3F, 1, 2, 3, -1, -0.5F, 1, 40}, kChannels};
+  for (const auto& [id, wanted] : {std::pair{"lin_rec2020_scene", true}, {"lin_ap1_scene", false}}) {
+    ASSERT_TRUE(write_exr(path_, {{"", image, {{"colorInteropID", std::string(id)}}, PixelType::kFloat}}).ok());
+    EXPECT_EQ(read_sbrdf(path_).ok(), wanted) << id;
+  }
+}
+
 TEST_F(SbrdfFile, TellsWhatIsWrong) {
   const std::vector<float> good = {0.1F, 0.2F, 0.3F, 1, 2, 3, -1, -0.5F, 1, 40};
   const auto told = [&](std::vector<std::string> channels, std::vector<float> values) {

@@ -13,6 +13,7 @@
 #include "base/encode.h"
 #include "base/scratch_for_test.h"
 #include "mesh/mesh.h"
+#include "mesh/unit.h"
 
 namespace goniochrome::mesh::gltf_test {
 namespace {
@@ -225,6 +226,14 @@ TEST_F(GltfFiles, NumbersThatAreNotFiniteAndIndicesBeyondTheVerticesAreRefused) 
 TEST_F(GltfFiles, InstancesByExtensionAreRefusedByName) {
   EXPECT_THAT(error(document(R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{}}})", "0")),
               HasSubstr("EXT_mesh_gpu_instancing"));
+}
+
+// A scene of 80 meters was taken for inches by its size.
+TEST_F(GltfFiles, LengthsAreMetersWhateverTheSize) {
+  const auto mesh = read(document(R"({"mesh":0,"scale":[80,80,80]})", "0"));
+  ASSERT_TRUE(mesh.ok());
+  EXPECT_EQ(likely_unit(bounding_box(*mesh)).meters, 0.0254) << "control";
+  EXPECT_EQ(length_unit(*mesh).meters, 1);
 }
 
 TEST_F(GltfFiles, HiddenNodesAndThoseBelowThemAreNotDrawn) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "base/encoding.h"
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/paths.h"
@@ -292,6 +293,13 @@ bool is_binary_stl(std::string_view content) {
   return content.size() == 84 + std::size_t{50} * triangles;
 }
 
+// A text without the mark that editors write before it, and in UTF-8 where it is in UTF-16; other bytes as they are.
+std::string plain_text(std::string content) {
+  if (content.starts_with("\xff\xfe") || content.starts_with("\xfe\xff")) content = as_utf8(content);
+  if (content.starts_with("\xef\xbb\xbf")) content.erase(0, 3);
+  return content;
+}
+
 // Formats that other programs turn into one that is read here: an error that names the command.
 Result<void> check_convertible(const std::string& path, const std::string& extension) {
   const std::string without = std::filesystem::path(path).replace_extension("").string();
@@ -339,6 +347,7 @@ Result<Mesh> read_mesh(const std::string& path) {
   if (path.empty()) return input_error("the name of a mesh is empty: name a file");
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
   GONIO_ASSIGN(std::string content, input.rest(std::string::npos));
+  if (!is_binary_stl(content)) content = plain_text(std::move(content));
   if (extension.empty()) extension = extension_by_content(content);
   GONIO_TRY(check_convertible(path, extension));
   const Source source{input.name(), is_plain_file(path) ? file.stem().string() : "mesh"};
@@ -349,7 +358,9 @@ Result<Mesh> read_mesh(const std::string& path) {
                                   : is_gltf           ? polygons_from_gltf(content, source, folder)
                                                       : polygons_from_soup(content, extension, source));
   content = std::string();  // its memory is needed
-  return mesh_from_polygons(std::move(polygons), source.name);
+  GONIO_ASSIGN(Mesh mesh, mesh_from_polygons(std::move(polygons), source.name));
+  mesh.unit_m = is_gltf ? 1 : 0;
+  return mesh;
 }
 
 }  // namespace goniochrome::mesh

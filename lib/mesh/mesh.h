@@ -40,6 +40,7 @@ struct Mesh {
 
   std::vector<std::array<float, 2>> texture = {};  // u v of each vertex, v up; empty where the file has none
   std::vector<std::string> remarks = {};           // what the file says of the mesh that is not understood here
+  double unit_m = 0;                               // of its lengths, where the format states it, as glTF does; else 0
 };
 
 struct Box {

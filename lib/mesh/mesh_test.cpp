@@ -83,6 +83,18 @@ TEST_F(MeshFiles, VertexColorsAndStrangersArePassedOver) {
   EXPECT_EQ(mesh->triangles.size(), 1u);
 }
 
+// The mark in front of the first statement hid it, so that every face lay one vertex further on.
+TEST_F(MeshFiles, MarksOfEncodingsAreNoPartOfTheText) {
+  const std::string text = kSquare + "v 9 9 9\nf 1 2 3 4\n";
+  std::string wide = "\xff\xfe";
+  for (const char c : text) wide += {c, '\0'};
+  for (const std::string& marked : {text, "\xef\xbb\xbf" + text, wide}) {
+    const auto mesh = obj(marked);
+    ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+    EXPECT_NEAR(area(*mesh), 1, 1e-15);
+  }
+}
+
 TEST_F(MeshFiles, FreeFormSurfacesAreRemarked) {
   const std::string form = "cstype bezier\nsurf 0 1 0 1 1 2 3 4\nend\n";
   EXPECT_THAT(obj(kSquare + "f 1 2 3 4\n" + form)->remarks, testing::ElementsAre(HasSubstr("1 free-form surfaces")));
@@ -318,6 +330,7 @@ TEST_F(MeshFiles, OffPlyAndStlAreOnePartNamedForTheFile) {
     EXPECT_EQ(mesh->triangles.size(), 2u) << name;
     EXPECT_NEAR(area(*mesh), 1, 1e-15) << name;
     for (const Vec3& n : mesh->normals) EXPECT_EQ(n, (Vec3{0, 0, 1})) << name;
+    EXPECT_THAT(mesh->remarks, testing::IsEmpty()) << name;
   }
 }
 

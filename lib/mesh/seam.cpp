@@ -436,8 +436,8 @@ Result<Seam> seam_between(const Mesh& mesh, const std::string& part_a, const std
   const Box box = bounding_box(mesh);
   const double size = length(box.high - box.low), spacing = size / 1000;
   Seam seam;
-  seam.unit_guessed = !(options.unit_m > 0);
-  seam.unit_m = seam.unit_guessed ? likely_unit(box).meters : options.unit_m;
+  seam.unit_guessed = !(options.unit_m > 0) && !(mesh.unit_m > 0);
+  seam.unit_m = options.unit_m > 0 ? options.unit_m : length_unit(mesh).meters;
   const double unit_mm = seam.unit_m * 1e3, limit = options.max_gap_mm > 0 ? options.max_gap_mm / unit_mm : size / 100;
 
   GONIO_ASSIGN(auto rims, seen_rims(mesh, {a, b}, size, seam.repairs));

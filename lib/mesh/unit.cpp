@@ -18,6 +18,10 @@ LengthUnit likely_unit(const Box& box) {
   return size <= 30 ? kMeters : size <= 300 ? kInches : size <= 900 ? kCentimeters : kMillimeters;
 }
 
+LengthUnit length_unit(const Mesh& mesh) {
+  return mesh.unit_m > 0 ? unit_of(mesh.unit_m) : likely_unit(bounding_box(mesh));
+}
+
 LengthUnit unit_of(double meters) {
   constexpr std::array kAll = {kMeters, kInches, kCentimeters, kMillimeters};
   return *std::ranges::min_element(kAll, {}, [&](const LengthUnit& u) { return std::abs(u.meters - meters); });

@@ -1,4 +1,4 @@
-// The unit of length of a mesh whose file does not state one.
+// The unit of length of a mesh, also where its file does not state one.
 #pragma once
 
 #include "mesh/mesh.h"
@@ -14,6 +14,9 @@ struct LengthUnit {
 // which a car has some 200, up to 300; centimeters, of which it has some 500, up to 900; and millimeters above. A small
 // part can be taken for a larger one of another unit, so that a tool must tell what it has taken.
 LengthUnit likely_unit(const Box& box);
+
+// The unit that the file of a mesh states, or else the likely one.
+LengthUnit length_unit(const Mesh& mesh);
 
 // The unit of that many meters, one of those above.
 LengthUnit unit_of(double meters);

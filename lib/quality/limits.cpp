@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/csv_records.h"
 #include "base/text.h"
 #include "paint/edit.h"
 
@@ -45,29 +46,26 @@ Result<void> check_quantity(const Limit& limit) {
   return {};
 }
 
-// A cell of a number, whose decimal sign may be a comma where that does not separate cells; nothing where it is empty.
-Result<std::optional<double>> bound_in(std::string_view cell, char separator, const char* column) {
+// A cell of a number; nothing where it is empty.
+Result<std::optional<double>> bound_in(std::string_view cell, const char* column) {
   if (cell.empty()) return std::optional<double>();
-  std::string number(cell);
-  if (separator != ',') std::ranges::replace(number, ',', '.');
-  const auto value = parse_number(number);
+  const auto value = number_in_cell(cell);
   if (!value) return input_error("{} is \"{}\", which is no number", column, shown(cell));
   return value;
 }
 
-Result<Limit> limit_in(std::string_view line, char separator) {
-  std::vector<std::string_view> cells = split(line, separator);
-  while (cells.size() > 4 && trimmed(cells.back()).empty()) cells.pop_back();
+Result<Limit> limit_in(std::vector<std::string> cells) {
+  while (cells.size() > 4 && cells.back().empty()) cells.pop_back();
   if (cells.size() != 4) return input_error("has {} cells: write {}", cells.size(), kHead);
-  Limit limit{std::string(trimmed(cells[0])), std::string(trimmed(cells[1]))};
+  Limit limit{cells[0], cells[1]};
   if (!is_one_of(std::array{"*", kMean, kLargest, kWhole}, limit.at) && !limit.quantity.starts_with("texture:")) {
     const auto geometry = paint::parse_geometry(limit.at);
     if (!geometry.ok()) return input_error("{}", geometry.error().message);
     limit.at = paint::geometry_name(*geometry);
   }
   GONIO_TRY(check_quantity(limit));
-  GONIO_ASSIGN(limit.low, bound_in(trimmed(cells[2]), separator, "low"));
-  GONIO_ASSIGN(limit.high, bound_in(trimmed(cells[3]), separator, "high"));
+  GONIO_ASSIGN(limit.low, bound_in(cells[2], "low"));
+  GONIO_ASSIGN(limit.high, bound_in(cells[3], "high"));
   if (!limit.low && !limit.high) return input_error("has neither low nor high: give one of them");
   if (limit.low && limit.high && *limit.low > *limit.high)
     return input_error("low is {}, above high, which is {}", shortest(*limit.low), shortest(*limit.high));
@@ -163,27 +161,16 @@ bool is_quality_element(std::string_view element, std::string_view name) {
 }
 
 Result<std::vector<Limit>> parse_limits(std::string_view table, const std::string& name) {
+  GONIO_ASSIGN(const std::vector<TableRow> rows, table_rows(CsvRecords(name, table), true));
   std::vector<Limit> limits;
-  char separator = ',';
-  int number = 0;
-  bool has_head = false;
-  if (table.starts_with("\xEF\xBB\xBF")) table.remove_prefix(3);
-  for (std::string_view line : split(table, '\n')) {
-    ++number;
-    line = trimmed(line);
-    if (line.empty() || line.starts_with('#') || (!has_head && line.starts_with("sep="))) continue;
-    if (!has_head) {
-      for (const char each : {'\t', ';'})
-        if (line.find(each) != std::string_view::npos) separator = each;
-      std::string head(line);
-      std::ranges::replace(head, separator, ',');
-      std::erase(head, ' ');
-      if (lower(head) != kHead) return input_error("{}:{}: the columns of limits are {}", name, number, kHead);
-      has_head = true;
+  for (const auto& [line, cells] : rows) {
+    if (line == rows.front().line) {
+      if (lower(joined(cells, ",")) != kHead)
+        return input_error("{}:{}: the columns of limits are {}", name, line, kHead);
       continue;
     }
-    auto limit = limit_in(line, separator);
-    if (!limit.ok()) return input_error("{}:{}: {}", name, number, limit.error().message);
+    auto limit = limit_in(cells);
+    if (!limit.ok()) return input_error("{}:{}: {}", name, line, limit.error().message);
     limits.push_back(std::move(*limit));
   }
   if (limits.empty()) return input_error("{}: there is no limit in it", name);

@@ -107,6 +107,13 @@ TEST(Limits, HaveADecimalCommaWhereCellsAreSeparatedOtherwise) {
   }
 }
 
+TEST(Limits, AreReadAsSpreadsheetsSaveThem) {
+  const auto parsed = parse_limits("sep=;\r\nGeometry;Quantity;Low;High\r\n\"*\";dL;-1,5;1,5\r\n;;;\r\n", "l.csv");
+  ASSERT_TRUE(parsed.ok()) << parsed.error().message;
+  ASSERT_EQ(parsed->size(), 1u);
+  EXPECT_EQ(parsed->front().low, -1.5);
+}
+
 TEST(Limits, AreRefusedWithTheirLine) {
   for (const char* wrong : {"*,dL,1,-1", "*,dQ,1,2", "*,dL,,", "*,dL,x,2", "*,dL,1", "x,dL,1,2", "mean,dL,1,2",
                             "45as15,gloss60,1,2", "*,dE_cie99,,2", "*,dL,nan,2", "*,texture:,,2", "*,metamerism_,,2"}) {

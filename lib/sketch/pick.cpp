@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <random>
 
+#include "base/encoding.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "paint/curve.h"
@@ -321,7 +322,8 @@ Result<std::vector<PalettePair>> palette(const image::ImagePart& image, const st
 
 Result<Board> read_board(const std::string& path) {
   GONIO_ASSIGN(const std::string content, file_content(path));
-  return BoardReader(path).read(content);
+  const std::string text = as_utf8(content);
+  return BoardReader(path).read(text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text);
 }
 
 }  // namespace goniochrome::sketch

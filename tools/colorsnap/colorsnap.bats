@@ -98,6 +98,10 @@ column() {
   run --separate-stderr colorsnap -l /dev/null wish.xml
   [ "$status" -eq 3 ]
   [[ "$stderr" == *"no plain file"* ]]
+  echo '<paints xmlns="urn:goniochrome:paint:1" version="1"/>' >empty.xml
+  run --separate-stderr colorsnap -l empty.xml wish.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"empty.xml: holds no paint"* ]]
   sed 's/L="80"/L="12,5"/' lib.xml >bad.xml
   run --separate-stderr colorsnap -l bad.xml wish.xml
   [ "$status" -eq 3 ]

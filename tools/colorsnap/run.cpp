@@ -248,6 +248,11 @@ class Run {
   double search_s_ = 0, wall_s_ = 0;
 };
 
+Result<void> check_library(const library::LibraryIndex& index, const std::string& name) {
+  if (index.size() > 0) return {};
+  return input_error("{}: holds no paint: name a library that has some", name);
+}
+
 // The search under several illuminants.
 Result<cli::Verdict> run_under_lights(const Options& options, const library::LibrarySearchOptions& search,
                                       cli::Session& session) {
@@ -256,6 +261,7 @@ Result<cli::Verdict> run_under_lights(const Options& options, const library::Lib
                library::LightsSearch::open(options.library, std::move(illuminants), search, [&](std::size_t paints) {
                  session.progress(fmt::format("{}: reading {}: {} paints", session.tool(), options.library, paints));
                }));
+  GONIO_TRY(check_library(lights.index(), options.library));
   if (lights.without_spectra() > 0)
     session.warn(
         fmt::format("{} of {} library paints have no spectra and are left out: nothing tells their color in "
@@ -283,6 +289,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
         fmt::format("{}: {}: made anew, {}", session.tool(), library::index_path(options.library), index.note()));
   if (index.origin() == library::LibraryIndex::Origin::kInMemory && !formats::paint_reference(options.library).name)
     session.warn(fmt::format("the index stays in memory and is made again by every run: {}", index.note()));
+  GONIO_TRY(check_library(index, options.library));
   const library::LibrarySearch all(index, search);
   return Run(options, session, Searched(index, all), search)();
 }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "base/file.h"
+#include "base/csv_records.h"
 #include "base/text.h"
 #include "output_names.h"
 #include "report/plot.h"
@@ -28,15 +28,12 @@ struct Columns {
   std::optional<std::size_t> style, color;
 };
 
-Result<Columns> columns_of(const std::string& name, int line, const std::vector<std::string_view>& words) {
+Result<Columns> columns_of(const std::string& name, int line, const std::vector<std::string>& words) {
   std::map<std::string, std::size_t> at;
-  for (std::size_t i = 0; i < words.size(); ++i) at[lower(trimmed(words[i]))] = i;
+  for (std::size_t i = 0; i < words.size(); ++i) at[lower(words[i])] = i;
   for (const char* heading : {"series", "x", "y"})
-    if (!at.contains(heading)) {
-      const bool apart_otherwise = words.size() == 1 && words[0].find_first_of(";\t") != std::string_view::npos;
-      return input_error("{}:{}: there is no heading {}: begin with a line such as series,x,y{}", name, line, heading,
-                         apart_otherwise ? ", with commas between the cells and points in numbers" : "");
-    }
+    if (!at.contains(heading))
+      return input_error("{}:{}: there is no heading {}: begin with a line such as series,x,y", name, line, heading);
   Columns columns{at["series"], at["x"], at["y"], words.size(), std::nullopt, std::nullopt};
   if (at.contains("style")) columns.style = at["style"];
   if (at.contains("color")) columns.color = at["color"];
@@ -46,7 +43,7 @@ Result<Columns> columns_of(const std::string& name, int line, const std::vector<
 // A number, or NaN for an empty cell, which breaks a line.
 Result<double> coordinate(const std::string& name, int line, const char* column, std::string_view text) {
   if (trimmed(text).empty()) return std::numeric_limits<double>::quiet_NaN();
-  if (const auto value = parse_number(trimmed(text))) {
+  if (const auto value = number_in_cell(trimmed(text))) {
     if (std::abs(*value) <= kMostCoordinate) return *value;
     return input_error("{}:{}: {} is {}: numbers beyond {} have no place in a plot", name, line, column, trimmed(text),
                        kMostCoordinate);
@@ -64,34 +61,31 @@ Result<std::string> color(const std::string& name, int line, std::string_view te
 
 Result<std::vector<report::Series>> read_table(const std::string& path) {
   const std::string name = path == "-" ? "standard input" : path;
-  GONIO_ASSIGN(const std::string text, file_content(path));
+  GONIO_ASSIGN(InputFile input, InputFile::open(path));
+  GONIO_ASSIGN(const std::vector<TableRow> rows, table_rows(CsvRecords(std::move(input))));
   std::vector<report::Series> all;
   std::map<std::string, std::size_t> number_of;  // where the series of a label stands
   std::optional<Columns> columns;
-  int line = 0;
-  for (std::string_view raw : split(text, '\n')) {
-    if (++line == 1 && raw.starts_with("\xEF\xBB\xBF")) raw.remove_prefix(3);
-    if (trimmed(raw).empty()) continue;
-    const auto words = split(trimmed(raw), ',');
+  for (const auto& [line, words] : rows) {
     if (!columns) {
       GONIO_ASSIGN(columns, columns_of(name, line, words));
       continue;
     }
     if (words.size() != columns->count)
       return input_error("{}:{}: {} cells where the headings are {}", name, line, words.size(), columns->count);
-    const std::string label(trimmed(words[columns->series]));
+    const std::string& label = words[columns->series];
     const auto [known, is_new] = number_of.try_emplace(label, all.size());
     if (is_new) all.push_back({.label = label, .x = {}, .y = {}});
     report::Series* series = &all[known->second];
     if (is_new) {
       if (columns->style) {
-        const std::string_view style = trimmed(words[*columns->style]);
+        const std::string_view style = words[*columns->style];
         if (!kStyles.contains(style))
           return input_error("{}:{}: style is \"{}\": give line, points, both, dashed or rings", name, line, style);
         series->style = kStyles.at(style);
       }
       if (columns->color) {
-        GONIO_ASSIGN(series->color, color(name, line, trimmed(words[*columns->color])));
+        GONIO_ASSIGN(series->color, color(name, line, words[*columns->color]));
       }
     }
     GONIO_ASSIGN(const double x, coordinate(name, line, "x", words[columns->x]));

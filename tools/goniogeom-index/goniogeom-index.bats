@@ -101,6 +101,12 @@ column() { sed -n 2p | cut -f "$1"; }
   [[ "$output" =~ gray ]]
 }
 
+@test "an input without a paint is told, exit 1" {
+  run --separate-stderr bash -c "echo '$head</paints>' | goniogeom-index"
+  [ "$status" -eq 1 ]
+  [[ "$stderr" == *"the input holds no paints"* ]]
+}
+
 @test "bad options are refused by value, with the remedy" {
   refused() {
     run goniogeom-index gray.xml "${@:2}"

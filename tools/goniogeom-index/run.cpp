@@ -220,7 +220,8 @@ class Run {
     }
     session_.say(line);
     for (const std::string& name : failing_) session_.say("  " + name);
-    return failing_.empty() && failed_ == 0 ? cli::Verdict::kDone : cli::Verdict::kNegative;
+    if (done_ + failed_ == 0) session_.warn("the input holds no paints: nothing was computed");
+    return failing_.empty() && failed_ == 0 && done_ > 0 ? cli::Verdict::kDone : cli::Verdict::kNegative;
   }
 
   const Options& options_;

@@ -27,6 +27,22 @@ brdf() {
   }'
 }
 
+@test "a measured BRDF without the ends of the visible is told" {
+  grid() {
+    printf '%s\n' "$#" "$*"
+    for light in 0 0.4 0.8 1.2; do for view in 0 0.4 0.8 1.2; do for turn in 0 1.57 3.14; do
+      echo "$light 0 $view $turn$(printf ' 0.1%.0s' "$@")"
+    done; done; done
+  }
+  grid $(seq 430 50 680) >part.brdf
+  run --separate-stderr paint-convert part.brdf --to csv
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *"part.brdf: its spectra leave out 15 % of what the observer sees"* ]]
+  grid $(seq 380 20 780) >whole.brdf
+  run --separate-stderr paint-convert whole.brdf --to csv
+  [[ "$stderr" != *"leave out"* ]]
+}
+
 @test "XML, table, CxF and CGATS in a circle keep every Lab, name, gloss and observer" {
   paint-convert -q paints.csv -o 1.xml
   paint-convert -q 1.xml --to csv --columns all -o 2.csv

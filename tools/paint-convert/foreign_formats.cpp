@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "brdf/measured.h"
+#include "color/spectrum.h"
 #include "formats/cgats.h"
 #include "formats/cxf.h"
 #include "paint/curve.h"
@@ -56,6 +57,10 @@ std::vector<std::string> cautions(const brdf::MeasuredColor& color) {
   }
   for (const paint::Geometry& geometry : color.unmeasured) append(unmeasured, paint::geometry_name(geometry));
   std::vector<std::string> lines;
+  if (color.held_share > color::kToldHeldShare)
+    lines.push_back(
+        fmt::format("its spectra leave out {:.0f} % of what the observer sees, and were taken to go on as they end",
+                    100 * color.held_share));
   if (!gaps.empty()) lines.push_back("interpolated between samples far apart: " + gaps);
   if (!outside.empty()) lines.push_back("beyond the measured directions, the nearest sample was taken: " + outside);
   if (!negative.empty()) lines.push_back("a channel is negative, which no color is, and was taken as 0: " + negative);

@@ -87,6 +87,13 @@ gray() { # gray FILE W H BYTES...: a gray picture, bytes as octal numbers
   [ "$(channel g.exr lobe0.R 1 0)" != 0.000000000 ]
 }
 
+@test "a layer of a picture is named in brackets" {
+  oiiotool --create 4x4 6 --chnames a.R,a.G,a.B,b.R,b.G,b.B --fill:color=.1,.1,.1,.4,.4,.4 4x4 -o layers.exr
+  refused 3 "several layers have colors: a, b" paint-sbrdf layers.exr
+  paint-sbrdf -q "layers.exr[b]" --size 2x2 -o b.exr
+  [[ "$(oiiotool b.exr --ch diffuse.G --printstats | sed -n 's/.*Stats Avg: //p')" == 0.127* ]] # .4 / pi
+}
+
 @test "maps are resampled, cut, tiled, turned, worn and polished" {
   paint-sbrdf -q "$wood" -o same.exr
   for place in "3 5" "100 27"; do
@@ -204,6 +211,8 @@ refused() {
 @test "surfaces that are none are bad input" {
   refused 3 "cannot" paint-sbrdf absent.sbrdf.exr
   refused 3 "no paint is named" paint-sbrdf p.xml#nobody
+  sed '/<paint /,/<\/paint>/d' p.xml >empty.xml
+  refused 3 "empty.xml: holds no paint" paint-sbrdf empty.xml
   refused 3 "fit-paint" paint-sbrdf "$TESTDATA/paints.paints.xml#candy_red"
   sed 's/basis="b"/basis="c"/' p.xml >other.xml
   refused 3 "fit all with one basis" paint-sbrdf p.xml#dark other.xml#light --gradient

@@ -28,6 +28,7 @@ enum class Kind { kPaints, kMap, kPicture };
 // By what the file begins with; an EXR file is a map if it has the channels of one.
 Result<Kind> kind_of(const std::string& path) {
   if (path == "-") return Kind::kPaints;
+  if (image::image_file(path) != path) return Kind::kPicture;  // a layer of one
   GONIO_ASSIGN(InputFile file, InputFile::open(path));
   GONIO_ASSIGN(const std::string_view head, file.peek());
   const auto first = head.find_first_not_of("\xEF\xBB\xBF \t\r\n");
@@ -89,6 +90,7 @@ Result<void> add_paints(const std::string& reference, Surfaces& result, std::vec
                         cli::Session& session) {
   const auto [file, names] = formats::paint_reference(reference);
   GONIO_ASSIGN(const std::vector<paint::Paint> paints, formats::read_paints(file));
+  if (paints.empty()) return input_error("{}: holds no paint: name a file that has one", file);
   std::optional<formats::NameChoice> choice;
   if (names) choice.emplace(*names);
   for (const paint::Paint& paint : paints) {

@@ -7,12 +7,12 @@
 #include <optional>
 
 #include "base/angles.h"
+#include "base/encoding.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "brdf/lobe_model.h"
 #include "brdf/measured.h"
 #include "formats/csv.h"
-#include "formats/encoding.h"
 #include "formats/xml.h"
 #include "formulas.h"
 #include "image/surface_file.h"
@@ -57,7 +57,7 @@ class Table {
     GONIO_ASSIGN(const std::string_view head, file.peek());
     if (brdf::looks_measured(path, head)) {
       GONIO_ASSIGN(table.brdf_, brdf::read_measured(path));
-    } else if (trimmed(formats::as_utf8(head)).starts_with('<')) {
+    } else if (trimmed(as_utf8(head)).starts_with('<')) {
       GONIO_ASSIGN(const std::vector<paint::Paint> paints, formats::read_paints(path));
       for (const paint::Paint& paint : paints) table.note(paint);
     } else {

@@ -159,15 +159,14 @@ cli::ToolSpec tool_spec(Options& o) {
       "Before "
       "a black ground the two cannot be told apart. Faces are those of OpenGL; an EXR whose envmap "
       "attribute says cube is read by OpenEXR's own convention. EXR, Radiance HDR, PNG, JPEG, TIFF and PNM are read "
-      "directly; DPX, WebP, BMP and TGA through oiiotool, where OpenImageIO is installed. Values are linear Rec.709 "
-      "unless the file says otherwise, and are "
-      "converted to linear Rec.2020.",
+      "directly; DPX, WebP, BMP and TGA through oiiotool, where OpenImageIO is installed. Values are Rec.709, linear "
+      "in floats and sRGB in whole numbers, unless the file says otherwise, and are converted to linear Rec.2020.",
       "An EXR is read in its display window: black where it has no pixels, and without overscan. Its colors are the "
       "channels R, G and B, or Y, in any case; those without a layer, or else of the only layer that has them. "
       "FILE[LAYER] names one of several. Of Radiance HDR the order of rows and columns, PRIMARIES, EXPOSURE, "
       "COLORCORR and XYZE are heeded: values are those before any exposure. Values of XYZE are taken as they are, "
       "with even X, Y and Z as white. Other pictures are turned as their EXIF orientation says, and a PNG has the "
-      "colors of its cICP or cHRM.",
+      "colors of its cICP or cHRM. ICC profiles, the primaries of a TIFF and the Adobe RGB of EXIF are heeded.",
       "Every texel counts as a patch of constant radiance with its exact solid angle; a lat-long map is not resampled "
       "first. Several methods are used. Smooth lobes are filtered by zonal harmonics, with a proven bound on the "
       "degrees that are left out. Lobes that bend at the horizon are filtered by harmonics of all but the brightest "

@@ -30,8 +30,10 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.option("estimate", "FILE", "functions.csv", &o.estimate, "estimate an operator and read no image")
       .more(
           "The operator is estimated from the color-matching functions of a color space, and written as JSON for "
-          "--operator. The table is CSV with a wavelength and three values in each row, at equal steps; - is standard "
-          "input. scripts/estimate-operator makes such a table from CIE tables and primaries.");
+          "--operator. The table is CSV with a wavelength and three values in each row, at equal steps; a first row "
+          "may "
+          "name its columns r, g and b or x, y and z, in any order; - is standard input. scripts/estimate-operator "
+          "makes such a table from CIE tables and primaries.");
   spec.option("primaries", "NAME|X,Y,...", "rec709", &o.primaries, "color space of the table of --estimate")
       .more(
           "rec709, rec2020, or x and y of red, green and blue, and if wanted of white, which is D65 otherwise. The "

@@ -155,6 +155,22 @@ sensors() { printf 'nm,r,g,b\n400,0,0,2\n450,0,.5,2\n500,.2,1,.5\n550,.8,2,0\n60
   [[ "$output" == '{"k":[['* ]]
 }
 
+@test "--estimate takes columns by their names, whatever separates them, and wavelengths that are visible" {
+  sensors >rgb.csv
+  relight -q --estimate rgb.csv -o rgb.json
+  awk -F, -v OFS=';' '{ print $4, $3, $1, $2 }' rgb.csv | iconv -t UTF-16 >other.csv
+  relight -q --estimate other.csv -o other.json
+  cmp rgb.json other.json
+  # By position, blue was red.
+  sed 1d rgb.csv | awk -F, -v OFS=, '{ print $1, $4, $3, $2 }' >nameless.csv
+  relight -q --estimate nameless.csv -o nameless.json
+  ! cmp -s rgb.json nameless.json
+  awk -F, -v OFS=, 'NR > 1 { $1 += 500 } 1' rgb.csv >infrared.csv
+  run --separate-stderr relight --estimate infrared.csv
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"infrared.csv: the spectrum goes from 900 to"*"leaves out 100 %"* ]]
+}
+
 @test "a bad image is told by name" {
   run --separate-stderr relight --from D65 --to A nowhere.exr -o out.exr
   [ "$status" -eq 3 ]

@@ -1,8 +1,10 @@
 #include "tool.h"
 
+#include <array>
 #include <cmath>
 #include <optional>
 
+#include "base/csv_records.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "color/illuminant.h"
@@ -70,36 +72,66 @@ Result<std::size_t> relit(image::Image& image, const color::Matrix3& matrix, boo
   return negative;
 }
 
-// Reads color-matching functions: CSV rows of a wavelength and three values, at equal steps. A first line of names is
-// passed over. Error: the file, the line and the value.
-Result<std::vector<color::Rgb>> read_matching_table(const std::string& path) {
-  GONIO_ASSIGN(const std::string text, file_content(path));
-  std::vector<color::Rgb> table;
-  std::vector<double> wavelengths;
-  int number = 0;
-  for (const std::string_view raw : split(text, '\n')) {
-    ++number;
-    const std::string_view line = trimmed(raw);
-    if (line.empty() || line.front() == '#') continue;
-    const auto words = split(line, ',');
-    if (table.empty() && !parse_number(trimmed(words.front()))) continue;  // the names of the columns
-    if (words.size() != 4)
-      return input_error("{}:{}: {} columns: give a wavelength and three values", path, number, words.size());
-    double values[4];
+struct MatchingTable {
+  std::vector<double> wavelengths_nm;
+  std::vector<color::Rgb> values;
+};
+
+// Where the wavelength and the three values stand: the first columns, or those of these names in any order.
+std::array<std::size_t, 4> columns_of(const std::vector<std::string>& heads) {
+  constexpr std::array<std::array<std::string_view, 3>, 3> kNames = {
+      {{"r", "g", "b"}, {"red", "green", "blue"}, {"x", "y", "z"}}};
+  for (const auto& names : kNames) {
+    std::array<std::size_t, 4> columns = {6, 0, 0, 0};
+    std::size_t found = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < heads.size(); ++i)
+        if (lower(heads[i]) == names[c]) columns[c + 1] = i, columns[0] -= i, ++found;
+    if (found == 3 && heads.size() == 4) return columns;
+  }
+  return {0, 1, 2, 3};
+}
+
+// Reads color-matching functions: rows of a wavelength and three values, at equal steps, below a row of names or none.
+// Error: the file, the line and the value.
+Result<MatchingTable> read_matching_table(const std::string& path) {
+  GONIO_ASSIGN(InputFile input, InputFile::open(path));
+  GONIO_ASSIGN(const std::vector<TableRow> rows, table_rows(CsvRecords(std::move(input)), true));
+  MatchingTable table;
+  std::array<std::size_t, 4> columns = {0, 1, 2, 3};
+  for (const auto& [line, cells] : rows) {
+    if (cells.size() != 4)
+      return input_error("{}:{}: {} columns: give a wavelength and three values", path, line, cells.size());
+    if (table.values.empty() && !number_in_cell(cells.front())) {  // the names of the columns
+      columns = columns_of(cells);
+      continue;
+    }
+    std::array<double, 4> values{};
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto value = parse_number(trimmed(words[k]));
-      if (!value) return input_error("{}:{}: \"{}\" is not a number", path, number, words[k]);
+      const auto value = number_in_cell(cells[columns[k]]);
+      if (!value) return input_error("{}:{}: \"{}\" is not a number", path, line, shown(cells[columns[k]]));
       values[k] = *value;
     }
-    const std::size_t n = wavelengths.size();
-    wavelengths.push_back(values[0]);
-    table.push_back({values[1], values[2], values[3]});
-    if (n < 1) continue;
-    const double step = wavelengths[1] - wavelengths[0];
-    if (!(step > 0) || std::abs(wavelengths[n] - wavelengths[n - 1] - step) > 1e-6 * step)
-      return input_error("{}:{}: wavelength {} breaks the equal steps of {}", path, number, values[0], step);
+    std::vector<double>& nm = table.wavelengths_nm;
+    nm.push_back(values[0]);
+    table.values.push_back({values[1], values[2], values[3]});
+    if (nm.size() < 2) continue;
+    const double step = nm[1] - nm[0];
+    if (!(step > 0) || std::abs(values[0] - nm[nm.size() - 2] - step) > 1e-6 * step)
+      return input_error("{}:{}: wavelength {} breaks the equal steps of {}", path, line, values[0], step);
   }
   return table;
+}
+
+// Refuses functions that leave out much of what is visible, and tells of those that leave out some of it.
+Result<void> check_range(const MatchingTable& table, const std::string& path, cli::Session& session) {
+  if (table.wavelengths_nm.size() < 2) return {};
+  const auto meter = color::SpectralColorimeter::make(table.wavelengths_nm, {"D65", 2});
+  if (!meter.ok()) return input_error("{}: {}", path, meter.error().message);
+  if (meter->held_share() > color::kToldHeldShare)
+    session.warn(fmt::format("{}: its wavelengths leave out {:.0f} % of what the observer sees", path,
+                             100 * meter->held_share()));
+  return {};
 }
 
 // --primaries: a name, or x,y of red, green, blue and, if wanted, white. Nothing where the option is not given.
@@ -127,8 +159,9 @@ Result<cli::Verdict> estimate(const Options& options, cli::Session& session) {
   if (!options.image.empty() || !options.from.empty() || !options.to.empty() || !options.transfer.empty())
     return usage_error("--estimate makes an operator: it takes no image, --from, --to or --transfer");
   GONIO_ASSIGN(const auto primaries, primaries_of(options.primaries));
-  GONIO_ASSIGN(const std::vector<color::Rgb> table, read_matching_table(options.estimate));
-  GONIO_ASSIGN(const color::ReflectionOperator op, color::estimated_operator(table));
+  GONIO_ASSIGN(const MatchingTable table, read_matching_table(options.estimate));
+  GONIO_TRY(check_range(table, options.estimate, session));
+  GONIO_ASSIGN(const color::ReflectionOperator op, color::estimated_operator(table.values));
   session.results()["operator"] = op.k;
   session.results()["condition"] = nullptr;
   GONIO_TRY(write_file(options.output, color::reflection_json(op, primaries ? &*primaries : nullptr)));

@@ -30,7 +30,7 @@ void tell_repairs(const mesh::Mesh& mesh, cli::Session& session) {
   const mesh::Box box = mesh::bounding_box(mesh);
   const Vec3 sides = box.high - box.low;
   const double longest = std::max({sides.x, sides.y, sides.z});
-  const mesh::LengthUnit unit = mesh::likely_unit(box);
+  const mesh::LengthUnit unit = mesh::length_unit(mesh);
   session.results()["mesh"] = {{"longest_side", json_number(longest)}, {"unit_m", unit.meters}};
   if (unit.meters != 1)
     session.say(

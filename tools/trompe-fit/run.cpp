@@ -140,7 +140,8 @@ class Run {
   cli::Verdict finish() {
     if (told_ > kNamesShown) session_.say(fmt::format("... and {} more", told_ - kNamesShown));
     session_.results().update(results_of(fits_));
-    return negative_ ? cli::Verdict::kNegative : cli::Verdict::kDone;
+    if (fits_.empty()) session_.warn("the input holds no paints: nothing was fitted");
+    return negative_ || fits_.empty() ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
 
   const Options& options_;

@@ -72,6 +72,13 @@ setup() {
   [[ "$stderr" =~ "aspecular angles are 4 deg smaller" ]]
 }
 
+@test "an input without a paint is told, exit 1" {
+  echo '<paints xmlns="urn:goniochrome:paint:1" version="1"/>' >empty.xml
+  run --separate-stderr trompe-fit empty.xml --angle 2 -o none.xml
+  [ "$status" -eq 1 ]
+  [[ "$stderr" == *"the input holds no paints"* ]]
+}
+
 @test "bad options are refused by value, with the remedy" {
   refused() {
     run trompe-fit $silver "${@:2}" -o n.xml

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "base/csv_records.h"
 #include "base/text.h"
-#include "formats/internal/csv_records.h"
 
 namespace goniochrome::formats {
 

@@ -12,6 +12,9 @@
 
 namespace goniochrome::formats {
 
+// The header of a long table.
+inline constexpr const char* kLongHeader = "sample,geometry,illuminant,observer,L,a,b";
+
 // The columns that have names of their own.
 enum CsvColumn {
   kSample,

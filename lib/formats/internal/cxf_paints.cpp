@@ -145,6 +145,7 @@ void CxfResolver::place(const CxfColor& color, std::size_t n, std::size_t k) {
     return;
   }
   if (n == 1 && angles.size() > 1) remarks_.note("one value stands for several angles", open_->paint.name);
+  for (const std::string& remark : specification.remarks) remarks_.note(remark, "");
   const color::ViewingCondition condition = stated(specification);
   const std::optional<color::Lab> lab = lab_of(color, specification, condition);
   if (!lab) return;

@@ -39,6 +39,7 @@ struct CxfSpecification {
   std::string other;               // a geometry without aspecular angles
   std::string unlike_reflectance;  // the measurement type, where it is another
   std::string instrument, serial;
+  std::vector<std::string> remarks;  // on what it states of its readings
   double first_nm = 0, step_nm = 0;
 };
 

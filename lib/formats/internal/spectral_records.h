@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "base/encoding.h"
 #include "base/file.h"
 #include "base/result.h"
 #include "color/color.h"
-#include "formats/encoding.h"
 #include "formats/imported.h"
 #include "formats/internal/spectral_rows.h"
 

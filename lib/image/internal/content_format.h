@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "image/image.h"
 
 namespace goniochrome::image {
 
@@ -16,5 +17,9 @@ Result<std::string> content_format(std::string_view content, const std::string& 
 // The EXIF orientation of a PNG, JPEG or WebP file, 1 to 8; 1 where it has none, and for other formats, whose decoders
 // turn pictures.
 int exif_orientation(std::string_view content, std::string_view format);
+
+// The attributes that a file states beside what its decoder hears: the ICC profile of a WebP, the primaries of a TIFF,
+// and Adobe RGB by EXIF. None goes before an ICC profile that the decoder has found.
+Attributes stated_colors(std::string_view content, std::string_view format);
 
 }  // namespace goniochrome::image

@@ -18,10 +18,10 @@ namespace goniochrome::render {
 
 namespace {
 
-// Points that one thread takes at a time.
 // An error of so many tolerances is a speck. Its point gets at most so many times its samples, and all of these points
 // such a part of all samples or, where few points have any, as many for each point.
 constexpr double kSpeck = 2, kMostOfSpeck = 15, kSpecksShare = 0.5;
+// Points that one thread takes at a time.
 constexpr std::size_t kSampledTogether = 64;
 // Most points need no more than a few samples: the first round takes as many fours as tell a variance.
 constexpr int kFirstFours = 2;

@@ -1,11 +1,11 @@
-#include "formats/encoding.h"
+#include "base/encoding.h"
 
 #include <array>
 #include <cstdint>
 
 #include "base/text.h"
 
-namespace goniochrome::formats {
+namespace goniochrome {
 
 namespace {
 
@@ -93,4 +93,4 @@ std::string decoded_text(std::string_view bytes, bool& is_windows_1252) {
   return converted;
 }
 
-}  // namespace goniochrome::formats
+}  // namespace goniochrome

@@ -1,8 +1,8 @@
-#include "formats/encoding.h"
+#include "base/encoding.h"
 
 #include <gtest/gtest.h>
 
-namespace goniochrome::formats::encoding_test {
+namespace goniochrome::encoding_test {
 namespace {
 
 using namespace std::string_view_literals;
@@ -33,4 +33,4 @@ TEST(Encoding, HalfAPairIsNoCharacter) {
 }
 
 }  // namespace
-}  // namespace goniochrome::formats::encoding_test
+}  // namespace goniochrome::encoding_test

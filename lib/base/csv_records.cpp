@@ -1,10 +1,10 @@
-#include "formats/internal/csv_records.h"
+#include "base/csv_records.h"
 
 #include <algorithm>
 
 #include "base/text.h"
 
-namespace goniochrome::formats {
+namespace goniochrome {
 
 namespace {
 
@@ -70,8 +70,9 @@ bool looks_like_formula(std::string_view text) {
 Result<bool> CsvRecords::fill() {
   buffer_.erase(0, at_);
   at_ = 0;
+  if (!input_) return false;
   std::string bytes;
-  GONIO_ASSIGN(const std::size_t count, input_.read(bytes, kReadAtOnce));
+  GONIO_ASSIGN(const std::size_t count, input_->read(bytes, kReadAtOnce));
   decoder_.append(bytes, buffer_);
   return count > 0;
 }
@@ -113,7 +114,7 @@ Result<bool> CsvRecords::next_record() {
         return error("a quotation mark is left open: close it, or double it inside a quoted cell");
     }
     if (line_ == 1 && record_.starts_with(kByteOrderMark)) record_.erase(0, kByteOrderMark.size());
-  } while (trimmed(record_).empty());
+  } while (trimmed(record_).empty() || (has_comments_ && trimmed(record_).starts_with('#')));
   failed_ = false;
   return true;
 }
@@ -135,7 +136,7 @@ Result<bool> CsvRecords::next(std::vector<std::string>& cells) {
 }
 
 Result<CsvRecords> CsvRecords::second_reading() {
-  GONIO_ASSIGN(InputFile input, input_.second_reading());
+  GONIO_ASSIGN(InputFile input, input_->second_reading());
   CsvRecords second(std::move(input));
   second.decoder_ = decoder_;
   second.buffer_ = buffer_;
@@ -144,6 +145,27 @@ Result<CsvRecords> CsvRecords::second_reading() {
   second.separator_ = separator_;
   second.failed_ = failed_;
   return Result(std::move(second));
+}
+
+Result<std::vector<TableRow>> table_rows(CsvRecords records, bool has_comments) {
+  records.has_comments_ = has_comments;
+  std::vector<TableRow> rows;
+  for (std::vector<std::string> cells;;) {
+    GONIO_ASSIGN(const bool found, records.next(cells));
+    if (!found) return Result(std::move(rows));
+    rows.push_back({records.line(), cells});
+  }
+}
+
+std::optional<std::string> with_decimal_point(std::string_view text) {
+  if (std::ranges::count(text, ',') != 1 || text.find('.') != std::string_view::npos) return std::nullopt;
+  std::string pointed(text);
+  pointed[pointed.find(',')] = '.';
+  return pointed;
+}
+
+std::optional<double> number_in_cell(std::string_view cell) {
+  return parse_number(with_decimal_point(cell).value_or(std::string(cell)));
 }
 
 std::string_view cell_text(std::string_view cell) {
@@ -156,4 +178,4 @@ std::string csv_cell(std::string_view text) {
   return '"' + doubled_quotes(text) + '"';
 }
 
-}  // namespace goniochrome::formats
+}  // namespace goniochrome

@@ -2,23 +2,25 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/encoding.h"
 #include "base/file.h"
 #include "base/result.h"
-#include "formats/encoding.h"
 
-namespace goniochrome::formats {
+namespace goniochrome {
 
-// The header of a long table.
-inline constexpr const char* kLongHeader = "sample,geometry,illuminant,observer,L,a,b";
+struct TableRow;
 
 // The records of a table: cells between separators, quoted or not, whatever the ends of lines are.
 class CsvRecords {
  public:
-  explicit CsvRecords(InputFile input) : input_(std::move(input)) {}
+  explicit CsvRecords(InputFile input) : name_(input.name()), input_(std::move(input)) {}
+  // Of a text that is there already.
+  CsvRecords(std::string name, std::string_view text) : name_(std::move(name)) { decoder_.append(text, buffer_); }
 
   // Reads the next record with a cell that is not empty into `cells`. White space around cells and the quotes of quoted
   // cells are taken off. Returns false at the end. A first record `sep=;` names the separator. Otherwise the first
@@ -32,23 +34,40 @@ class CsvRecords {
   // The line (from 1) on which the last record began.
   int line() const { return line_; }
   char separator() const { return separator_; }
-  const std::string& name() const { return input_.name(); }
+  const std::string& name() const { return name_; }
   Error error(std::string_view what) const { return input_error("{}:{}: {}", name(), line_, what); }
 
  private:
   Result<bool> next_line();
   Result<bool> fill();
   Result<bool> next_record();
+  friend Result<std::vector<TableRow>> table_rows(CsvRecords records, bool has_comments);
 
-  InputFile input_;
+  std::string name_;
+  std::optional<InputFile> input_;
   Utf8Decoder decoder_;
   std::string buffer_;
   std::size_t at_ = 0;
   std::string record_;
   int line_ = 0, lines_read_ = 0;
   char separator_ = 0;
-  bool failed_ = false;
+  bool failed_ = false, has_comments_ = false;
 };
+
+// A row of a small table that is read as a whole.
+struct TableRow {
+  int line = 0;
+  std::vector<std::string> cells;
+};
+
+// All rows that CsvRecords gives; lines that begin with # are passed over where `has_comments`.
+Result<std::vector<TableRow>> table_rows(CsvRecords records, bool has_comments = false);
+
+// `text` with a point in place of its comma, if it has one comma and no point; nothing otherwise.
+std::optional<std::string> with_decimal_point(std::string_view text);
+
+// The number that a cell holds, with a decimal point or a decimal comma.
+std::optional<double> number_in_cell(std::string_view cell);
 
 // A text that is none of our numbers as its cell says it, without the apostrophe that marks it as text.
 std::string_view cell_text(std::string_view cell);
@@ -57,4 +76,4 @@ std::string_view cell_text(std::string_view cell);
 // spreadsheet would take it for a formula.
 std::string csv_cell(std::string_view text);
 
-}  // namespace goniochrome::formats
+}  // namespace goniochrome

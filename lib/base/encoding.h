@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace goniochrome::formats {
+namespace goniochrome {
 
 // Turns a text into UTF-8, piece by piece. A text that does not begin with a mark of UTF-16 passes as it is; the mark
 // becomes that of UTF-8. Half of a pair of surrogates becomes bytes that are not valid UTF-8.
@@ -26,4 +26,4 @@ std::string as_utf8(std::string_view bytes);
 // control characters but tabs and ends of lines. `is_windows_1252` hears of the last.
 std::string decoded_text(std::string_view bytes, bool& is_windows_1252);
 
-}  // namespace goniochrome::formats
+}  // namespace goniochrome
