@@ -50,13 +50,13 @@ PixelSample sampled_pixels(const Gbuffer& g, const Scene& scene, int count, std:
   return sample;
 }
 
-PictureError picture_error(const Frame& frame, const Scene& scene, const envmap::Environment* env,
-                           double white_luminance, int count, std::uint64_t seed) {
+PictureError picture_error(const Frame& frame, const Scene& scene, const Surroundings& around, double white_luminance,
+                           int count, std::uint64_t seed) {
   const Stopwatch clock;
   const double white = white_luminance > 0 ? white_luminance : 1;  // in the dark all is black
   const PixelSample sample = sampled_pixels(*frame.gbuffer, scene, count, seed);
   const std::vector<std::array<int, 2>>& chosen = sample.places;
-  const std::vector<color::Rgb> truth = exact_radiance(sample.points, scene, effects_of(scene), env);
+  const std::vector<color::Rgb> truth = exact_radiance(sample.points, scene, effects_of(scene), around);
 
   PictureError error;
   error.checked_pixels = static_cast<int>(chosen.size());

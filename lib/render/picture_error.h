@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/exact.h"
 #include "render/gbuffer.h"
 #include "render/renderer.h"
 #include "render/scene.h"
@@ -30,7 +31,7 @@ PixelSample sampled_pixels(const Gbuffer& gbuffer, const Scene& scene, int count
 // Compares the centers of `count` random visible pixels (all, where there are fewer) with the reference, as CIEDE2000
 // of Lab values relative to `white_luminance`, D65. The frame must hold its centers. The reference has everything that
 // the scene calls for.
-PictureError picture_error(const Frame& frame, const Scene& scene, const envmap::Environment* env,
-                           double white_luminance, int count, std::uint64_t seed);
+PictureError picture_error(const Frame& frame, const Scene& scene, const Surroundings& around, double white_luminance,
+                           int count, std::uint64_t seed);
 
 }  // namespace goniochrome::render

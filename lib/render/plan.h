@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/effects.h"
+#include "render/effect_words.h"
 
 namespace goniochrome::render {
 

@@ -131,6 +131,8 @@ Picture difference(const std::vector<color::Rgb>& a, const std::vector<color::Rg
 
 // One light that balls are lit by.
 class Studio {
+  static constexpr int kDrawn = 4000;  // directions at each point
+
  public:
   explicit Studio(const std::string& file) : sky_(file), blocks_(sky_.whole) {
     paint::LobeFit card;
@@ -143,7 +145,7 @@ class Studio {
     model.fresnel = true, model.gloss_deg = gloss_deg;
     std::vector<SurfacePoint> points;
     for (const Vec3& normal : normals_) points.push_back({normal, {0, 0, 1}, &fit, &model});
-    return reference_radiance(points, {blocks_, 0.1}, {});
+    return reference_radiance(points, {blocks_, 0.2}, {});
   }
   // With all effects, satin among them, and with all but that.
   std::vector<color::Rgb> integral(const paint::LobeFit& fit, double gloss_deg, bool satin) const {
@@ -158,17 +160,14 @@ class Studio {
   }
   std::vector<color::Rgb> coat(const TrueCoat& coat) const {
     std::vector<color::Rgb> light;
-    for (const Vec3& normal : normals_) light.push_back(coat_light(coat, normal, sky_, 8000));
+    for (const Vec3& normal : normals_) light.push_back(coat_light(coat, normal, sky_, kDrawn));
     return light;
   }
-  // Of the gloss alone.
-  std::vector<color::Rgb> by_paths(paint::LobeFit fit, double gloss_deg) const {
-    fit.diffuse = {};
-    for (paint::ViewLobes& view : fit.views) view.diffuse = {};
+  std::vector<color::Rgb> by_paths(const paint::LobeFit& fit, double gloss_deg) const {
     TracedPaint paint = *TracedPaint::create(fit, gloss_deg, {});
     paint.put_coat(fit, gloss_deg);
     std::vector<color::Rgb> light;
-    for (const Vec3& normal : normals_) light.push_back(path_light(paint, normal, sky_, 8000));
+    for (const Vec3& normal : normals_) light.push_back(path_light(paint, normal, sky_, kDrawn));
     return light;
   }
   double white() const { return white_; }
@@ -225,47 +224,66 @@ std::vector<color::Rgb> over(std::vector<color::Rgb> picture, const std::vector<
   return picture;
 }
 
-// Balls in every `step`th coat. The textbook is the lobe of the reading at 60 deg for all views.
-Compared compared(const Studio& studio, const color::Rgb& reflectance, std::size_t step) {
+paint::LobeFit gloss_of(paint::LobeFit fit) {
+  fit.diffuse = {};
+  for (paint::ViewLobes& view : fit.views) view.diffuse = {};
+  return fit;
+}
+
+// The base of a paint does not change its gloss, whose pictures serve all bases.
+void expect_same_gloss(const paint::LobeFit& a, const paint::LobeFit& b) {
+  ASSERT_EQ(a.views.size(), b.views.size());
+  for (std::size_t v = 0; v < a.views.size(); ++v) {
+    ASSERT_EQ(a.views[v].lobes.size(), b.views[v].lobes.size());
+    for (std::size_t j = 0; j < a.views[v].lobes.size(); ++j)
+      EXPECT_NEAR(a.views[v].lobes[j].gloss.x, b.views[v].lobes[j].gloss.x, 1e-6 * (1 + a.views[v].lobes[j].gloss.x))
+          << v << " " << j;
+  }
+}
+
+// Balls in every fifth coat over each base. The textbook is the lobe of the reading at 60 deg for all views.
+template <std::size_t N>
+std::array<Compared, N> compared(const Studio& studio, const std::array<color::Rgb, N>& reflectances) {
   const brdf::GlossTable table(kBasis);
-  const paint::LobeFit base = base_paint(reflectance);
-  const std::vector<color::Rgb> bare = studio.shown(base, 60);
+  std::array<std::vector<color::Rgb>, N> bare;
+  for (std::size_t n = 0; n < N; ++n) bare[n] = studio.shown(base_paint(reflectances[n]), 60);
   const std::vector<TrueCoat> coats = brdf::true_coats();
-  Compared result;
-  for (std::size_t i = 0; i < coats.size(); i += step) {
+  std::array<Compared, N> result;
+  for (std::size_t i = 0; i < coats.size(); i += 5) {
     for (const bool gaussian : {false, true}) {
       TrueCoat coat = coats[i];
       coat.beckmann = gaussian;
-      const Coated paint = coated(table, base, coat);
-      const std::vector<color::Rgb> truth = over(studio.coat(coat), bare);
-      const auto off = [&](const std::vector<color::Rgb>& picture) {
-        return difference(picture, truth, studio.white()).p95;
-      };
-      const double by_paths = off(over(studio.by_paths(paint.views, 20), bare));
-      if (gaussian) {
-        (coat.k > 0 ? result.two_scales_gaussian : result.one_scale_gaussian).push_back(by_paths);
-      } else {
-        (coat.k > 0 ? result.two_scales : result.one_scale).push_back(by_paths);
-        result.lobes.push_back(off(studio.shown(paint.views, 20)));
-        result.textbook.push_back(off(studio.shown(paint.one, 60)));
+      const Coated paint = coated(table, base_paint(reflectances[0]), coat);
+      for (std::size_t n = 1; n < N; ++n)
+        expect_same_gloss(paint.views, coated(table, base_paint(reflectances[n]), coat).views);
+      const std::vector<color::Rgb> truth = studio.coat(coat), paths = studio.by_paths(gloss_of(paint.views), 20);
+      std::vector<color::Rgb> lobes, textbook;
+      if (!gaussian) lobes = studio.shown(gloss_of(paint.views), 20), textbook = studio.shown(gloss_of(paint.one), 60);
+      for (std::size_t n = 0; n < N; ++n) {
+        const auto off = [&](const std::vector<color::Rgb>& picture) {
+          return difference(over(picture, bare[n]), over(truth, bare[n]), studio.white()).p95;
+        };
+        Compared& c = result[n];
+        (gaussian     ? coat.k > 0 ? c.two_scales_gaussian : c.one_scale_gaussian
+         : coat.k > 0 ? c.two_scales
+                      : c.one_scale)
+            .push_back(off(paths));
+        if (!gaussian) c.lobes.push_back(off(lobes)), c.textbook.push_back(off(textbook));
+        std::printf("%zu %c k %.2f a %.4f h %.3f: %.2f\n", i, gaussian ? 'B' : 'G', coat.k, coat.slope, coat.haze,
+                    off(paths));
       }
-      std::printf("%zu %c k %.2f a %.4f h %.3f: %.2f\n", i, gaussian ? 'B' : 'G', coat.k, coat.slope, coat.haze,
-                  by_paths);
     }
   }
-  for (std::vector<double>* each : result.all()) std::ranges::sort(*each);
+  for (Compared& c : result)
+    for (std::vector<double>* each : c.all()) std::ranges::sort(*each);
   return result;
 }
 
 void check_pictures(const std::string& name, const std::string& file, double most_of_textbook,
                     double most_of_gaussian) {
-  const Studio studio(file);
-  for (const color::Rgb& reflectance : {color::Rgb{0.02, 0.03, 0.07}, color::Rgb{0.2, 0.25, 0.4}}) {
-    Compared c = compared(studio, reflectance, 5);
-    std::printf(
-        "%s, base %.2f, p95 dE00, median and worst: lobes, textbook, paths: one scale, two scales, Gaussian the "
-        "same:",
-        name.c_str(), reflectance.y);
+  for (Compared& c : compared<2>(Studio(file), {color::Rgb{0.02, 0.03, 0.07}, color::Rgb{0.2, 0.25, 0.4}})) {
+    std::printf("%s, p95 dE00, median and worst: lobes, textbook, paths: one scale, two scales, Gaussian the same:",
+                name.c_str());
     for (const std::vector<double>* each : c.all()) std::printf(" %.2f %.2f,", median(*each), each->back());
     std::printf("\n");
     EXPECT_LE(median(c.lobes), most_of_textbook * median(c.textbook));

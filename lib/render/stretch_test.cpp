@@ -59,10 +59,11 @@ struct World {
     Effects effects = effects_of(scene);
     EXPECT_TRUE(effects.stretch && effects.satin);
     effects.stretch = stretch;
-    return picture_error(drawn(effects, "cpu"), scene, &source, white, 150, 3);
+    return picture_error(drawn(effects, "cpu"), scene, {blocks, 0.1}, white, 150, 3);
   }
 
   envmap::Environment source;
+  envmap::BlockTree blocks{source};
   mesh::Mesh mesh = sphere_mesh(96);
   envmap::PrefilteredEnvironment env;
   Scene scene;

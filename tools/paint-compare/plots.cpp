@@ -89,7 +89,8 @@ report::Plot plane_plot(const Judgement& judgement, const quality::AngleDifferen
   const double outer = power * (times >= 5 ? 5 : times >= 2 ? 2 : 1);
   std::vector<report::Tick> ticks;
   for (const double at : {-outer, 0.0, outer}) ticks.push_back({at, fmt::format("{:g}", at)});
-  return {.title = fmt::format("{}, dE {:.3g}", paint::geometry_name(angle.geometry), limit.value_or(kNoLimit_dE)),
+  const std::string name = paint::geometry_name(angle.geometry);
+  return {.title = small ? name : fmt::format("{}, dE {:.3g}", name, limit.value_or(kNoLimit_dE)),
           .x = {.label = "da*", .low = -widest, .high = widest, .ticks = ticks},
           .y = {.label = "db*", .low = -widest, .high = widest, .ticks = ticks},
           .series = {ellipse,
@@ -148,7 +149,9 @@ std::vector<report::Plot> control_plots(const std::vector<const Judgement*>& jud
   individuals.series = {values, level("mean", chart.mean, from, to, Series::Style::kLine, kSigmaInk)};
   for (const int k : {1, 2, 3})
     for (const int side : {-1, 1})
-      individuals.series.push_back(level(side > 0 ? fmt::format("{} sigma", k) : "",
+      individuals.series.push_back(level(side < 0 || k == 2 ? ""
+                                         : k == 1           ? "1, 2 sigma"
+                                                            : "3 sigma",
                                          chart.mean + side * k * chart.sigma, from, to, Series::Style::kDashed,
                                          k < 3 ? "#bbbbbb" : kToleranceInk));
   Series beyond{.label = "beyond", .style = Series::Style::kPoints, .color = kLimitInk};

@@ -14,9 +14,12 @@ setup() {
   wood=$TESTDATA/wood.sbrdf.exr
 }
 
-# channel FILE NAME X Y: a value of a texel.
+# channel FILE NAME X Y: a value of a texel. The texels of a file are printed once, because oiiotool starts slowly.
 channel() {
-  oiiotool "$1" --ch "$2" --cut "1x1+$3+$4" -d float -o pixel.exr && oiiotool --dumpdata pixel.exr | tail -1 | grep -oE '[-0-9.e]+$'
+  local texels=${1##*/}.txt
+  [ "$texels" -nt "$1" ] || oiiotool --info -v --dumpdata "$1" >"$texels"
+  awk -v name="$2" -v at="($3, $4):" 'sub(/.*channel list: /, "") { n = split($0, names, ", ") }
+    sub(/.*Pixel /, "") && index($0, at) == 1 { for (i = 1; i <= n; i++) if (names[i] == name) print $(i + 2) }' "$texels"
 }
 size() { oiiotool --info "$1" | grep -oE '[0-9]+ x +[0-9]+' | tr -d ' '; }
 gray() { # gray FILE W H BYTES...: a gray picture, bytes as octal numbers
@@ -120,14 +123,14 @@ gray() { # gray FILE W H BYTES...: a gray picture, bytes as octal numbers
 }
 
 @test "maps with other lobes stand side by side, and mixtures keep all lobes or as many as are asked for" {
-  paint-sbrdf -q "$wood" "$TESTDATA/brushed.sbrdf.exr" p.xml#dark --mosaic 3 --size 30x10 --report r.json -o m.exr
+  paint-sbrdf -q "$wood" "$TESTDATA/brushed.sbrdf.exr" p.xml#dark --mosaic 3 --size 9x3 --report r.json -o m.exr
   [ "$(jq .results.lobes r.json)" = 3 ]
-  [ "$(channel m.exr diffuse.R 29 0)" = 0.062500000 ]
+  [ "$(channel m.exr diffuse.R 8 0)" = 0.062500000 ]
   paint-sbrdf -q p.xml#dark p.xml#sharp --mix 0.5 --size 1x1 --lobes 1 --report r.json -o one.exr
   [ "$(jq -c '[.results.lobes, .results.refitted_texels]' r.json)" = '[1,1]' ]
   awk -v n="$(channel one.exr lobe0.n 0 0)" 'BEGIN { exit !(n > 8 && n < 64) }'
-  paint-sbrdf -q "$wood" --lobes 1 --size 12x12 --threads 1 -o a.exr
-  paint-sbrdf -q "$wood" --lobes 1 --size 12x12 --threads 3 -o b.exr
+  paint-sbrdf -q "$wood" --lobes 1 --size 64x64 --crop 4,4,8,8 --threads 1 -o a.exr
+  paint-sbrdf -q "$wood" --lobes 1 --size 64x64 --crop 4,4,8,8 --threads 3 -o b.exr
   for channel in diffuse.R lobe0.n lobe0.R; do [ "$(channel a.exr $channel 7 7)" = "$(channel b.exr $channel 7 7)" ]; done
 }
 

@@ -2,10 +2,13 @@
 
 bats_require_minimum_version 1.5.0
 
+# Exact sums over a sky of half the size take a quarter of the time.
+setup_file() { oiiotool "$TESTDATA/outdoor.exr" --resize:filter=box 512x256 -o "$BATS_FILE_TMPDIR/outdoor.exr"; }
+
 setup() {
   cd "$BATS_TEST_TMPDIR" || exit 1
   basis=$TESTDATA/b5.basis.xml
-  sky=$TESTDATA/outdoor.exr
+  sky=$BATS_FILE_TMPDIR/outdoor.exr
 }
 
 # values KEY: every value of that key in the report, one a line.
@@ -35,9 +38,9 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   [ "$(grep -c 'goniochrome:texels.*"center"' header)" -eq 9 ]
   [ "$(grep -c 'colorInteropID.*"lin_rec2020_scene"' header)" -eq 9 ]
   # An environment without bright spots has one such part.
-  prefilter-envmap -q -e 6 --size 8 --verify 4 --spots 0 "$sky" -o even.env.exr
+  prefilter-envmap -q -e 6 --size 8 --spots 0 "$sky" -o even.env.exr
   [ "$(exrheader even.env.exr | grep -c 'goniochrome:version')" -eq 1 ]
-  prefilter-envmap -q -e 6,70 --size 8 --verify 4 --no-open-maps "$sky" -o bare.env.exr
+  prefilter-envmap -q -e 6,70 --size 8 --no-open-maps "$sky" -o bare.env.exr
   [ "$(exrheader bare.env.exr | grep -c 'goniochrome:version')" -eq 0 ]
   [ "$(exrheader bare.env.exr | grep -c 'goniochrome:brightSpots')" -eq 1 ]
   grep -q 'goniochrome:exponent (type float): 70' header
@@ -68,7 +71,7 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
 }
 
 @test "the plan comes before the work" {
-  run --separate-stderr prefilter-envmap -e 0.3,6,1e5 --size 4 --explain "$sky" -o out.env.exr
+  run --separate-stderr prefilter-envmap -e 0.3,6,1e5 --size 4 --explain "$TESTDATA/outdoor.exr" -o out.env.exr
   [ "$status" -eq 0 ]
   [[ "$stderr" =~ "1024 x 512 texels, each a constant patch" ]]
   [[ "$stderr" =~ 0.3\ +4\ +harmonics ]]
@@ -183,7 +186,7 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
 
 @test "a killed run leaves the old file" {
   echo old >out.env.exr
-  timeout -s KILL 0.3 prefilter-envmap -q -e 0.3 --size 512 "$sky" -o out.env.exr || true
+  timeout -s KILL 0.3 prefilter-envmap -q -e 0.3 --size 512 "$TESTDATA/outdoor.exr" -o out.env.exr || true
   [ "$(cat out.env.exr)" = old ]
   [ "$(ls -A | wc -l)" -eq 1 ]
 }

@@ -17,11 +17,11 @@ setup() {
   lit="--light 0,30@0 --size 32x32 --samples 1 --effects auto,-rays"
 }
 
-# texel FILE X Y: the strongest channel of a pixel.
+# texel FILE X Y: the strongest channel of a pixel. The pixels of a file are printed once, because oiiotool starts slowly.
 texel() {
-  oiiotool "$1" --ch R,G,B --cut "1x1+$2+$3" -d float -o pixel.exr
-  oiiotool --dumpdata pixel.exr | tail -1 | awk '{ r = $(NF-2); g = $(NF-1); b = $NF
-    print (r + g + b < 1e-6 ? "none" : r >= g && r >= b ? "red" : g >= b ? "green" : "blue") }'
+  [ "$1.txt" -nt "$1" ] || oiiotool --dumpdata "$1" >"$1.txt"
+  awk -v at="($2, $3):" 'sub(/.*Pixel /, "") && index($0, at) == 1 { r = $(NF-3); g = $(NF-2); b = $(NF-1)
+    print (r + g + b < 1e-6 ? "none" : r >= g && r >= b ? "red" : g >= b ? "green" : "blue") }' "$1.txt"
 }
 
 draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimuth

@@ -1,7 +1,7 @@
 """Looks directions up in a .xml file of Radiance: the tensor tree of rank 3 on the side of "Reflection Back", as the library
 of Radiance does, with Y and the chromaticities u' and v' relative to the illuminant E."""
 
-import re
+import json
 import xml.etree.ElementTree
 
 import numpy
@@ -11,14 +11,10 @@ BRADFORD = numpy.array(((0.8951, 0.2664, -0.1614), (-0.7502, 1.7135, 0.0367), (0
 XYZ_FROM_REC709 = numpy.array(((0.412391, 0.357584, 0.180481), (0.212639, 0.715169, 0.072192), (0.019331, 0.119195, 0.950532)))
 
 
-def tree_of(words):
-    """Behind its opening brace: a grid of 1, 8 or 64... numbers, or a list of eight trees."""
-    parts = []
-    for word in words:
-        if word == "}":
-            return parts
-        parts.append(tree_of(words) if word == "{" else float(word))
-    raise ValueError("a brace is not closed")
+def tree_of(text):
+    """A grid of 1, 8 or 64... numbers, or a list of eight trees."""
+    words = text.replace("{", " [ ").replace("}", " ] ").replace(",", " ").split()
+    return json.loads(",".join(words).replace("[,", "[").replace(",]", "]"))
 
 
 def look_up(tree, place):
@@ -47,9 +43,7 @@ def trees(path):
     for data in layer.findall(SPACE + "WavelengthData"):
         block = data.find(SPACE + "WavelengthDataBlock")
         assert block.find(SPACE + "WavelengthDataDirection").text == "Reflection Back"
-        words = re.findall(r"[{}]|[^\s{},]+", block.find(SPACE + "ScatteringData").text)
-        assert words[0] == "{"
-        found[data.find(SPACE + "Wavelength").text] = tree_of(iter(words[1:]))
+        found[data.find(SPACE + "Wavelength").text] = tree_of(block.find(SPACE + "ScatteringData").text)
     return found
 
 

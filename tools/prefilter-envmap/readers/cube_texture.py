@@ -77,20 +77,24 @@ def filtered(image, exponent, where):
     rows, columns = fine.shape[:2]
     theta = numpy.pi * (numpy.arange(rows) + 0.5) / rows
     longitude = 2 * numpy.pi * (0.5 - (numpy.arange(columns) + 0.5) / columns)
-    ring = numpy.sin(theta)[:, None]
-    d = numpy.stack(numpy.broadcast_arrays(ring * numpy.sin(longitude), numpy.cos(theta)[:, None], ring * numpy.cos(longitude)), -1)
+    ring = numpy.sin(theta)[:, None] + 0 * longitude
+    d = numpy.stack((ring * numpy.sin(longitude), numpy.cos(theta)[:, None] + 0 * ring, ring * numpy.cos(longitude)), -1)
     sums = []
     for axis in where.reshape(-1, 3):
-        weight = numpy.maximum(d @ axis, 0) ** exponent * (d @ axis > 0) * ring
-        sums.append((weight[..., None] * fine).sum((0, 1)) / weight.sum())
+        cosine = d @ axis
+        seen = cosine > 0
+        weight = cosine[seen] ** exponent * ring[seen]
+        sums.append(weight @ fine[seen] / weight.sum())
     return numpy.reshape(sums, where.shape)
 
 
-def largest_difference(levels, exponents, image):
-    """The largest difference of any texel from the filtered image, relative to the texel."""
+def largest_difference(levels, exponents, image, known={}):
+    """The largest difference of any texel from the filtered image, relative to the texel; `known` are filtered images."""
     worst = 0
     for level, exponent in zip(levels, exponents):
         assert (level[..., 3] == 1).all()
-        true = filtered(image, exponent, directions(level.shape[1]))
-        worst = max(worst, (numpy.abs(level[..., :3] - true) / true).max())
+        key = image.tobytes(), exponent, level.shape[1]
+        if key not in known:
+            known[key] = filtered(image, exponent, directions(level.shape[1]))
+        worst = max(worst, (numpy.abs(level[..., :3] - known[key]) / known[key]).max())
     return worst
