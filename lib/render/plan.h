@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "render/effects.h"
-#include "render/effect_words.h"
 
 namespace goniochrome::render {
 

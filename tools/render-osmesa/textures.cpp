@@ -9,7 +9,6 @@
 #include "base/angles.h"
 #include "base/text.h"
 #include "image/surface_file.h"
-#include "render/effect_words.h"
 
 namespace goniochrome::tool {
 
