@@ -36,6 +36,11 @@ finish() {
   batch merge "$1" 2>"$1/said"
 }
 
+# whole: the finished batch `whole`, which several cases look at.
+whole() {
+  [ -e whole/report.tsv ] || { copy whole && finish whole; }
+}
+
 # cells OUT COLUMN: a column of the report.
 cells() {
   awk -F '\t' -v name="$2" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) at = i; next } { print $at }' "$1/report.tsv"
@@ -52,8 +57,7 @@ cells() {
 }
 
 @test "every step uses the settings that were chosen, and every picture is within the target" {
-  copy whole
-  finish whole
+  whole
   cat whole/said
   [ "$(cells whole within | sort | uniq -c | xargs)" = '1 n/a 2 yes' ]
   paste <(cells whole de00_mean) <(cells whole picture_de00) <(cells whole total_de00) |
@@ -66,37 +70,34 @@ cells() {
 }
 
 @test "a chapter of the book has the lobes that its pictures have" {
-  copy bound
-  finish bound
-  batch book bound 0
-  fit=$(jq -r '.target.fit[1]' bound/plan.json)
-  grep -qF "method=\\\"$fit\\\"" bound/book-001.html
-  [ "$(grep -oE 'data:image/png;base64' bound/book-001.html | wc -l)" -ge 2 ]
+  whole
+  batch book whole 0
+  fit=$(jq -r '.target.fit[1]' whole/plan.json)
+  grep -qF "method=\\\"$fit\\\"" whole/book-001.html
+  [ "$(grep -oE 'data:image/png;base64' whole/book-001.html | wc -l)" -ge 2 ]
 }
 
 @test "a check at other pixels is within the target too, but not without effects" {
-  copy other
-  finish other
-  settings=$(jq -r '.target.render | join(" ")' other/plan.json)
+  whole
+  settings=$(jq -r '.target.render | join(" ")' whole/plan.json)
   look() {
-    render-osmesa -q --mesh "$TESTDATA/box.obj" --paint "other/fitted.paints.xml#silver_coarse" --env other/environments/*.env.exr \
+    render-osmesa -q --mesh "$TESTDATA/box.obj" --paint "whole/fitted.paints.xml#silver_coarse" --env whole/environments/*.env.exr \
       --camera 38,15,0.9 --size 64x48 --check 50 --seed 77 --report look.json "$@" -o look.png
-    jq -e --argjson fit "$(cells other de00_mean | sed -n 2p)" '.results.error.de00_mean + $fit <= 3' look.json
+    jq -e --argjson fit "$(cells whole de00_mean | sed -n 2p)" '.results.error.de00_mean + $fit <= 3' look.json
   }
   look $settings
   ! look --effects none,-rays
 }
 
 @test "the report is the same for any shards" {
-  copy each
+  whole
   copy one '.shards = [{first: 0, places: [.shards[0].places[0], .shards[-1].places[1]]}]'
-  finish each
   finish one
-  [ "$(batch list each | wc -l) $(batch list one | wc -l)" = '3 1' ]
-  cmp each/report.tsv one/report.tsv
-  cmp each/report.json one/report.json
-  cmp each/fitted.paints.xml one/fitted.paints.xml
-  diff -r each/pictures one/pictures
+  [ "$(batch list whole | wc -l) $(batch list one | wc -l)" = '3 1' ]
+  cmp whole/report.tsv one/report.tsv
+  cmp whole/report.json one/report.json
+  cmp whole/fitted.paints.xml one/fitted.paints.xml
+  diff -r whole/pictures one/pictures
 }
 
 @test "paints that miss the target are named, and the batch goes on" {
