@@ -131,7 +131,7 @@ Picture difference(const std::vector<color::Rgb>& a, const std::vector<color::Rg
 
 // One light that balls are lit by.
 class Studio {
-  static constexpr int kDrawn = 2000;  // directions at each point
+  static constexpr int kDrawn = 4000;  // directions at each point
 
  public:
   explicit Studio(const std::string& file) : sky_(file), blocks_(sky_.whole) {
