@@ -94,11 +94,14 @@ told() {
   [ ! -e twice.env.exr ] && [ ! -e evening.exr ]
 }
 
-@test "a table of points from a spreadsheet is read, or its separator is told" {
+@test "a table of points is read as spreadsheets save it" {
   printf '\xef\xbb\xbfseries,x,y\r\na,1,2\r\na,2,3\r\n' >bom.csv
   draw-plot bom.csv -o bom.svg
-  printf 'series;x;y\na;1,5;2\n' >semicolons.csv
-  told 3 'with commas between the cells and points in numbers' draw-plot semicolons.csv -o none.svg
+  printf 'series;x;y\na;1,5;2\na;2;3\n' >semicolons.csv
+  printf 'series,x,y\na,1.5,2\na,2,3\n' >commas.csv
+  draw-plot semicolons.csv -o semicolons.svg
+  draw-plot commas.csv -o commas.svg
+  cmp semicolons.svg commas.svg
 }
 
 @test "a spectrum below black is told with its place" {

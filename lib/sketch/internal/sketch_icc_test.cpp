@@ -351,7 +351,7 @@ TEST_F(CmykFile, InksWithoutAProfileAreFiltersAndAWarningSaysSo) {
 // Environments, photographs and textures with a profile were read as if they had none.
 TEST(IccProfile, TellsTheColorsOfEveryPicture) {
   image::ImagePart part{"", {1, 1, 3, {.5F, .5F, .5F}, {"R", "G", "B"}}, {{"goniochrome:integer", 1}}};
-  EXPECT_NEAR(image::working_space_rgb(part, "x")->data[1], .5, 1e-6) << "control: linear where nothing tells";
+  EXPECT_NEAR(image::working_space_rgb(part, "x")->data[1], srgb_light(.5), 1e-6) << "control: nothing tells";
   part.attributes["ICCProfile"] = rgb_profile(cmsBuildGamma(nullptr, 1.8));
   EXPECT_NEAR(image::working_space_rgb(part, "x")->data[1], std::pow(.5, 1.8), 1e-3);
   // Floats may be brighter than white.
