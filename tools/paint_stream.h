@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "base/json.h"
-#include "base/parallel.h"
-#include "base/pipeline.h"
 #include "cli/tool.h"
 #include "formats/batches.h"
 #include "formats/xml.h"
@@ -64,46 +62,17 @@ inline Result<void> write_paints(const std::string& output, const std::vector<pa
   return writer.finish();
 }
 
-// A batch of paints on its way, and the errors of those before it that cannot be read.
-struct PaintBatch {
-  Result<std::vector<paint::Paint>> paints = std::vector<paint::Paint>();
-  std::vector<Error> left_out;
-};
-
-// Hands the paints to `take` in batches until they end, while another thread reads the next. `left_out` is that of
-// PaintBatches::next().
+// Hands the paints to `take` in batches until they end. `left_out` is that of PaintBatches::next().
 template <class Take>
 Result<void> for_each_batch(formats::PaintBatches& paints, const cli::Session& session, Take&& take,
                             const std::function<void(const Error&)>& left_out = {}) {
-  Result<void> result;
-  std::size_t count = 0;
-  bool at_end = false;
-  Stages<PaintBatch> stages;
-  stages.fetch = [&](PaintBatch& batch) {
-    if (at_end) return false;
-    batch.left_out.clear();
-    const auto keep = [&](const Error& error) { batch.left_out.push_back(error); };
-    batch.paints = paints.next(left_out ? keep : std::function<void(const Error&)>());
-    at_end = !batch.paints.ok() || batch.paints->empty();
-    return !at_end || !batch.paints.ok() || !batch.left_out.empty();
-  };
-  stages.work = [&](PaintBatch& batch) {
-    for (const Error& error : batch.left_out) left_out(error);
-    if (!batch.paints.ok()) {
-      result = batch.paints.error();
-    } else if (!batch.paints->empty()) {
-      result = take(*batch.paints);
-      count += batch.paints->size();
-      session.progress(fmt::format("{}: {} paints", session.tool(), count));
-    }
-    return result.ok();
-  };
-  stages.finish = [](PaintBatch&) {};
-  stages.settle = [](PaintBatch&) { return true; };
-  constexpr std::size_t kSlots = 3;  // a batch that is read, one that waits and one that is taken
-  std::vector<PaintBatch> batches(kSlots);
-  run_stages(batches, threads() > 1 ? 1 : 0, stages);
-  return result;
+  for (std::size_t count = 0;;) {
+    GONIO_ASSIGN(const std::vector<paint::Paint> batch, paints.next(left_out));
+    if (batch.empty()) return {};
+    GONIO_TRY(take(batch));
+    count += batch.size();
+    session.progress(fmt::format("{}: {} paints", session.tool(), count));
+  }
 }
 
 // The whole way from inputs to output: `take` gets a batch and the writer for what it makes of it.

@@ -19,7 +19,7 @@ struct TableRow;
 class CsvRecords {
  public:
   explicit CsvRecords(InputFile input) : name_(input.name()), input_(std::move(input)) {}
-  // Of a text that is there already.
+  // The reader of a text in memory.
   CsvRecords(std::string name, std::string_view text) : name_(std::move(name)) { decoder_.append(text, buffer_); }
 
   // Reads the next record with a cell that is not empty into `cells`. White space around cells and the quotes of quoted

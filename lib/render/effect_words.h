@@ -23,9 +23,9 @@ Result<EffectWords> words_of(const std::string& text);
 // Error (usage): a word of --effects that names no effect, with the names that there are.
 Result<void> check_effects(const std::string& effects);
 
-// Whether such words leave no effect of rays on, so that no rays need be traced for them. The words are checked.
+// Returns true where these words leave no effect of rays on. Rays are then not traced. The words are checked.
 bool leave_out_rays(const std::string& effects);
-// Whether they force the floor, or the sums, on or off; nothing where they do not name it.
+// Each returns true where the words force the effect on, false where off, and nothing where they do not name it.
 std::optional<bool> floor_forced(const std::string& effects);
 std::optional<bool> sums_forced(const std::string& effects);
 

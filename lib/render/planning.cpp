@@ -346,7 +346,7 @@ void add_findings(const CorrectionNoise& rays, const FoundSums& sums, Plan& plan
   if (PlanItem* item = row_of(plan, kSumsName); item != nullptr && sums.de00_p95)
     add_finding(*sums.de00_p95, sums.stopped, *item);
   if (!plan.effects.rays.any()) return;
-  for (std::size_t i = 0; i < std::size(kFlags); ++i) {
+  for (std::size_t i = 0; i < ray_effect_names().size(); ++i) {
     PlanItem* item = row_of(plan, ray_effect_names()[i]);
     if (item == nullptr || !item->on) continue;
     if (rays.dark && !plan.effects.rays.floor) {

@@ -17,7 +17,7 @@ class GlDriver {
   virtual void* address(const char* name) const = 0;
   // "OSMesa" or "EGL".
   virtual const char* name() const = 0;
-  // Whether a GPU draws, and not the processor.
+  // True where a GPU draws instead of the processor.
   virtual bool on_gpu() const { return false; }
 };
 

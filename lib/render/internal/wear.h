@@ -7,14 +7,14 @@
 
 namespace goniochrome::render {
 
-// Whether a part of the scene wears a color map.
+// Returns true where the part wears a color map.
 bool is_mapped(const Scene& scene, std::size_t part);
 
-// Whether the gloss of a part of the scene stands for a rough coat, whose facets can be drawn in its place: a plain
-// paint that is not brushed.
+// Returns true where the gloss of the part stands for a rough coat, whose facets can be drawn in its place. The part
+// then wears a plain paint that is not brushed.
 bool wears_rough_coat(const Scene& scene, std::size_t part);
 
-// Whether two parts of the scene wear the same.
+// Returns true where both parts have equal paint, gloss and brushing. Surfaces are not compared.
 bool same_wear(const Scene& scene, std::size_t a, std::size_t b);
 
 double gloss_deg_of(const Scene& scene, std::size_t part);

@@ -78,8 +78,9 @@ class LobePoint::Classes {
   Float3 base_, gloss_;
 };
 
-// Of each sequence and column, the mean over its directions: light of the environment from free and from occluded
-// directions, of emitters, and bounced. The squares of single directions tell which estimate is the quieter one.
+// Means over the directions of each sequence, column by column: light of the environment from unoccluded and from
+// occluded directions, light of emitters, and bounced light. The squares of single directions tell which estimate is
+// the quieter one.
 struct LobePoint::Sums {
   std::size_t columns;
   int directions;

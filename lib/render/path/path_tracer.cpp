@@ -91,7 +91,7 @@ class Picture {
       reached = request_.tolerance_de00 > 0 && noise <= tolerance();
       const bool goes_on = !deadline_.passed() && (reached ? !mended && plan_worst(more) : plan(noise, more));
       mended = reached;
-      if (!goes_on || !cut(more)) break;
+      if (!goes_on || !cut(pace_.left(judging_s_), more)) break;
     }
     PathPicture picture;
     picture.reached = reached, picture.found = found_.of;
@@ -538,16 +538,13 @@ class Picture {
   // which no neighbor tells. One round more goes to these alone, and takes no more than a part of all samples.
   bool plan_worst(std::vector<int>& more) const {
     if (!request_.reconstruct) return false;
-    double asked = 0;
+    const double limit = request_.most_samples / kOfFour;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const double n = counted(i), wanted = states_[i].needed / (kSpeck * kSpeck) - n;
+      const double n = counted(i), wanted = std::min(states_[i].needed / (kSpeck * kSpeck), limit) - n;
       more[i] = static_cast<int>(std::clamp(wanted, 0.0, kMostOfSpeck * n));
-      asked += more[i];
     }
-    const double share = kSpecksShare * std::max(drawn(), static_cast<double>(points_.size())) / asked;
-    if (share < 1)
-      for (int& fours : more) fours = static_cast<int>(share * fours);
-    return asked > 0;
+    const double most = kSpecksShare * std::max(drawn(), static_cast<double>(points_.size()));
+    return std::ranges::any_of(more, [](int fours) { return fours > 0; }) && cut(most, more);
   }
 
   double drawn() const {
@@ -556,10 +553,9 @@ class Picture {
     return fours;
   }
 
-  // No more samples than there is time for; whether any.
-  bool cut(std::vector<int>& more) const {
-    return cut_round(pace_.left(judging_s_), more,
-                     [](int fours) { return fours >= Round::kSequences ? Round(fours).fours() : 0; });
+  // No more fours than `most`; whether any.
+  static bool cut(double most, std::vector<int>& more) {
+    return cut_round(most, more, [](int fours) { return fours >= Round::kSequences ? Round(fours).fours() : 0; });
   }
 
   const Transport& transport_;
@@ -598,17 +594,6 @@ PathPicture path_picture(const Transport& transport, const std::vector<VisibleSu
                          const image::Image* base, const PathRequest& request) {
   return samples.size() == 1 ? path_picture(transport, samples.front(), base, request)
                              : Picture(transport, samples, base, request).draw();
-}
-
-PathEstimate path_estimate(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
-                           const Vec3& to_viewer, int batches, std::uint64_t seed) {
-  const PointTransport at(transport, options, spot, rays::float3(to_viewer));
-  if (at.certain()) return {at.deterministic(), {}};
-  Estimates sums;
-  for (int k = 0; k < batches; ++k) sums.add(at.batch(seed_of(seed, 0, k)));
-  Covariance covariance = sums.covariance();
-  for (double& element : covariance) element /= batches;
-  return {at.deterministic() + sums.mean(), covariance};
 }
 
 }  // namespace goniochrome::render

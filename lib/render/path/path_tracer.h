@@ -74,12 +74,4 @@ PathPicture path_picture(const Transport& transport, const VisibleSurface& surfa
 PathPicture path_picture(const Transport& transport, const std::vector<VisibleSurface>& samples,
                          const image::Image* base, const PathRequest& request);
 
-// One point: the mean of so many batches and the covariance of its error.
-struct PathEstimate {
-  color::Rgb radiance;
-  Covariance covariance{};
-};
-PathEstimate path_estimate(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
-                           const Vec3& to_viewer, int batches, std::uint64_t seed);
-
 }  // namespace goniochrome::render

@@ -305,6 +305,15 @@ TEST(PathPicture, CorrectsHiddenPointsByTheSumOfWhatIsLeft) {
   EXPECT_LT(left, 0.8 * taken) << "the control: what is taken away";
 }
 
+// The surfaces that four samples of each pixel show.
+std::vector<VisibleSurface> four_samples(const PathStage& stage, const Camera& camera, int width, int height) {
+  const Rays center = *rays(camera, width, height);
+  std::vector<VisibleSurface> samples;
+  for (const auto& [dx, dy] : sample_shifts(4))
+    samples.push_back(visible_surface(stage.transport->rays(), center.shifted(dx, dy), width, height));
+  return samples;
+}
+
 // A first round that leaves out points of smooth pieces takes fewer samples, and neighbors tell the points that were
 // left out: each has an error, and what is told of the picture is its error. The truth is a picture that is not
 // smoothed.
@@ -314,10 +323,7 @@ TEST(PathPicture, PointsWithoutSamplesAreToldByTheirNeighbors) {
   camera.eye = {0.5, 4, 2};
   camera.fov_deg = 36;
   constexpr int kWidth = 96, kHeight = 72;
-  const Rays center = *rays(camera, kWidth, kHeight);
-  std::vector<VisibleSurface> samples;
-  for (const auto& [dx, dy] : sample_shifts(4))
-    samples.push_back(visible_surface(stage->transport->rays(), center.shifted(dx, dy), kWidth, kHeight));
+  const std::vector<VisibleSurface> samples = four_samples(*stage, camera, kWidth, kHeight);
   PathRequest request;
   request.options.bounces = 2;
   request.tolerance_de00 = 0.5, request.seed = 9;
@@ -353,10 +359,7 @@ TEST(PathPicture, TheWorstPointsGetOneRoundMore) {
   camera.eye = {0.2, 5, 1};
   camera.fov_deg = 30;
   constexpr int kWidth = 128, kHeight = 96;
-  const Rays center = *rays(camera, kWidth, kHeight);
-  std::vector<VisibleSurface> samples;
-  for (const auto& [dx, dy] : sample_shifts(4))
-    samples.push_back(visible_surface(stage.transport->rays(), center.shifted(dx, dy), kWidth, kHeight));
+  const std::vector<VisibleSurface> samples = four_samples(stage, camera, kWidth, kHeight);
   PathRequest request;
   request.options.bounces = 2, request.options.correction = true;
   constexpr color::Rgb kBase{0.2, 0.2, 0.2};
@@ -387,6 +390,9 @@ TEST(PathPicture, TheWorstPointsGetOneRoundMore) {
   EXPECT_TRUE(mended.reached);
   EXPECT_LE(mended.samples_mean, first.samples_mean + 2);
   EXPECT_LT(worst(mended), 0.6 * worst(first));
+  request.most_samples = 8;
+  EXPECT_EQ(path_picture(*stage.transport, samples, &base, request).samples_mean, first.samples_mean)
+      << "no point gets more than it may";
 }
 
 TEST(Noise, IsTheSpreadOfSmallErrors) {

@@ -44,8 +44,8 @@ constexpr Columns columns_of(int degree, std::uint32_t inner, std::array<std::ui
 }
 
 // Dimension 0 is the radical inverse: its columns reversed are 1, 2, 4 ...
-constexpr std::array<Columns, 4> kColumns = {columns_of(0, 0, {}), columns_of(1, 0, {1}), columns_of(2, 1, {1, 3}),
-                                             columns_of(3, 1, {1, 3, 1})};
+constexpr std::array<Columns, 4> kMatrixColumns = {columns_of(0, 0, {}), columns_of(1, 0, {1}),
+                                                   columns_of(2, 1, {1, 3}), columns_of(3, 1, {1, 3, 1})};
 
 // Bit-reversed coordinates in, bit-reversed coordinates out: every bit is flipped or not by a hash of the bits below it
 // (those above it in the coordinate), which is Owen's nested scramble. Sums, products by odd numbers and x ^ (x * even)
@@ -71,7 +71,7 @@ constexpr std::array<std::array<Coordinates, kValues>, kBytes> kOfByte = [] {
     for (std::size_t value = 1; value < kValues; ++value) {
       const auto lowest = 8 * byte + static_cast<std::size_t>(std::countr_zero(value));
       for (std::size_t d = 0; d < 4; ++d)
-        tables[byte][value][d] = tables[byte][value & (value - 1)][d] ^ kColumns[d][lowest];
+        tables[byte][value][d] = tables[byte][value & (value - 1)][d] ^ kMatrixColumns[d][lowest];
     }
   }
   return tables;

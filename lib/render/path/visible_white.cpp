@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "render/path/path_estimate.h"
 #include "render/path/path_tracer.h"
 
 namespace goniochrome::render {

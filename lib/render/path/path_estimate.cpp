@@ -1,0 +1,16 @@
+#include "render/path/path_estimate.h"
+
+namespace goniochrome::render {
+
+PathEstimate path_estimate(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
+                           const Vec3& to_viewer, int batches, std::uint64_t seed) {
+  const PointTransport at(transport, options, spot, rays::float3(to_viewer));
+  if (at.certain()) return {at.deterministic(), {}};
+  Estimates sums;
+  for (int k = 0; k < batches; ++k) sums.add(at.batch(mixed(mixed(seed, 0), static_cast<std::uint64_t>(k))));
+  Covariance covariance = sums.covariance();
+  for (double& element : covariance) element /= batches;
+  return {at.deterministic() + sums.mean(), covariance};
+}
+
+}  // namespace goniochrome::render
