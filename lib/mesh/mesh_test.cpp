@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <array>
+#include <bit>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -332,6 +334,40 @@ TEST_F(MeshFiles, OffPlyAndStlAreOnePartNamedForTheFile) {
     for (const Vec3& n : mesh->normals) EXPECT_EQ(n, (Vec3{0, 0, 1})) << name;
     EXPECT_THAT(mesh->remarks, testing::IsEmpty()) << name;
   }
+}
+
+// A square whose normals lean, as those of a round surface do; made ones stand upright. Reading was once without them.
+TEST_F(MeshFiles, NormalsOfOffAndPlyAreTheFiles) {
+  const std::string off = "NOFF\n4 1 0\n0 0 0 3 0 4\n1 0 0 3 0 4\n1 1 0 0 0 2\n0 1 0 0 0 0\n4 0 1 2 3\n";
+  const std::string head =
+      "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
+      "property float nz\n";
+  const std::string faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\n" + head + faces + "0 0 0 3 0 4\n1 0 0 3 0 4\n1 1 0 0 0 2\n0 1 0 0 0 0\n4 0 1 2 3\n";
+  std::string binary = "ply\r\nformat binary_big_endian 1.0\r\n" + head + faces;
+  const auto add = [&](std::uint32_t bits) {
+    for (int shift = 24; shift >= 0; shift -= 8) binary += static_cast<char>(bits >> shift & 255);
+  };
+  for (const auto& vertex :
+       {std::array{0.F, 0.F, 0.F, 3.F, 0.F, 4.F}, {1, 0, 0, 3, 0, 4}, {1, 1, 0, 0, 0, 2}, {0, 1, 0, 0, 0, 0}})
+    for (const float value : vertex) add(std::bit_cast<std::uint32_t>(value));
+  binary += '\4';
+  for (const std::uint32_t index : {0U, 1U, 2U, 3U}) add(index);
+  for (const auto& [name, text] : {std::pair{"t.off", off}, {"t.ply", ply}, {"b.ply", binary}}) {
+    const auto mesh = read_mesh(file(name, text));
+    ASSERT_TRUE(mesh.ok()) << name << ": " << mesh.error().message;
+    ASSERT_EQ(mesh->positions.size(), 4U) << name;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Vec3 wanted = mesh->positions[i].y == 0 ? Vec3{.6, 0, .8} : Vec3{0, 0, 1};
+      EXPECT_LT(length(mesh->normals[i] - wanted), 1e-7) << name << ' ' << i;
+    }
+    EXPECT_EQ(mesh->repairs.normals_made, 1U) << name << ": a normal without length is no normal";
+  }
+  std::string textured = ply;
+  textured.replace(textured.find("nx"), 2, "s ");
+  EXPECT_THAT(read_mesh(file("s.ply", textured))->remarks,
+              testing::ElementsAre(HasSubstr("texture coordinates of PLY are not read")));
 }
 
 // A small triangle at the coordinates of a surveyor. Where numbers are stored as doubles, or written out, its corners

@@ -3,10 +3,18 @@
 #include <CGAL/IO/OFF.h>
 #include <CGAL/IO/PLY.h>
 #include <CGAL/IO/STL.h>
+#include <CGAL/IO/read_off_points.h>
+#include <CGAL/IO/read_ply_points.h>
 #include <CGAL/Simple_cartesian.h>
+#include <CGAL/property_map.h>
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <iterator>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "base/child.h"
 #include "base/text.h"
@@ -18,6 +26,7 @@ namespace goniochrome::mesh {
 namespace {
 
 using Point = CGAL::Simple_cartesian<double>::Point_3;
+using Vector = CGAL::Simple_cartesian<double>::Vector_3;
 using Faces = std::vector<std::vector<std::size_t>>;
 
 // Addresses for a mesh: CGAL's own, and what its arrays take. A face of a binary PLY file has 4 bytes at least and
@@ -33,6 +42,48 @@ bool read_soup(const std::string& content, const std::string& extension, std::ve
   if (extension == ".off") return CGAL::IO::read_OFF(stream, points, faces, quiet);
   if (extension == ".ply") return CGAL::IO::read_PLY(stream, points, faces, quiet);
   return CGAL::IO::read_STL(stream, points, faces, quiet);
+}
+
+// True where the header of a PLY file gives its vertices one of these properties.
+bool has_property(std::string_view ply, std::initializer_list<std::string_view> names) {
+  const std::string_view header = ply.substr(0, ply.find("end_header"));
+  return std::ranges::any_of(split(header, '\n'), [&](std::string_view line) {
+    line = trimmed(line);
+    return line.starts_with("property") && std::ranges::find(names, line.substr(line.rfind(' ') + 1)) != names.end();
+  });
+}
+
+// The normals at the vertices, as the file has them; none where it has none.
+std::vector<Vector> read_normals(const std::string& content, const std::string& extension) {
+  std::istringstream stream(content);
+  std::vector<Vector> normals;
+  if (extension == ".ply" && has_property(content, {"nx"})) {
+    if (!CGAL::IO::read_PLY_with_properties<Vector>(
+            stream, std::back_inserter(normals),
+            CGAL::IO::make_ply_normal_reader(CGAL::Identity_property_map<Vector>())))
+      normals.clear();
+  } else if (extension == ".off" && content.starts_with("NOFF")) {
+    using Oriented = std::pair<Point, Vector>;
+    std::vector<Oriented> read;
+    const auto maps = CGAL::parameters::point_map(CGAL::First_of_pair_property_map<Oriented>())
+                          .normal_map(CGAL::Second_of_pair_property_map<Oriented>());
+    if (CGAL::IO::read_OFF<Oriented>(stream, std::back_inserter(read), maps))
+      for (const Oriented& vertex : read) normals.push_back(vertex.second);
+  }
+  return normals;
+}
+
+// Gives each corner the normal of its vertex, if that has a length; the others have theirs made.
+void take_normals(const std::vector<Vector>& normals, Polygons& polygons) {
+  if (normals.size() != polygons.positions.size()) return;
+  polygons.normals.reserve(normals.size());
+  for (const Vector& n : normals) {
+    const double size = std::hypot(n.x(), n.y(), n.z());
+    const bool usable = size > 0 && std::isfinite(size);
+    polygons.normals.push_back(usable ? Vec3{n.x() / size, n.y() / size, n.z() / size} : Vec3{});
+  }
+  for (Polygons::Corner& corner : polygons.corners)
+    if (!(polygons.normals[corner.position] == Vec3{})) corner.normal = static_cast<std::int32_t>(corner.position);
 }
 
 // The points and faces as polygons of one part.
@@ -72,7 +123,10 @@ Result<Polygons> polygons_from_soup(const std::string& content, const std::strin
         if (!is_ply || !read_soup(content, extension, points, faces) || faces.empty())
           return input_error("{}: not a whole {} mesh: export it again, or as OBJ, where errors can be told by line",
                              path, extension.substr(1));
-        GONIO_ASSIGN(const Polygons polygons, polygons_of(points, faces, source));
+        GONIO_ASSIGN(Polygons polygons, polygons_of(points, faces, source));
+        take_normals(read_normals(content, extension), polygons);
+        if (extension == ".ply" && has_property(content, {"s", "u", "texture_u", "texcoord"}))
+          polygons.remarks.emplace_back("texture coordinates of PLY are not read: export OBJ or glTF to keep them");
         put(output, polygons);
         return {};
       }));

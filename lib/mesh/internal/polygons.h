@@ -47,8 +47,8 @@ struct Source {
 // The polygons of an OBJ text. Errors name the line.
 Result<Polygons> polygons_from_obj(std::string_view text, const Source& source);
 
-// The polygons of the bytes of an OFF, PLY or STL file, as one part. Normals in such files are not read. `extension`
-// is ".off", ".ply" or ".stl".
+// The polygons of the bytes of an OFF, PLY or STL file, as one part, with the normals of its vertices; those of STL are
+// of faces and are not read. `extension` is ".off", ".ply" or ".stl".
 Result<Polygons> polygons_from_soup(const std::string& content, const std::string& extension, const Source& source);
 
 // The polygons of a glTF text or of the bytes of a GLB file. Files that it names lie in `folder`; "" is none. Errors
