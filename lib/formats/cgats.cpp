@@ -102,6 +102,7 @@ class CgatsParser {
     }
     if (!tables) return input_error("{}: has no BEGIN_DATA: it is no CGATS table, or it was cut off", name_);
     finish_paint();
+    xyz_scale_.finish(remarks_);
     if (const auto possible = normed_.unit_of_norm(); !possible.ok())
       return input_error("{}: {}", name_, possible.error().message);
     result_.warnings = remarks_.lines();
@@ -224,6 +225,7 @@ class CgatsParser {
       const auto taken = take_scale(columns_.fields[static_cast<std::size_t>(column.at)], stated_scale_);
       if (!taken.ok()) return error(taken.error().message);
     }
+    xyz_scale_.set(options_.scale, !columns_.wavelengths.empty());
     if (columns_.colors.empty() && columns_.wavelengths.empty())
       return error(
           "the fields hold neither LAB_L LAB_A LAB_B nor XYZ_X XYZ_Y XYZ_Z nor spectra such as SPECTRAL_NM_400: export "
@@ -322,7 +324,7 @@ class CgatsParser {
       color::Lab lab{values[0], values[1], values[2]};
       if (color.xyz) {
         GONIO_ASSIGN(const color::Xyz white, color::white_point(condition));
-        lab = color::lab_from_xyz({values[0] / 100, values[1] / 100, values[2] / 100}, white);
+        lab = color::lab_from_xyz(xyz_scale_.scaled({values[0], values[1], values[2]}), white);
       }
       if (const auto checked = check_lab(lab); !checked.ok()) return error(checked.error().message);
       GONIO_ASSIGN(const auto geometry, geometry_of_row(color));
@@ -455,6 +457,7 @@ class CgatsParser {
   double unit_;
   Scale stated_scale_ = Scale::kUnstated;  // by the fields of spectra
   ScaleJudge normed_;                      // hears of those whose norm is stated
+  XyzScale xyz_scale_;
   int line_ = 0;
   std::vector<std::string> words_;
 

@@ -82,6 +82,19 @@ TEST_F(Cgats, ReadsXyzAndAssumesUnstatedConditions) {
   EXPECT_EQ(good(text, {"D65", 10, false}).paints[0].measurement->condition, (color::ViewingCondition{"D65", 10}));
 }
 
+// XYZ from 0 to 1 were read as percent without a word: L* 8.6 for a white of 95.
+TEST_F(Cgats, XyzTooDarkForPercentAreTold) {
+  const std::string small = table("SAMPLE_ID XYZ_X XYZ_Y XYZ_Z", "7 0.9 0.95 0.8\n8 0.1 0.12 0.09");
+  EXPECT_THAT(good(small).warnings, Contains(HasSubstr("no Y is above 0.95: give --scale factor")));
+  ImportOptions options;
+  options.scale = Scale::kFactor;
+  const auto read = good(small, options);
+  EXPECT_NEAR(read.paints[0].measurement->rows[0].lab.L, 116 * std::cbrt(.95) - 16, 1e-12);
+  EXPECT_THAT(read.warnings, testing::Not(Contains(HasSubstr("no Y is above"))));
+  const std::string dark = table("SAMPLE_ID XYZ_X XYZ_Y XYZ_Z", "7 0.9 0.95 0.8\n8 20 21 22");
+  EXPECT_THAT(good(dark).warnings, testing::Not(Contains(HasSubstr("no Y is above"))));
+}
+
 // An observer by its year was dropped, and half a condition was completed in silence.
 TEST_F(Cgats, HalfAConditionIsCompletedAloud) {
   const std::string rows = "MEASUREMENT_GEOMETRY 45/0\n" + table("SAMPLE_NAME LAB_L LAB_A LAB_B", "p 1 2 3");

@@ -294,6 +294,19 @@ TEST_F(Cxf, ReadsXyzAndSpectraOfPoints) {
   EXPECT_THAT(uneven.warnings, ElementsAre(HasSubstr("the points of spectra in unequal steps are not kept")));
 }
 
+// XYZ from 0 to 1 were read as percent without a word.
+TEST_F(Cxf, XyzTooDarkForPercentAreTold) {
+  const std::string small =
+      cxf(object("s", "<ColorCIEXYZ ColorSpecification=\"a\"><X>0.2</X><Y>0.21</Y><Z>0.22</Z></ColorCIEXYZ>"),
+          specification("a", angles({{15, ""}}), "", "<Illuminant>D65</Illuminant><Observer>10_Degree</Observer>"));
+  EXPECT_THAT(good(small).warnings, ElementsAre(HasSubstr("no Y is above 0.21: give --scale factor")));
+  ImportOptions options;
+  options.scale = Scale::kFactor;
+  const auto read = good(small, options);
+  EXPECT_NEAR(read.paints.at(0).measurement->rows.at(0).lab.L, 116 * std::cbrt(.21) - 16, 1e-12);
+  EXPECT_THAT(read.warnings, IsEmpty());
+}
+
 // Messages name the kind of a value that is not read.
 TEST_F(Cxf, NamesWhatItDoesNotRead) {
   const auto rgb =

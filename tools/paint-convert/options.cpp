@@ -23,9 +23,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("scale", "SCALE", "percent", &o.scale, "what reflectances are written in")
       .one_of({"auto", "percent", "factor"})
       .more(
-          "It holds for the spectra of tables, CGATS, workbooks and CxF that do not state it themselves. auto judges "
-          "all "
-          "spectra of a file together, tells what it took them for, and refuses what may be either; see REFLECTANCES "
+          "It holds for the spectra of tables, CGATS, workbooks and CxF that do not state it themselves, and for XYZ "
+          "in "
+          "CGATS and CxF without spectra. auto judges all spectra of a file together, tells what it took them for, and "
+          "refuses what may be either; see REFLECTANCES "
           "in goniochrome-paint(5).");
   spec.option("viewing", "WORDS=GEOMETRY", "SCE=45as45", &o.viewings, "geometry of readings whose file names none")
       .more(

@@ -5,7 +5,6 @@
 
 #include "base/text.h"
 #include "color/spectrum.h"
-#include "formats/internal/spectral_rows.h"
 #include "paint/spectra.h"
 
 namespace goniochrome::formats {
@@ -176,7 +175,7 @@ std::optional<color::Lab> CxfResolver::lab_of(const CxfColor& color, const CxfSp
   if (color.kind == CxfColor::Kind::kLab) return color.lab;
   if (color.kind == CxfColor::Kind::kXyz) {
     const auto white = color::white_point(condition);
-    if (white.ok()) return color::lab_from_xyz({color.xyz.X / 100, color.xyz.Y / 100, color.xyz.Z / 100}, *white);
+    if (white.ok()) return color::lab_from_xyz(xyz_scale_.scaled(color.xyz), *white);
     remarks_.note("XYZ values were left out: " + white.error().message, open_->paint.name);
     return std::nullopt;
   }

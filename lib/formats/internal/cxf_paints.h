@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formats/imported.h"
+#include "formats/internal/spectral_rows.h"
 #include "paint/paint.h"
 
 namespace goniochrome::formats {
@@ -50,10 +51,15 @@ class CxfResolver {
               const ImportOptions& options)
       : specifications_(specifications), options_(options), remarks_(remarks) {}
 
-  // What makes factors of the values of spectra.
-  void set_unit(double unit) { unit_ = unit; }
+  // What makes factors of the values of spectra, and whether the file has any.
+  void set_unit(double unit, bool has_spectra) {
+    unit_ = unit;
+    xyz_scale_.set(options_.scale, has_spectra);
+  }
   void add(CxfObject object);
   void finish();
+  // Once the file has ended.
+  void note_scale() { xyz_scale_.finish(remarks_); }
 
   // The paints that are complete, in order.
   std::deque<paint::Paint>& paints() { return paints_; }
@@ -71,6 +77,7 @@ class CxfResolver {
   Remarks& remarks_;
   UniqueNames names_;
   double unit_ = 1;
+  XyzScale xyz_scale_;
   std::optional<OpenPaint> open_;
   std::string joined_;
   std::vector<std::string> unread_;  // of the open paint

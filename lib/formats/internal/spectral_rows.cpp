@@ -228,6 +228,25 @@ Result<double> ScaleJudge::unit(Scale stated, Scale option, Remarks& remarks) {
                      kRemedy);
 }
 
+void XyzScale::set(Scale option, bool has_spectra) {
+  is_given_ = option != Scale::kUnstated && !has_spectra;
+  white_ = is_given_ && option == Scale::kFactor ? 1 : 100;
+}
+
+color::Xyz XyzScale::scaled(const color::Xyz& xyz) {
+  brightest_ = std::max(brightest_, xyz.Y);
+  return {xyz.X / white_, xyz.Y / white_, xyz.Z / white_};
+}
+
+void XyzScale::finish(Remarks& remarks) const {
+  constexpr double kBlack = 1.25;  // of 100: where no reading of a file is brighter, all are nearly black
+  if (!is_given_ && brightest_ > 0 && brightest_ <= kBlack)
+    remarks.note(fmt::format("XYZ were read from 0 to 100, as the format has them, and no Y is above {}: give --scale "
+                             "factor if they go from 0 to 1, --scale percent if all are that dark",
+                             reflectance(brightest_)),
+                 "");
+}
+
 void note_uncovered(double held_share, std::string_view example, Remarks& remarks) {
   if (held_share > color::kToldHeldShare)
     remarks.note(

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "color/color.h"
 #include "color/spectrum.h"
 #include "formats/imported.h"
 #include "paint/paint.h"
@@ -83,6 +84,19 @@ class ScaleJudge {
   std::string first_bright_;                 // likewise, of a paint that may be either
   std::string first_dark_;
   double as_factor_ = 0, as_percent_ = 0;  // how far the values lie from the L* beside them
+};
+
+// What makes XYZ from 0 to 1 of a file's values, which formats define from 0 to 100. Where a file has no spectra that
+// --scale could speak of, it speaks of XYZ. It remarks at the end where no Y is so large that its scale shows.
+class XyzScale {
+ public:
+  void set(Scale option, bool has_spectra);
+  color::Xyz scaled(const color::Xyz& xyz);
+  void finish(Remarks& remarks) const;
+
+ private:
+  double white_ = 100, brightest_ = 0;
+  bool is_given_ = false;
 };
 
 // Integrates spectra, most of which have the wavelengths and the light of the one before.
