@@ -4,7 +4,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "formats/internal/schemas.h"
+#include "formats/internal/paint_elements.h"
 #include "formats/internal/xml_stream.h"
 
 namespace goniochrome::formats {
@@ -58,10 +58,6 @@ class BasisHandler : public XmlHandler {
     return {};
   }
 
-  Result<void> invalid(int line, const std::string& why) override {
-    return input_error("{}:{}: against the schema: {}", file_, line, why);
-  }
-
   Basis basis;
 
  private:
@@ -76,6 +72,7 @@ class BasisHandler : public XmlHandler {
     if (basis.exponents.empty())
       return values.error("the basis has no <exponent> before <mirror>: give it at least one");
     if (basis.mirror) return values.error("a second <mirror>: keep one");
+    if (!basis.sets.empty()) return values.error("<mirror> stands behind <set>: write it before the sets");
     basis.mirror = true;
     return {};
   }
@@ -114,7 +111,7 @@ class BasisHandler : public XmlHandler {
 Result<Basis> read_basis(const std::string& path) {
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
   BasisHandler handler(input.name());
-  XmlStream stream(std::move(input), kBasisSchema, handler);
+  XmlStream stream(std::move(input), handler);
   GONIO_TRY(stream.finish());
   return std::move(handler.basis);
 }

@@ -147,8 +147,6 @@ class CxfHandler final : public XmlHandler {
     return of_object && keep_going_ ? Result<void>() : result;
   }
 
-  Result<void> invalid(int, const std::string&) override { return {}; }
-
   // Tells `judge` of all spectra, once every specification is known.
   void judge_spectra(ScaleJudge& judge) const {
     for (const SeenSpectrum& seen : spectra_) {
@@ -158,6 +156,8 @@ class CxfHandler final : public XmlHandler {
       judge.add(names_[seen.object], angles[std::min(seen.number, angles.size() - 1)], {seen.mean}, seen.L);
     }
   }
+
+  bool has_spectra() const { return !spectra_.empty(); }
 
   // What was read since this was last called.
   std::vector<CxfObject> take_objects() { return std::exchange(objects_, {}); }
@@ -438,7 +438,7 @@ struct CxfReader::State {
         specifications(input.name(), Pass::kSpecifications, wanted.keep_going),
         objects(input.name(), Pass::kObjects, wanted.keep_going),
         resolver(specifications.specifications(), objects.remarks(), options),
-        stream(std::move(input), nullptr, objects) {}
+        stream(std::move(input), objects) {}
 
   Result<void> read_on() {
     const auto more = stream.advance();
@@ -448,6 +448,7 @@ struct CxfReader::State {
     for (std::string& message : objects.take_skipped()) skipped.push_back(std::move(message));
     if (!ended) return {};
     resolver.finish();
+    resolver.note_scale();
     if (objects.objects_seen() == 0) objects.remarks().note("holds no objects", "");
     return {};
   }
@@ -468,14 +469,14 @@ Result<CxfReader> CxfReader::open(InputFile input, const ImportOptions& options)
   GONIO_ASSIGN(InputFile first, input.second_reading());
   auto state = std::make_unique<State>(std::move(input), options);
   const std::string name = first.name();
-  XmlStream stream(std::move(first), nullptr, state->specifications);
+  XmlStream stream(std::move(first), state->specifications);
   GONIO_TRY(stream.finish());
   state->specifications.place_by(state->options, state->objects.remarks());
   ScaleJudge judge;
   state->specifications.judge_spectra(judge);
   const auto unit = judge.unit_of_format("CxF3", Scale::kFactor, options.scale, state->objects.remarks());
   if (!unit.ok()) return input_error("{}: {}", name, unit.error().message);
-  state->resolver.set_unit(*unit);
+  state->resolver.set_unit(*unit, state->specifications.has_spectra());
   return CxfReader(std::move(state));
 }
 

@@ -6,7 +6,6 @@
 #include "base/text.h"
 #include "formats/imported.h"
 #include "formats/internal/paint_elements.h"
-#include "formats/internal/schemas.h"
 #include "formats/internal/tilts_xml.h"
 #include "formats/internal/xml_stream.h"
 #include "formats/xml.h"
@@ -32,7 +31,6 @@ class PaintHandler : public XmlHandler {
   Result<void> start(const XmlTag& tag) override;
   Result<void> end(int line) override;
   Result<void> text(std::string_view text, int line) override;
-  Result<void> invalid(int line, const std::string& why) override;
   // The document broke off: what was already known to be wrong with the open paint is told first.
   void break_off() {
     if (lost_) found.push_back({*lost_, paint_line_});
@@ -46,6 +44,7 @@ class PaintHandler : public XmlHandler {
 
  private:
   Result<void> element(const XmlTag& tag);
+  Result<void> in_order(const ElementRule& rule, const XmlValues& values);
   Result<void> foreign_element(const XmlTag& tag);
   Result<void> begin(Node node, const XmlValues& values);
   Result<void> begin_document(const XmlTag& tag, const XmlValues& values);
@@ -70,6 +69,7 @@ class PaintHandler : public XmlHandler {
   std::string file_;
   NameLedger names_;
   std::vector<Node> open_;
+  std::vector<Node> last_child_;   // of the document and of each of those
   int depth_ = 0;                  // elements open, ours or not
   std::vector<XmlScope> scope_;    // of <paints> and of the open <paint>
   XmlCopy copy_{kPaintNamespace};  // of the foreign element that is open
@@ -124,6 +124,7 @@ Result<void> PaintHandler::element(const XmlTag& tag) {
                        children_of(parent));
   const XmlValues values(file_, tag);
   GONIO_TRY(values.check_names(rule->attributes));
+  GONIO_TRY(in_order(*rule, values));
   if (rule->node == Node::kProcessing && in_paints)
     return values.error("<processing> stands behind a paint: move it to the front");
   if (rule->node == Node::kPaints) GONIO_TRY(begin_document(tag, values));
@@ -134,6 +135,15 @@ Result<void> PaintHandler::element(const XmlTag& tag) {
   }
   open_.push_back(rule->node);
   return begin(rule->node, values);
+}
+
+// What stands in a fixed order inside `rule`'s parent must not go back in it.
+Result<void> PaintHandler::in_order(const ElementRule& rule, const XmlValues& values) {
+  last_child_.resize(open_.size() + 1);
+  const Node last = std::exchange(last_child_.back(), rule.node);
+  if (!is_sequence(rule.parent) || last <= rule.node) return {};
+  return values.error(fmt::format("<{}> stands behind <{}> inside <{}>: write {} in this order", rule.name,
+                                  name_of(last), name_of(rule.parent), children_of(rule.parent)));
 }
 
 Result<void> PaintHandler::foreign_element(const XmlTag& tag) {
@@ -161,6 +171,7 @@ Result<void> PaintHandler::begin_document(const XmlTag& tag, const XmlValues& va
 Result<void> PaintHandler::begin(Node node, const XmlValues& values) {
   switch (node) {
     case Node::kProcessing:
+      if (values.text("tool").empty()) return values.error("tool", "write the name of the program");
       processing.push_back(
           {std::string(values.text("tool")), std::string(values.text("version")), std::string(values.text("command"))});
       return {};
@@ -473,20 +484,11 @@ Result<void> PaintHandler::finish(Node node, int line) {
   return {};
 }
 
-// All that the schema forbids is refused above, in better words; this is the net below.
-Result<void> PaintHandler::invalid(int line, const std::string& why) {
-  if (lost_) return {};
-  if (depth_ == 1 && !found.empty() && !found.back().paint.ok()) return {};
-  const Error error = input_error("{}:{}: against the schema: {}", file_, line, why);
-  if (depth_ == 1 && !found.empty()) return found.back().paint = error, Result<void>();
-  return lose_paint(error);
-}
-
 }  // namespace
 
 struct PaintReader::State {
   State(InputFile input, std::optional<NameChoice> wanted)
-      : file(input.name()), choice(std::move(wanted)), handler(file), stream(std::move(input), kPaintSchema, handler) {}
+      : file(input.name()), choice(std::move(wanted)), handler(file), stream(std::move(input), handler) {}
 
   // Reads on until a paint or the end is found.
   bool more() {

@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <libxml/parser.h>
+#include <libxml/xmlschemas.h>
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <memory>
 
 #include "base/scratch_for_test.h"
 #include "base/testdata_for_test.h"
@@ -375,10 +378,108 @@ TEST(PaintXml, OtherDocumentsAreRefusedByName) {
   EXPECT_FALSE(PaintReader::open("/no/such/file.xml").ok());
 }
 
+using XmlDocument = std::unique_ptr<xmlDoc, decltype(&xmlFreeDoc)>;
+
+// The published schema, as an independent judge of documents.
+class PublishedSchema {
+ public:
+  bool accepts(xmlDocPtr document) {
+    const std::unique_ptr<xmlSchemaValidCtxt, decltype(&xmlSchemaFreeValidCtxt)> judge(
+        xmlSchemaNewValidCtxt(schema_.get()), xmlSchemaFreeValidCtxt);
+    xmlSchemaSetValidErrors(judge.get(), silent, silent, nullptr);
+    return xmlSchemaValidateDoc(judge.get(), document) == 0;
+  }
+
+ private:
+  static void silent(void*, const char*, ...) {}
+  static xmlSchemaPtr parsed() {
+    const std::string path = testdata("../lib/formats/paint.xsd");
+    const std::unique_ptr<xmlSchemaParserCtxt, decltype(&xmlSchemaFreeParserCtxt)> parser(
+        xmlSchemaNewParserCtxt(path.c_str()), xmlSchemaFreeParserCtxt);
+    return xmlSchemaParse(parser.get());
+  }
+  std::unique_ptr<xmlSchema, decltype(&xmlSchemaFree)> schema_{parsed(), xmlSchemaFree};
+};
+
+std::string text_of(xmlDocPtr document) {
+  xmlChar* bytes = nullptr;
+  int size = 0;
+  xmlDocDumpMemory(document, &bytes, &size);
+  std::string text(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
+  xmlFree(bytes);
+  return text;
+}
+
+void list_elements(xmlNodePtr node, std::vector<xmlNodePtr>& elements) {
+  for (; node; node = node->next)
+    if (node->type == XML_ELEMENT_NODE) elements.push_back(node), list_elements(node->children, elements);
+}
+
+const xmlChar* xml(const char* text) {
+  return reinterpret_cast<const xmlChar*>(text);
+}
+
 TEST(PaintXml, TheSchemaAcceptsWhatTheWriterWrites) {
   const ScratchFolder folder;
-  ASSERT_TRUE(write_all(folder.path("p.xml"), {full_paint()}).ok());
+  ASSERT_TRUE(write_all(folder.path("p.xml"), {full_paint()}, {{"fit-paint", "1", "x"}}).ok());
   EXPECT_THAT(reading_of(folder.path("p.xml")).errors, ElementsAre());
+  const XmlDocument written(xmlReadFile(folder.path("p.xml").c_str(), nullptr, 0), xmlFreeDoc);
+  EXPECT_TRUE(PublishedSchema().accepts(written.get()));
+}
+
+// Every element of a whole document is left out, doubled and moved behind its neighbor, and every attribute is left
+// out, renamed and given other values. The reader has rules of its own, and refuses whatever the schema refuses.
+TEST(PaintXml, WhatTheSchemaRefusesIsRefused) {
+  const std::string lobe = "exponent=\"2\" ddr=\"1\" ddg=\"1\" ddb=\"1\" gr=\"1\" gg=\"1\" gb=\"1\"/>";
+  const std::string whole = document(
+      "<processing tool=\"t\" version=\"1\" command=\"c\"/><paint name=\"p\" class=\"pearl\" code=\"c\">"
+      "<measurement illuminant=\"D65\" observer=\"10\" instrument=\"i\" serial=\"s\" date=\"2020-01-01\">"
+      "<lab geometry=\"45as15\" L=\"50\" a=\"0\" b=\"0\"/><lab geometry=\"45as45\" L=\"40\" a=\"0\" b=\"0\"/>"
+      "<spectrum geometry=\"45as15\" from=\"400\" to=\"700\" step=\"100\">1 .5 1e-3 2</spectrum>"
+      "<texture quantity=\"q\" geometry=\"g\" version=\"v\" value=\"1\"/></measurement><gloss angle=\"60\">90</gloss>"
+      "<appearance travel=\"60\" residual_de00=\"1\"><face L=\"50\" a=\"0\" b=\"0\"/><flop L=\"20\" a=\"0\" b=\"0\"/>"
+      "</appearance><anisotropy alphaX=\".1\" alphaY=\".2\"/><colorMap href=\"h\" index=\"1.5\"/><coat index=\"1.5\"/>"
+      "<lobes space=\"lin_rec2020_scene\" basis=\"b\" method=\"m\" max_de00=\"1\" mean_de00=\"1\">"
+      "<diffuse r=\"1\" g=\"1\" b=\"1\"/><lobe " +
+      lobe + "<view angle=\"45\"><diffuse r=\"1\" g=\"1\" b=\"1\"/><lobe " + lobe +
+      "</view></lobes><n xmlns=\"urn:n\"/></paint>");
+  PublishedSchema schema;
+  ASSERT_THAT(reading_of_text(whole).errors, ElementsAre());
+  std::size_t refused = 0, accepted = 0;
+  // Edits element number `at` of a fresh document; false where there is none.
+  const auto change = [&](std::size_t at, const std::function<bool(xmlNodePtr)>& edit) {
+    const XmlDocument changed(xmlReadMemory(whole.data(), static_cast<int>(whole.size()), "p", nullptr, 0), xmlFreeDoc);
+    std::vector<xmlNodePtr> elements;
+    list_elements(changed->children, elements);
+    if (at >= elements.size()) return false;
+    if (!edit(elements[at])) return true;
+    const bool is_valid = schema.accepts(changed.get());
+    ++(is_valid ? accepted : refused);
+    EXPECT_TRUE(is_valid || !reading_of_text(text_of(changed.get())).errors.empty()) << text_of(changed.get());
+    return true;
+  };
+  for (std::size_t at = 1;; ++at) {
+    if (!change(at, [](xmlNodePtr node) { return xmlUnlinkNode(node), xmlFreeNode(node), true; })) break;
+    change(at, [](xmlNodePtr node) { return xmlAddNextSibling(node, xmlCopyNode(node, 1)) != nullptr; });
+    change(at, [](xmlNodePtr node) { return node->next && xmlAddNextSibling(node->next, node); });
+    change(at, [](xmlNodePtr node) { return xmlNewChild(node, nullptr, xml("stranger"), nullptr) != nullptr; });
+    change(at, [](xmlNodePtr node) { return xmlNodeAddContent(node, xml(" word")), true; });
+    change(at, [](xmlNodePtr node) { return xmlSetProp(node, xml("stranger"), xml("1")) != nullptr; });
+    constexpr int kMostAttributes = 8;
+    for (int k = 0; k < kMostAttributes; ++k) {
+      const auto attribute = [k](xmlNodePtr node) {
+        xmlAttrPtr found = node->properties;
+        for (int i = 0; i < k && found; ++i) found = found->next;
+        return found;
+      };
+      change(at, [&](xmlNodePtr node) { return attribute(node) && xmlRemoveProp(attribute(node)) == 0; });
+      for (const char* value : {"", "x", "-1", "0", "1e400", "NaN", "INF", "1,5", "91", "15", "181", "3"})
+        change(at,
+               [&](xmlNodePtr node) { return attribute(node) && xmlSetProp(node, attribute(node)->name, xml(value)); });
+    }
+  }
+  EXPECT_GT(refused, 400U);
+  EXPECT_GT(accepted, 400U);
 }
 
 TEST(PaintXml, WriterRefusesWhatXmlCannotHold) {

@@ -1,6 +1,6 @@
 
 #include "base/text.h"
-#include "formats/internal/schemas.h"
+#include "formats/internal/paint_elements.h"
 #include "formats/internal/tilts_xml.h"
 #include "formats/internal/xml_stream.h"
 #include "formats/xml.h"

@@ -6,9 +6,13 @@
 #include <string>
 #include <string_view>
 
+#include "base/result.h"
 #include "base/text.h"
 
 namespace goniochrome::formats {
+
+inline constexpr std::string_view kPaintNamespace = "urn:goniochrome:paint:1",
+                                  kBasisNamespace = "urn:goniochrome:basis:1";
 
 enum class Node {
   kDocument,
@@ -35,7 +39,7 @@ enum class Node {
 };
 
 // The elements of paint XML: where each stands and what attributes it takes ("?" marks those that may be missing). The
-// schema says the same; this table says it in words that help.
+// schema says the same, which a test holds.
 struct ElementRule {
   Node node, parent;
   std::string_view name, attributes;
@@ -62,6 +66,11 @@ constexpr std::array kRules = {
     ElementRule{Node::kViewDiffuse, Node::kView, "diffuse", "r g b"},
     ElementRule{Node::kViewLobe, Node::kView, "lobe", "exponent ddr ddg ddb gr gg gb"},
 };
+
+// True for elements whose children stand in the order of the table.
+constexpr bool is_sequence(Node node) {
+  return node == Node::kMeasurement || node == Node::kLobes || node == Node::kView;
+}
 
 inline std::string_view name_of(Node node) {
   return std::ranges::find(kRules, node, &ElementRule::node)->name;

@@ -41,7 +41,6 @@ class PartHandler : public XmlHandler {
     text_.clear();
     return result;
   }
-  Result<void> invalid(int, const std::string&) final { return {}; }
 
  protected:
   virtual Result<void> begun(const XmlTag& tag) = 0;
@@ -325,7 +324,7 @@ struct Spreadsheet::State {
                            shown(part), kMostGrowth);
       return static_cast<std::size_t>(got);
     };
-    XmlStream stream(called, bytes_of, nullptr, handler);
+    XmlStream stream(called, bytes_of, handler);
     const auto result = stream.finish();
     if (result.ok() || result.error().message.starts_with(called)) return result;
     return input_error("{}: {}", called, result.error().message);

@@ -2,7 +2,6 @@
 
 #include <libxml/SAX2.h>
 #include <libxml/parser.h>
-#include <libxml/xmlschemas.h>
 
 #include <algorithm>
 #include <functional>
@@ -30,18 +29,6 @@ std::string_view view(const xmlChar* text) {
 
 // Keeps libxml2 from printing: every error comes through the structured handlers below.
 void silence(void*, const char*, ...) {}
-
-// A schema is compiled once per process and shared, since it is never changed.
-xmlSchemaPtr compiled(const char* text) {
-  static auto& schemas = *new std::map<const char*, xmlSchemaPtr>;  // kept to the end of the process
-  xmlSchemaPtr& schema = schemas[text];
-  if (!schema) {
-    xmlSchemaParserCtxtPtr parser = xmlSchemaNewMemParserCtxt(text, static_cast<int>(std::string_view(text).size()));
-    schema = xmlSchemaParse(parser);
-    xmlSchemaFreeParserCtxt(parser);
-  }
-  return schema;
-}
 
 // What libxml2's error means for the person who wrote the file.
 std::string explained(int code, std::string_view detail) {
@@ -170,16 +157,11 @@ struct XmlStream::State {
   std::string name;
   XmlBytes input;
   XmlHandler& handler;
-  xmlSAXHandler own = {};
-  xmlSAXHandlerPtr sax = &own;
-  void* sax_data = this;
-  xmlSchemaValidCtxtPtr validator = nullptr;
-  xmlSchemaSAXPlugPtr plug = nullptr;
   xmlParserCtxtPtr parser = nullptr;
   XmlTag tag;                     // reused from element to element
   std::vector<std::string> open;  // names of the elements not yet closed
   std::optional<Error> error;
-  bool has_root = false, tag_cut = false, at_end = false, finished = false;
+  bool has_root = false, at_end = false, finished = false;
   std::size_t bytes = 0, since_markup = 0;
   std::string chunk;
   AttributeCounter attributes;
@@ -187,13 +169,8 @@ struct XmlStream::State {
   std::size_t all_namespaces = 0;
   std::size_t text_bytes = 0, text_pieces = 0;  // since the last tag
 
-  State(std::string called, XmlBytes bytes_of, XmlHandler& told)
-      : name(std::move(called)), input(std::move(bytes_of)), handler(told) {}
-  ~State() {
-    xmlSchemaSAXUnplug(plug);
-    xmlFreeParserCtxt(parser);
-    xmlSchemaFreeValidCtxt(validator);
-  }
+  State(std::string called, XmlBytes bytes_of, XmlHandler& told);
+  ~State() { xmlFreeParserCtxt(parser); }
 
   int line() const { return parser->input ? parser->input->line : 1; }
 
@@ -222,9 +199,7 @@ struct XmlStream::State {
   static void on_text(void* data, const xmlChar* text, int length);
   static void on_doctype(void* data, const xmlChar*, const xmlChar*, const xmlChar*);
   static void on_error(void*, xmlErrorPtr problem);
-  static void on_invalid(void* data, xmlErrorPtr problem);
 
-  void set_up(const char* schema);
   Result<void> read_chunk();
 };
 
@@ -235,8 +210,7 @@ void XmlStream::State::on_start(void* data, const xmlChar* name, const xmlChar* 
   if (state.error) return;
   // A tag that was cut off is told as if it were whole, and refused afterwards.
   const xmlChar next = *state.parser->input->cur;
-  state.tag_cut = next != '>' && next != '/';
-  if (state.tag_cut) return;
+  if (next != '>' && next != '/') return;
   state.text_bytes = state.text_pieces = 0;
   if (state.open.size() == kDeepestXml)
     return state.fail(state.line(), fmt::format("elements are nested more than {} deep: flatten them", kDeepestXml));
@@ -274,7 +248,6 @@ void XmlStream::State::on_end(void* data, const xmlChar*, const xmlChar*, const 
 void XmlStream::State::on_text(void* data, const xmlChar* text, int length) {
   State& state = of(data);
   if (state.error) return;
-  // The schema's validator puts the pieces together, and measures the whole text for each.
   state.text_bytes += static_cast<std::size_t>(length);
   const bool too_long = ++state.text_pieces > kMostPieces || state.text_bytes > kLongestXmlToken;
   const auto taken =
@@ -305,23 +278,10 @@ void XmlStream::State::on_error(void*, xmlErrorPtr problem) {
              explained(code, problem->message ? problem->message : ""));
 }
 
-void XmlStream::State::on_invalid(void* data, xmlErrorPtr problem) {
-  State& state = of(data);
-  if (state.error || state.tag_cut) return;
-  std::string why(trimmed(problem->message ? problem->message : ""));
-  // Names come as {namespace}name; the name is enough.
-  for (auto open = why.find('{'); open != std::string::npos; open = why.find('{', open)) {
-    const auto close = why.find('}', open);
-    if (close == std::string::npos) break;
-    why.erase(open, close - open + 1);
-  }
-  state.accept(state.handler.invalid(state.line(), why));
-}
-
-// The schema's own handler stands between the parser and ours: it passes each event on to ours first, so that our words
-// come before the schema's.
-void XmlStream::State::set_up(const char* schema) {
+XmlStream::State::State(std::string called, XmlBytes bytes_of, XmlHandler& told)
+    : name(std::move(called)), input(std::move(bytes_of)), handler(told) {
   xmlSetGenericErrorFunc(nullptr, silence);
+  xmlSAXHandler own = {};
   own.initialized = XML_SAX2_MAGIC;
   own.startElementNs = on_start;
   own.endElementNs = on_end;
@@ -329,13 +289,8 @@ void XmlStream::State::set_up(const char* schema) {
   own.ignorableWhitespace = on_text;
   own.cdataBlock = on_text;
   own.internalSubset = on_doctype;
-  if (schema) {
-    validator = xmlSchemaNewValidCtxt(compiled(schema));
-    xmlSchemaSetValidStructuredErrors(validator, on_invalid, this);
-    plug = xmlSchemaSAXPlug(validator, &sax, &sax_data);
-  }
-  sax->serror = on_error;
-  parser = xmlCreatePushParserCtxt(sax, sax_data, nullptr, 0, nullptr);
+  own.serror = on_error;
+  parser = xmlCreatePushParserCtxt(&own, this, nullptr, 0, nullptr);
   parser->_private = this;
   xmlCtxtUseOptions(parser, XML_PARSE_NONET | XML_PARSE_NOENT);
 }
@@ -359,16 +314,13 @@ Result<void> XmlStream::State::read_chunk() {
   return {};
 }
 
-XmlStream::XmlStream(InputFile input, const char* schema, XmlHandler& handler) {
+XmlStream::XmlStream(InputFile input, XmlHandler& handler) {
   std::string name = input.name();
   state_ = std::make_unique<State>(std::move(name), reading(std::move(input)), handler);
-  state_->set_up(schema);
 }
 
-XmlStream::XmlStream(std::string name, XmlBytes input, const char* schema, XmlHandler& handler)
-    : state_(std::make_unique<State>(std::move(name), std::move(input), handler)) {
-  state_->set_up(schema);
-}
+XmlStream::XmlStream(std::string name, XmlBytes input, XmlHandler& handler)
+    : state_(std::make_unique<State>(std::move(name), std::move(input), handler)) {}
 
 XmlStream::~XmlStream() = default;
 

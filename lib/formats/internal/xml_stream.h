@@ -1,6 +1,6 @@
-// XML as a stream, in bounded memory, from files that nobody vouches for: elements as they come, checked against a
-// schema; the values of their attributes; and elements of other vocabularies kept as text. Document types, entities,
-// external files and the network are never used.
+// XML as a stream, in bounded memory, from files that nobody vouches for: elements as they come, the values of their
+// attributes, and elements of other vocabularies kept as text. Document types, entities, external files and the network
+// are never used.
 #pragma once
 
 #include <functional>
@@ -40,8 +40,6 @@ class XmlHandler {
   virtual Result<void> start(const XmlTag& tag) = 0;
   virtual Result<void> end(int line) = 0;
   virtual Result<void> text(std::string_view text, int line) = 0;
-  // The element that has just started or ended breaks the schema. This call follows start() or end() of the element.
-  virtual Result<void> invalid(int line, const std::string& why) = 0;
 };
 
 // A text, tag or attribute that is longer is refused, and so are elements that are nested more deeply.
@@ -53,11 +51,10 @@ using XmlBytes = std::function<Result<std::size_t>(std::string&, std::size_t)>;
 
 class XmlStream {
  public:
-  // Reads `input` and tells `handler`, which must outlive the stream. `schema` is the text of an XSD that lives as long
-  // as the program, or nullptr.
-  XmlStream(InputFile input, const char* schema, XmlHandler& handler);
+  // Reads `input` and tells `handler`, which must outlive the stream.
+  XmlStream(InputFile input, XmlHandler& handler);
   // Likewise from anywhere else; errors call it `name`.
-  XmlStream(std::string name, XmlBytes input, const char* schema, XmlHandler& handler);
+  XmlStream(std::string name, XmlBytes input, XmlHandler& handler);
   XmlStream(const XmlStream&) = delete;
   ~XmlStream();
 
