@@ -125,10 +125,8 @@ class Engine {
   // The radiance of single points. Error: an engine that shades whole pictures only.
   virtual Result<std::vector<color::Rgb>> shade(const std::vector<VisiblePoint>& points) const;
 
-  // Whether shade() includes textures and color maps, or textures alone. Otherwise the renderer adds them, see
-  // SurfaceLayer.
+  // Whether shade() includes textures and color maps. Otherwise the renderer adds them, see SurfaceLayer.
   virtual bool shades_layer() const { return false; }
-  virtual bool shades_textures() const { return shades_layer(); }
 };
 
 }  // namespace goniochrome::render

@@ -300,7 +300,7 @@ Result<void> Renderer::State::add_seen_through(int sample, float gain, image::Im
     if (summed() != nullptr) summed()->add(behind.gbuffer, 1, shown);
     if (effects.extent && effects.mirror) add_glints(scene, effects, behind.gbuffer, 1, shown);
     if (scene.layer != nullptr && !engine->shades_layer())
-      scene.layer->add(behind.gbuffer, sight.places(sample), effects, 1, shown, !engine->shades_textures());
+      scene.layer->add(behind.gbuffer, sight.places(sample), effects, 1, shown);
     uncover(behind, gain, picture);
     add_behind(behind, shown, gain, picture);
     if (!effects.rays.floor || !transport) continue;

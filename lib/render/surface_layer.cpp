@@ -223,12 +223,6 @@ std::size_t SurfaceLayer::shading_of(const Laid& laid, const Effects& effects) c
   return effects.texture ? laid.texture : textures_.size() + laid.texture;
 }
 
-std::vector<std::size_t> SurfaceLayer::drawn(const Effects& effects) const {
-  std::vector<std::size_t> numbers;
-  for (std::size_t i = 0; i < textures_.size(); ++i) numbers.push_back(effects.texture ? i : textures_.size() + i);
-  return numbers;
-}
-
 // Steps of the golden section cover a texture evenly.
 std::vector<TexturePlace> SurfaceLayer::placed(const VisiblePoint& point, std::size_t number) const {
   const std::vector<Laid>& laid = laid_[static_cast<std::size_t>(point.part)];
@@ -417,9 +411,8 @@ void SurfaceLayer::shade(const Gbuffer& gbuffer, const SeenBand::Bin& bin, const
 }
 
 void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects,
-                       float weight, image::Image& rgba, bool with_textures, SeenPixels* kept) const {
-  with_textures = with_textures && textured_;
-  if (!with_textures && !dims_ && !(mapped_ && effects.maps)) return;
+                       float weight, image::Image& rgba, SeenPixels* kept) const {
+  if (!textured_ && !(mapped_ && effects.maps)) return;
   // A sample stands for its share of the area of the pixel.
   const double scale = std::sqrt(weight);
   const SbrdfLight light = light_of(scene_, effects);
@@ -430,7 +423,7 @@ void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& 
   parallel_for(rows, kRowsOfBand, [&](std::size_t begin, std::size_t end) {
     const auto first = static_cast<int>(begin), last = static_cast<int>(end);
     if (mapped_ && effects.maps) add_mapped(gbuffer, first, last, effects, weight, rgba);
-    if (!(with_textures || dims_)) return;
+    if (!textured_) return;
     const SeenBand& band = kept->band(
         begin / kRowsOfBand, [&](SeenBand& unknown) { see(gbuffer, first, last, places, effects, scale, unknown); });
     float* pixel = rgba.pixel(0, first);
@@ -439,7 +432,7 @@ void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& 
       pixel += rgba.channels;
     }
     for (const SeenBand::Bin& bin : band.bins)
-      if (with_textures && !bin.points.empty()) shade(gbuffer, bin, places, light, effects.placed, weight, rgba);
+      if (!bin.points.empty()) shade(gbuffer, bin, places, light, effects.placed, weight, rgba);
     kept->done(begin / kRowsOfBand);
   });
 }

@@ -1,6 +1,6 @@
 // The surface layer holds what the lobe model of a part cannot show: textures of generalized cosine lobes, and the
-// colors of a color map under directional lights. It is added to a picture pixel by pixel on the processor, unless the
-// engine that drew the rest draws the textures too. goniochrome-theory(7), SPATIALLY VARYING SURFACES, Drawing.
+// colors of a color map under directional lights. It is added to a picture pixel by pixel on the processor.
+// goniochrome-theory(7), SPATIALLY VARYING SURFACES, Drawing.
 #pragma once
 
 #include <array>
@@ -63,22 +63,17 @@ class SurfaceLayer {
   // Whether a paint is seen through a texture, so that the picture beneath the layer is dimmed. It must then hold one
   // sample alone.
   bool dims() const { return dims_; }
-  // The most textures that a part has.
-  std::size_t depth() const { return layouts_.size(); }
   bool mapped() const { return mapped_; }
   const PartSurface& surface(int part) const { return surfaces_[static_cast<std::size_t>(part)]; }
   brdf::CriticalAngle treatment() const { return treatment_; }
   // No other layer has it.
   std::uint64_t id() const { return id_; }
-  // The textures as the kernel and the programs of OpenGL have them, and then the mean texel of each; null where there
-  // are none.
+  // The textures, and then the mean texel of each; null where there are none.
   const SbrdfShader* shader() const { return shader_.get(); }
-  // Those of them that are shown.
-  std::vector<std::size_t> drawn(const Effects& effects) const;
   // The most lobes of a texture.
   int lobes() const;
 
-  // What a point shows of one of its textures: the number for shader(), its place there (as it is, and with the
+  // What a point shows of one of its textures: the number, its place there (as it is, and with the
   // repetition) and the probes of it, and the part of what is seen.
   struct Shown {
     std::size_t number = 0;
@@ -113,12 +108,11 @@ class SurfaceLayer {
   // Adds `weight` times the layer, as far as the effects have it, to the RGB of every pixel; a part whose texture is
   // left out shows its mean texel. `places` are those of the G-buffer. Of a color map it adds the difference to what
   // the lobe model shows of the same light, gloss apart. What is in the picture is dimmed where textures cover it.
-  // Where an engine drew the textures, `with_textures` is false.
   // With the effect texture_filter, the weight is also the part of its pixel that a sample stands for.
   // What the pixels show of textures is taken from `kept` as far as it is there, and left there, if it is not null; the
   // caller lets it forget what belongs to another G-buffer. Bit-identical for any number of threads.
   void add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects, float weight,
-           image::Image& rgba, bool with_textures = true, SeenPixels* kept = nullptr) const;
+           image::Image& rgba, SeenPixels* kept = nullptr) const;
 
   // The color map's part at one point: radiance under the scene's lights less that of the paint's flake lobes, drawn
   // with the effect `coat` or without it.

@@ -54,6 +54,7 @@ std::string shader_gaps(const render::Plan& plan) {
   const auto gap = [&](bool shown, const char* effect, const char* what) {
     if (shown) gaps += fmt::format("//   {}: {}\n", effect, what);
   };
+  gap(effects.texture, "texture", "surfaces of lobes, shaded on the processor");
   gap(effects.maps, "travel", "color maps under lights, evaluated on the processor");
   gap(effects.rays.shadow, "shadow", "light that the mesh takes from itself, traced by rays");
   gap(effects.rays.self, "self", "the mesh in its own mirror and gloss, traced by rays");

@@ -13,7 +13,6 @@
 #include "render/internal/coat_stretch.h"
 #include "render/page_weights.h"
 #include "render/scene_effects.h"
-#include "render/surface_layer.h"
 
 namespace goniochrome::render {
 
@@ -82,70 +81,17 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
     if (sampler.starts_with("tilted_")) upload(scene.env->lobe(exponent)->map, sampler);
   }
   effects_ = effects;
-  GONIO_TRY(upload_textures(scene));
   const int units = gl_->integer(GL_MAX_TEXTURE_IMAGE_UNITS);
   const std::size_t needed = 2 + (effects.anisotropy ? 1 : 0) + (tilt_exponents_.empty() ? 0 : 1) +
-                             (effects.discs() ? 1 : 0) + (finds_lamps(effects) ? 1 : 0) + cubes_.size() +
-                             (layers_.empty() ? 0 : layers_.size() + 3);
+                             (effects.discs() ? 1 : 0) + (finds_lamps(effects) ? 1 : 0) + cubes_.size();
   if (static_cast<int>(needed) > units) {
     return input_error(
-        "the paints use {} lobes and the mesh wears {} textures, but OpenGL has only {} texture units: fit the paints "
-        "to one common basis, or take --engine cpu",
-        effects.lobes.size(), layers_.size(), units);
+        "the paints use {} lobes, but OpenGL has only {} texture units: fit the paints to one common basis, or take "
+        "--engine cpu",
+        effects.lobes.size(), units);
   }
   load_paints(scene);
   return gl_->status("uploading the scene");
-}
-
-void GlEngine::delete_textures() {
-  for (const auto& [sampler, texture] : layers_) gl_->DeleteTextures(1, &texture);
-  layers_.clear();
-  for (GLuint* texture : {&lobe_maps_, &lobe_horizon_, &places_}) gl_->DeleteTextures(1, texture), *texture = 0;
-}
-
-GLuint GlEngine::layered(const TextureLayers& layers) {
-  GLuint texture = 0;
-  gl_->GenTextures(1, &texture);
-  gl_->BindTexture(GL_TEXTURE_2D_ARRAY, texture);
-  gl_->TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, layers.width, layers.height, layers.layers, 0, GL_RGBA, GL_FLOAT,
-                  layers.rgba.data());
-  gl_->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  gl_->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  return texture;
-}
-
-Result<void> GlEngine::upload_textures(const Scene& scene) {
-  delete_textures();
-  layer_ = nullptr;
-  const TextureProgram program = texture_program(scene, effects_);
-  if (!program.any()) return {};
-  layer_ = scene.layer;
-  const SbrdfShader& shader = *layer_->shader();
-  const int most = gl_->integer(GL_MAX_TEXTURE_SIZE);
-  const auto fits = [&](int columns, int rows, const char* what) -> Result<void> {
-    if (columns <= most && rows <= most) return {};
-    return input_error("{} of {} x {} texels are more than OpenGL holds ({}): take --engine cpu", what, columns, rows,
-                       most);
-  };
-  const auto add = [&](const std::string& sampler, const TextureLayers& layers) -> Result<void> {
-    GONIO_TRY(fits(layers.width, layers.height, "textures"));
-    layers_.emplace_back(sampler, layered(layers));
-    return {};
-  };
-  std::size_t i = 0;
-  for (const std::size_t number : layer_->drawn(effects_)) {
-    GONIO_TRY(add(fmt::format("texture_{}", i), texture_layers(shader.packed(number))));
-    const TextureProgram::Texture& texture = program.textures[i];
-    if (!texture.levels.empty())
-      GONIO_TRY(add(fmt::format("levels_{}", i), level_layers(shader, number, effects_.texture_lobes, texture)));
-    ++i;
-  }
-  if (program.cubes.empty()) return {};
-  const FloatTexture maps = lobe_map_texture(shader), horizon = lobe_horizon_texture(shader);
-  GONIO_TRY(fits(maps.columns, maps.rows, "maps of the textures' lobes"));
-  lobe_maps_ = gl_->float_texture(maps.columns, maps.rows, maps.rgba.data());
-  lobe_horizon_ = gl_->float_texture(horizon.columns, horizon.rows, horizon.rgba.data());
-  return {};
 }
 
 void GlEngine::upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts) {
@@ -191,10 +137,6 @@ void GlEngine::set_lamps() {
     const auto at = [&](const char* name) {
       return gl_->GetUniformLocation(program_, fmt::format("{}[{}]", name, i).c_str());
     };
-    if (layer_ != nullptr) {
-      const double variance = 0.25 * lights_[i].radius_rad * lights_[i].radius_rad;
-      gl_->Uniform1f(at("light_variance"), static_cast<float>(variance));
-    }
     if (discs_ != 0) gl_->set(program_, fmt::format("light_disc[{}]", i), disc_uniform(lights_[i]));
     if (placed_.empty()) continue;
     const PlacedLamp& lamp = placed_[i];
@@ -234,10 +176,6 @@ Result<void> GlEngine::resize(int width, int height) {
 Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, image::Image&) {
   const Rasterizer& seen = *sight.rasterized(sample);
   GONIO_TRY(resize(seen.width(), seen.height()));
-  if (layer_ != nullptr) {
-    gl_->DeleteTextures(1, &places_);
-    places_ = layered(place_layers(*layer_, effects_, *sight.gbuffer(sample), sight.places(sample), gain));
-  }
   if (mesh_ != nullptr) upload_positions(*sight.gbuffer(sample));
   gain_ = gain;
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_);
@@ -262,12 +200,6 @@ Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, ima
   if (discs_ != 0) bind("discs", GL_TEXTURE_2D, discs_);
   if (mesh_ != nullptr) bind("positions", GL_TEXTURE_2D, positions_);
   for (const auto& [sampler, texture] : cubes_) bind(sampler, GL_TEXTURE_CUBE_MAP, texture);
-  if (layer_ != nullptr) {
-    bind("places", GL_TEXTURE_2D_ARRAY, places_);
-    for (const auto& [sampler, texture] : layers_) bind(sampler, GL_TEXTURE_2D_ARRAY, texture);
-    if (lobe_maps_ != 0)
-      bind("lobe_maps", GL_TEXTURE_2D, lobe_maps_), bind("lobe_horizon", GL_TEXTURE_2D, lobe_horizon_);
-  }
   gl_->ActiveTexture(GL_TEXTURE0);
   set_lamps();
   if (effects_.background == Background::kColor) gl_->set(program_, "background", background_color_);

@@ -8,7 +8,6 @@
 #include "brdf/ward.h"
 #include "render/engine.h"
 #include "render/gl/gl.h"
-#include "render/gl/texture_shader.h"
 #include "render/internal/maps.h"
 #include "render/internal/placed_lamps.h"
 #include "render/internal/product_forms.h"
@@ -33,16 +32,12 @@ class GlEngine : public Engine {
   // Samples are summed in OpenGL; finish() reads their sum back and applies the gain.
   Result<void> shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) override;
   void finish(image::Image& rgba) override;
-  bool shades_textures() const override { return true; }
 
  private:
   Result<void> resize(int width, int height);
   void upload_discs();
   void upload_positions(const Gbuffer& gbuffer);
   void set_lamps();
-  Result<void> upload_textures(const Scene& scene);
-  void delete_textures();
-  GLuint layered(const TextureLayers& layers);
   void upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts);
   void upload_tilted(const Scene& scene);
   void upload(const envmap::CubeMap& map, const std::string& sampler);
@@ -52,10 +47,8 @@ class GlEngine : public Engine {
   ProductForms forms_;
   std::string text_;
   GLuint program_ = 0, weights_ = 0, tilts_ = 0, tilted_ = 0, discs_ = 0, no_vertices_ = 0, texture_ = 0, target_ = 0;
-  std::vector<std::pair<std::string, GLuint>> cubes_;   // by the name of their sampler
-  std::vector<std::pair<std::string, GLuint>> layers_;  // of textures, by the name of their sampler
-  GLuint lobe_maps_ = 0, lobe_horizon_ = 0, places_ = 0, positions_ = 0;
-  const SurfaceLayer* layer_ = nullptr;
+  std::vector<std::pair<std::string, GLuint>> cubes_;  // by the name of their sampler
+  GLuint positions_ = 0;
   std::vector<Light> lights_;
   std::vector<PlacedLamp> placed_;
   const mesh::Mesh* mesh_ = nullptr;  // which lamps at a place need

@@ -168,16 +168,15 @@ std::string shading_vertex_shader() {
 }
 
 std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
-                                    const std::vector<double>& tilted, bool projected_ground,
-                                    const TextureProgram& textures) {
+                                    const std::vector<double>& tilted, bool projected_ground) {
   const bool lit_lobes = effects.single_lights() > 0 && !effects.lobes.empty();
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
   // 1. What the program is given, and the functions that it needs.
   std::string text = std::string(kHead) + "// goniochrome-theory(7), RENDERING\n";
-  text += uniforms(effects) + tilt_uniforms(effects, tilted) + texture_uniforms(textures, effects) + kRays +
-          "layout(location = 0) out vec4 color;\n" + kWeight + placed_lamp_functions(effects, textures.any());
-  if (effects.reflection && (product == Product::kOperator || effects.single_lights() > 0 || textures.any()))
+  text += uniforms(effects) + tilt_uniforms(effects, tilted) + kRays + "layout(location = 0) out vec4 color;\n" +
+          kWeight + placed_lamp_functions(effects);
+  if (effects.reflection && (product == Product::kOperator || effects.single_lights() > 0))
     text += reflection_function(op);
   if (effects.environment && product == Product::kForms)
     text += forms_functions(forms, effects.background == Background::kEnvironment);
@@ -187,7 +186,7 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   if (effects.single_lights() > 0 && effects.discs())
     text += disc_functions(effects.lobes.size()) + disc_weights(effects);
   if (!effects.lobes.empty()) text += lobe_functions(effects, product);
-  text += tilt_function(effects, tilted, product) + texture_function(textures, effects);
+  text += tilt_function(effects, tilted, product);
   projected_ground = projected_ground && effects.background == Background::kEnvironment;
   if (projected_ground) text += kProjectedGround;
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
@@ -198,12 +197,11 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   text += tilt_frame(effects);
   if (effects.environment) text += environment_terms(effects, product, !tilted.empty());
   if (effects.single_lights() > 0) text += light_terms(effects);
-  return text + texture_terms(textures) + "  color = vec4(radiance, 1.0);\n}\n";
+  return text + "  color = vec4(radiance, 1.0);\n}\n";
 }
 
 std::string shading_fragment_shader(const Scene& scene, const Effects& effects) {
-  return shading_fragment_shader(effects, scene.reflection, tilt_exponents(scene, effects), false,
-                                 texture_program(scene, effects));
+  return shading_fragment_shader(effects, scene.reflection, tilt_exponents(scene, effects));
 }
 
 std::string for_opengl_es(const std::string& program) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/effects.h"
-#include "render/gl/texture_shader.h"
+#include "render/scene.h"
 
 namespace goniochrome::render {
 
@@ -17,9 +17,8 @@ std::string shading_vertex_shader();
 // the point above the ground from which the environment was seen, and ground_drop how far below that the ground lies; 0
 // for no ground. goniochrome-theory(7), PATHS, Ground.
 std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
-                                    const std::vector<double>& tilted, bool projected_ground = false,
-                                    const TextureProgram& textures = {});
-// That of a scene, with its tilted lobes and its textures.
+                                    const std::vector<double>& tilted, bool projected_ground = false);
+// That of a scene, with its tilted lobes. Textures are added by the processor.
 std::string shading_fragment_shader(const Scene& scene, const Effects& effects);
 
 // One of these programs for OpenGL ES 3, which is what WebGL 2 draws with: it differs in its head alone. That of the

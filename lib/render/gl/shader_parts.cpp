@@ -163,15 +163,15 @@ bool finds_lamps(const Effects& effects) {
   return effects.placed && effects.lights > 0;
 }
 
-std::string placed_lamp_functions(const Effects& effects, bool variances) {
+std::string placed_lamp_functions(const Effects& effects) {
   if (!finds_lamps(effects)) return {};
-  std::string text = fmt::format(
+  return fmt::format(
       R"(
 uniform sampler2D positions;  // of what is seen, from the middle of the mesh
 uniform vec4 lamp_place[{0}];  // from there; the square of the distance of light_white, 0: far away
 uniform vec2 lamp_size[{0}];  // squares of the distance within which it grows no brighter, and of the sphere's radius
 vec4 lamps[{0}];  // as they are seen here: direction, and light relative to light_white
-{1}void see_lamps() {{
+void see_lamps() {{
   vec3 position = texelFetch(positions, ivec2(gl_FragCoord.xy), 0).xyz;
   for (int i = 0; i < {0}; ++i) {{
     vec3 to = lamp_place[i].xyz - position;
@@ -179,15 +179,10 @@ vec4 lamps[{0}];  // as they are seen here: direction, and light relative to lig
     bool far = lamp_place[i].w == 0.0;
     lamps[i] = far ? vec4(light_direction[i], 1.0)
                    : vec4(to * inversesqrt(max(squared, 1e-30)), lamp_place[i].w / distance2);
+  }}
+}}
 )",
-      effects.single_lights(), variances ? fmt::format("float lamp_variance[{}];\n", effects.single_lights()) : "");
-  if (variances)
-    text += fmt::format(R"(    if (i >= {}) continue;
-    float sine2 = far ? 0.0 : min(lamp_size[i].y / distance2, 1.0), radius = atan(sqrt(sine2), sqrt(1.0 - sine2));
-    lamp_variance[i] = far ? light_variance[i] : 0.25 * radius * radius;
-)",
-                        effects.lights);
-  return text + "  }\n}\n";
+      effects.single_lights());
 }
 
 std::string placed_lamp_start(const Effects& effects) {

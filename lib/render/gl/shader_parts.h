@@ -68,9 +68,8 @@ bool lit_gloss(const Effects& effects);
 std::string disc_functions(std::size_t lobes);
 
 // Lamps at a place: `lamps` holds the direction of each and its light relative to light_white, as they are at a point,
-// once see_lamps() was called. The texts are empty where every lamp is far away. With `variances`, lamp_variance holds
-// those of the discs, which textures ask for.
-std::string placed_lamp_functions(const Effects& effects, bool variances);
+// once see_lamps() was called. The texts are empty where every lamp is far away.
+std::string placed_lamp_functions(const Effects& effects);
 std::string placed_lamp_start(const Effects& effects);
 // What the program has for lamp i: its direction, and the white that faces it.
 const char* lamp_direction(const Effects& effects);

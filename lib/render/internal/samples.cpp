@@ -26,7 +26,7 @@ class Samples {
   void add_layer(int sample, image::Image& picture) {
     if (scene_.layer != nullptr && !engine_.shades_layer())
       scene_.layer->add(*sight_.gbuffer(sample), sight_.places(sample), effects_, gain_, picture,
-                        !engine_.shades_textures(), sight_.seen_pixels(sample));
+                        sight_.seen_pixels(sample));
   }
 
  private:
@@ -39,28 +39,22 @@ class Samples {
 
 }  // namespace
 
-// Textures dim what lies beneath them in one sample, before it is added to the others. An engine that draws textures
-// has dimmed what it drew, so that only what comes after it is dimmed by itself.
+// Textures dim what lies beneath them in one sample, before it is added to the others.
 Result<void> take_samples(Sight& sight, Engine& engine, const Scene& scene, const Effects& effects, int first,
                           int count, image::Image& picture) {
   Samples samples(sight, engine, scene, effects, count);
   const bool dims = scene.layer != nullptr && scene.layer->dims() && !engine.shades_layer();
-  const bool together = !dims || engine.shades_textures();
-  if (together) GONIO_TRY(samples.shade(first, count, picture));
   if (!dims) {
+    GONIO_TRY(samples.shade(first, count, picture));
     for (int i = first; i < first + count; ++i) samples.add_glints_of(i, picture);
     for (int i = first; i < first + count; ++i) samples.add_layer(i, picture);
   }
   image::Image one;
   for (int i = first; dims && i < first + count; ++i) {
-    if (together) {
-      one = {picture.width, picture.height, 4, std::vector<float>(picture.data.size(), 0.0F), {}};
-    } else {
-      GONIO_TRY(samples.shade(i, 1, one));
-    }
+    GONIO_TRY(samples.shade(i, 1, one));
     samples.add_glints_of(i, one);
     samples.add_layer(i, one);
-    if (i == first && !together) {
+    if (i == first) {
       picture = one;
       continue;
     }

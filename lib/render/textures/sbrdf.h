@@ -96,15 +96,8 @@ class SbrdfShader {
   // called for, and that may be on many threads.
   FilterProbes probes(std::size_t texture, const TexturePlace& place, double scale) const;
 
-  // What the programs of OpenGL read: the textures in the order in which they were given, the maps that their lobes
-  // number, the map of the diffuse part (null without an environment), and the table of SbrdfShading::horizon.
-  // Levels have these lobes of the texture alone, since theirs stand for several.
+  // As the kernel reads it. Levels have these lobes of the texture alone, since theirs stand for several.
   const PackedTexture& packed(std::size_t texture, int level = 0, std::uint32_t lobes = ~0U) const;
-  int levels(std::size_t texture) const;  // coarser ones
-  const std::vector<LobeMap>& maps() const { return maps_; }
-  const LobeMap& diffuse() const { return diffuse_; }
-  const std::vector<float>& horizon() const { return horizon_; }
-  int horizon_rows() const { return static_cast<int>(horizon_exponents_.size()); }
 
   // Shades up to kPointsAtOnce points that were put.
   class Batch {
@@ -134,6 +127,7 @@ class SbrdfShader {
   };
 
  private:
+  int levels(std::size_t texture) const;  // coarser ones
   void make_maps(const envmap::PrefilteredEnvironment& env, const MipCube* mip, double low, double high);
   void make_horizon(double low, double high);
   PackedTexture pack(const brdf::SbrdfTexture& texture) const;

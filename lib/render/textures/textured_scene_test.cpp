@@ -39,47 +39,6 @@ TEST_F(TexturedScene, EnginesAgree) {
   }
 }
 
-// The program of OpenGL draws textures itself. A picture without them is the control.
-TEST_F(TexturedScene, OpenGlDrawsWhatTheProcessorDraws) {
-  scene.reflection = color::iso_rgb_operator();
-  const std::size_t half = mesh.triangles.size() / 2;
-  mesh.parts = {{"upper", "", 0, half}, {"lower", "", half, mesh.triangles.size() - half}};
-  scene.paints = {{}, {}};
-  const brdf::SbrdfTexture one = {1, 1, 1, {0.1F, 0.05F, 0.02F, 1, 0, 0.5F, 0.4F, 0.3F, -1.02F, -1.02F, 1, 40}};
-  layer = std::make_unique<SurfaceLayer>(scene, std::vector<PartSurface>{{&texture, 6, nullptr}, {&one, 1, nullptr}},
-                                         brdf::CriticalAngle::kSlide);
-  scene.layer = layer.get();
-  const auto worst = [&](const Frame& a, const Frame& b) {
-    double most = 0;
-    for (std::size_t i = 0; i < a.picture.data.size(); i += 4) {
-      const float *p = &a.picture.data[i], *q = &b.picture.data[i];
-      most = std::max(most, seen_difference({p[0], p[1], p[2]}, {q[0], q[1], q[2]}, 1));
-    }
-    return most;
-  };
-  Light lamp{normalized({0.4, 0.5, 1}), {1, 0.8, 0.6}};
-  lamp.radius_rad = 0.1;
-  for (const bool with_environment : {true, false}) {
-    scene.env = with_environment ? &env : nullptr;
-    for (const bool lit : {true, false}) {
-      if (!lit && !with_environment) continue;
-      scene.lights.clear();
-      if (lit) scene.lights = {lamp, {normalized({1, 0.2, 0.1}), {0.1, 0.2, 0.5}}};
-      for (const char* left_out : {"", "lobe", "texture", "operator"}) {
-        Effects effects = effects_of(scene);
-        effects.texture_filter = with_environment;
-        if (left_out == std::string("lobe")) effects.texture_lobes = 5;
-        if (left_out == std::string("texture")) effects.texture = false;
-        if (left_out == std::string("operator")) effects.reflection = false;
-        const Frame gl = drawn("gl", effects), cpu = drawn("cpu", effects);
-        EXPECT_LT(worst(gl, cpu), 0.05) << with_environment << lit << left_out;
-        effects.texture_lobes = 2;
-        EXPECT_GT(worst(gl, drawn("gl", effects)), 1) << with_environment << lit << left_out;
-      }
-    }
-  }
-}
-
 // A coated paint with a mirror, and a map over it.
 class Alpha : public TexturedScene {
  protected:
@@ -148,8 +107,8 @@ TEST_F(Alpha, AShareOfThePaintIsSeen) {
   }
 }
 
-// Three facets of a map, letters over them and a second, narrower map over all: the program of OpenGL shows what the
-// processor shows, and the certificate agrees. The order turned around is the control.
+// Three facets of a map, letters over them and a second, narrower map over all: they lie over what OpenGL drew as over
+// what the processor drew, and the certificate agrees. The order turned around is the control.
 TEST_F(Alpha, MapsLieOverOneAnother) {
   const brdf::SbrdfTexture letters = covering([](int column) {
     return column % 3 == 0 ? 0.0 : column % 3 == 1 ? 1.0 : 0.4;
@@ -217,27 +176,6 @@ TEST_F(Alpha, MinifiedMapsCoverTheirMean) {
   const double left = difference(truth, with_filter(true, 1)), aliased = difference(truth, with_filter(false, 1));
   EXPECT_LT(left, 1.5);
   EXPECT_GT(aliased, 4 * left);
-}
-
-TEST_F(TexturedScene, TheProgramHoldsItsLobes) {
-  scene.lights = {{normalized({0.4, 0.5, 1}), {1, 0.8, 0.6}}};
-  dress();
-  auto renderer = Renderer::create();
-  ASSERT_TRUE(renderer.ok());
-  ASSERT_TRUE(renderer->load(scene, "gl").ok());
-  const std::string program = renderer->shader();
-  for (const char* word :
-       {"sampler2DArray texture_0", "lobe_maps", "lobe_horizon", "vec3 textured(", "light_variance", "levels_0"})
-    EXPECT_THAT(program, testing::HasSubstr(word));
-  EXPECT_THAT(for_opengl_es(program), testing::HasSubstr("precision highp sampler2DArray"));
-  // Mesa compiles programs of OpenGL ES 3 as well.
-  const auto gl = GlContext::create();
-  ASSERT_TRUE(gl.ok());
-  const auto made = gl->program(for_opengl_es(shading_vertex_shader()), for_opengl_es(program));
-  EXPECT_TRUE(made.ok()) << made.error().message;
-  scene.layer = nullptr;
-  ASSERT_TRUE(renderer->load(scene, "gl").ok());
-  EXPECT_THAT(renderer->shader(), testing::Not(testing::HasSubstr("texture_0")));
 }
 
 // Lights are exact: what is left is single precision, and with footprints the difference of two grids of places.
