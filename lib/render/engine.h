@@ -80,7 +80,7 @@ struct EngineInfo {
   bool is_planned;
   bool needs_texels;  // It sums the image that the environment was made from: Scene::texels.
   bool traces_rays;   // It sees the mesh in the way of light: it draws shadows, floors and parts that shine.
-  bool needs_opengl;  // Without OpenGL it cannot shade; other engines then shade what rays find visible.
+  bool needs_opengl;  // It shades what OpenGL rasterizes; other engines shade what rays find visible, too.
   bool needs_mesh;    // It cannot shade a G-buffer that comes from a file. All G-buffers that it gets have triangles.
   bool draws_placed_lamps;  // Lamps may stand at a place, and G-buffers then have triangles.
   std::unique_ptr<Engine> (*make)(Sight& sight);

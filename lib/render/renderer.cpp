@@ -444,10 +444,6 @@ std::vector<std::string> Renderer::remarks() const {
   return state_->engine != nullptr ? state_->engine->remarks() : std::vector<std::string>();
 }
 
-bool Renderer::traces() const {
-  return !state_->open_gl && !state_->given;
-}
-
 void Renderer::set_effort(Effort effort) {
   state_->effort_asked = std::move(effort);
 }

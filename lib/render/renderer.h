@@ -1,6 +1,6 @@
-// The renderer draws scenes into pictures of scene-linear radiance. OpenGL rasterizes what a view shows, or rays find
-// it; then one of the engines shades it. The renderer keeps what the next picture can use again: the mesh in
-// OpenGL, the G-buffers of the last view, and the engines. goniochrome-theory(7), RENDERING.
+// The renderer draws scenes into pictures of scene-linear radiance. Rays find what a view shows, or OpenGL rasterizes
+// it for the engine gl; then one of the engines shades it. The renderer keeps what the next picture can use again: the
+// mesh in OpenGL, the G-buffers of the last view, and the engines. goniochrome-theory(7), RENDERING.
 #pragma once
 
 #include <memory>
@@ -54,13 +54,14 @@ struct RaySetup {
 
 class Renderer {
  public:
-  // Error: no such OpenGL on this machine.
+  // With OpenGL, for any engine. Error: no such OpenGL on this machine.
   static Result<Renderer> create(OpenGlBy by = OpenGlBy::kSoftware);
   // A renderer without mesh and OpenGL, which shades this G-buffer again and again. Every view that it draws shows the
   // G-buffer, and the camera of the view is ignored; of the mesh of the scene only the parts are used. Its other
   // functions fail for engines that need the mesh, for textures, and for more than one sample.
   static Renderer shading(std::shared_ptr<const Gbuffer> gbuffer);
-  // A renderer without OpenGL: rays find what a view shows, and the floor of the scenes that it draws is known to them.
+  // Without OpenGL, for all engines but gl: rays find what a view shows, and the floor of the scenes that it draws is
+  // known to them.
   static Renderer tracing(std::optional<Ground> ground = {});
   Renderer(Renderer&&) noexcept;
   ~Renderer();
@@ -100,8 +101,6 @@ class Renderer {
   std::string opengl_library() const;
   // What the engine has to say about the scene that was loaded.
   std::vector<std::string> remarks() const;
-  // Whether rays find what is visible.
-  bool traces() const;
   // The program by which the engine gl shades the scene and effects loaded, whatever engine they were loaded for.
   std::string shader() const;
 

@@ -5,15 +5,6 @@
 
 namespace goniochrome::tool {
 
-namespace {
-
-// From this many triangles on, rays find what is visible unless OpenGL is asked for. For 4 million triangles a tree of
-// rays is built in 1 s on two cores, and a view of 1280x720 takes 0.1 s; OSMesa rasterizes such a view in 0.7 s, five
-// times for a picture of 4 samples a pixel.
-constexpr std::size_t kTracedFrom = 1000000;
-
-}  // namespace
-
 Result<render::Renderer> make_renderer(const Options& options, const Request& request, const Stage& stage,
                                        cli::Session& session) {
   render::Effort effort;
@@ -31,13 +22,11 @@ Result<render::Renderer> make_renderer(const Options& options, const Request& re
   if (stage.gbuffer) return ready(render::Renderer::shading(stage.gbuffer));
   if (request.engine != nullptr && request.engine->traces_rays)
     return ready(render::Renderer::tracing(stage.scene.ground));
-  const bool needs_opengl = request.engine != nullptr && request.engine->needs_opengl;
-  if (stage.mesh.triangles.size() >= kTracedFrom && !needs_opengl) return ready(render::Renderer::tracing());
-  auto renderer = render::Renderer::create(options.gpu ? render::OpenGlBy::kGpu : render::OpenGlBy::kSoftware);
-  if (renderer.ok()) return ready(*std::move(renderer));
-  if (needs_opengl) return renderer;
-  session.say(fmt::format("{}: rays find what is visible", renderer.error().message));
-  return ready(render::Renderer::tracing());
+  // Rays find what is visible, as fast as OSMesa does: 1280x720 of 58,000 triangles in 105 ms of a frame beside 94.
+  if (request.engine == nullptr || !request.engine->needs_opengl) return ready(render::Renderer::tracing());
+  GONIO_ASSIGN(render::Renderer renderer,
+               render::Renderer::create(options.gpu ? render::OpenGlBy::kGpu : render::OpenGlBy::kSoftware));
+  return ready(std::move(renderer));
 }
 
 void tell_visibility(const render::Gbuffer& gbuffer, const mesh::Mesh& mesh, cli::Session& session) {
@@ -92,7 +81,6 @@ void tell_opengl(const render::Renderer& renderer, cli::Session& session) {
   session.results()["opengl"] = or_null(device);
   session.results()["opengl_library"] = or_null(renderer.opengl_library());
   if (!device.empty()) session.explain(fmt::format("OpenGL: {}, by {}\n", device, renderer.opengl_library()));
-  if (renderer.traces()) session.explain("rays find what is visible\n");
 }
 
 std::string explanation(const Options& options, const mesh::Mesh& mesh, const DressedMesh& dress) {
