@@ -33,7 +33,7 @@ folder() {
   run folder
   echo "$output"
   [ "$status" -eq 0 ]
-  [ "$(jq -c '[.results.compared, .results.failed, .results.judgements[0].sample]' results/a.csv.json)" = '[1,0,"good"]' ]
+  jq -e '[.results.compared, .results.failed, .results.judgements[0].sample] == [1,0,"good"]' results/a.csv.json
   [ "$(ls results | xargs)" = "a.csv.html a.csv.json a.csv.paints.xml" ]
 }
 

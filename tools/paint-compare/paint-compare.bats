@@ -53,7 +53,7 @@ field() {
   run ! paint-compare -q -s std.paints.xml -l limits.csv dark.paints.xml -o verdict.jsonl --report report.json
   [ "$(jq -r '.verdict, .failures[0].quantity' verdict.jsonl | xargs)" = "fail dL" ]
   [ "$(jq -c '.results.judgements[0]' report.json)" = "$(cat verdict.jsonl)" ]
-  [ "$(jq '.results.failed' report.json)" = 1 ]
+  jq -e '.results.failed == 1' report.json
   run ! paint-compare -q -s std.paints.xml -l limits.csv dark.paints.xml -o judged.paints.xml
   grep -q '<verdict xmlns="urn:goniochrome:quality:1" standard="batch" result="fail">45as15: dL -2.4, limit -1.5: too dark near gloss</verdict>' judged.paints.xml
   paint-stats -q judged.paints.xml

@@ -23,7 +23,7 @@ tweak() { paint-edit -q one.paints.xml --image scene.exr -o out.paints.xml --rep
   tweak --at-pixel 5,5 --lighter 6
   [ "$(end face)" = "66 40 20 " ]
   [ "$(end flop)" = "20 10 0 " ]
-  [ "$(jq -r '.results.pixels[0].aspecular_deg' r.json)" = 15 ]
+  jq -e '.results.pixels[0].aspecular_deg == 15' r.json
   [ "$(jq -r '.results.pixels[0].option' r.json)" = --at-pixel ]
   # The curve at 45 deg is 1/4 face and 3/4 flop. The least changes that make 6 of it are 6/(1/16 + 9/16) times these.
   tweak --at-pixel 15,5 --lighter 6

@@ -33,8 +33,8 @@ gray() { # gray FILE W H BYTES...: a gray picture, bytes as octal numbers
   [ "$(channel m.exr diffuse.R 2 1)" = 0.062500000 ]
   [ "$(channel m.exr lobe0.n 0 0)" = 8.000000000 ]
   [ "$(channel m.exr lobe0.G 0 0)" = 0.500000000 ]
-  [ "$(jq -c '[.results.size, .results.lobes, .results.exponents, .results.surfaces[0].kind, .results.refitted_texels]' r.json)" = \
-    '[[3,2],1,[8,8],"paint",0]' ]
+  jq -e '[.results.size, .results.lobes, .results.exponents, .results.surfaces[0].kind, .results.refitted_texels]
+    == [[3,2],1,[8,8],"paint",0]' r.json
   [ "$(jq .results.albedo_max r.json)" != null ]
 }
 
@@ -49,18 +49,18 @@ gray() { # gray FILE W H BYTES...: a gray picture, bytes as octal numbers
   [ "$(channel turned.exr diffuse.R 1 0)" != "$(channel turned.exr diffuse.R 3 0)" ]
   [ "$(channel turned.exr diffuse.R 1 0)" = "$(channel turned.exr diffuse.R 1 3)" ]
   paint-sbrdf -q 'p.xml#dark,light,sharp' --stripe 0,0.25,0.5,0.75 --size 4x4 --report r.json -o three.exr
-  [ "$(jq -c '[.results.surfaces[].share]' r.json)" = '[0.5,0.25,0.25]' ]
+  jq -e '[.results.surfaces[].share] == [0.5,0.25,0.25]' r.json
   [ "$(channel three.exr diffuse.R 0 1)" = 0.125000000 ]
 }
 
 @test "gradients and mixtures of paints on one basis are exact and need no further lobe" {
   paint-sbrdf -q p.xml#dark p.xml#light --gradient --size 8x1 --report r.json -o m.exr
-  [ "$(jq -c '[.results.lobes, .results.refitted_texels]' r.json)" = '[1,0]' ]
+  jq -e '[.results.lobes, .results.refitted_texels] == [1,0]' r.json
   awk -v a="$(channel m.exr diffuse.R 0 0)" -v b="$(channel m.exr diffuse.R 7 0)" 'BEGIN { exit !(a < 0.08 && b > 0.23) }'
   paint-sbrdf -q p.xml#dark p.xml#light --mix 0.5 --size 1x1 -o one.exr
   [ "$(channel one.exr lobe0.R 0 0)" = 0.750000000 ]
   paint-sbrdf -q p.xml --mix 0.25,0.5 --size 1x1 --report r.json -o three.exr
-  [ "$(jq -c '[.results.lobes, .results.exponents]' r.json)" = '[2,[8,64]]' ]
+  jq -e '[.results.lobes, .results.exponents] == [2,[8,64]]' r.json
   [ "$(channel three.exr lobe1.R 0 0)" = 1.000000000 ]
 }
 
@@ -76,14 +76,14 @@ gray() { # gray FILE W H BYTES...: a gray picture, bytes as octal numbers
   [ "$(channel d.exr diffuse.R 3 4)" = 0.250000000 ]
   [ "$(channel d.exr diffuse.R 1 4)" = 0.062500000 ]
   [ "$(channel d.exr diffuse.R 3 2)" = 0.062500000 ]
-  [ "$(jq '.results.surfaces[1].share' r.json)" = 0.125 ]
+  jq -e '.results.surfaces[1].share == 0.125' r.json
 }
 
 @test "pictures become the diffuse part, and their gloss comes from a mask" {
   printf 'P6\n1 1\n255\n\377\377\377' >white.ppm
   paint-sbrdf -q white.ppm --gloss 1 --mirror 256 --report r.json -o m.exr
   awk -v d="$(channel m.exr diffuse.G 0 0)" 'BEGIN { exit !(d > 0.3182 && d < 0.3185) }'
-  [ "$(jq -c '[.results.exponents, .results.surfaces[0].kind]' r.json)" = '[[256,256],"picture"]' ]
+  jq -e '[.results.exponents, .results.surfaces[0].kind] == [[256,256],"picture"]' r.json
   gray half.pgm 2 1 000 377
   paint-sbrdf -q white.ppm --gloss half.pgm --size 2x1 -o g.exr
   [ "$(channel g.exr lobe0.R 0 0)" = 0.000000000 ]
@@ -124,10 +124,10 @@ gray() { # gray FILE W H BYTES...: a gray picture, bytes as octal numbers
 
 @test "maps with other lobes stand side by side, and mixtures keep all lobes or as many as are asked for" {
   paint-sbrdf -q "$wood" "$TESTDATA/brushed.sbrdf.exr" p.xml#dark --mosaic 3 --size 9x3 --report r.json -o m.exr
-  [ "$(jq .results.lobes r.json)" = 3 ]
+  jq -e '.results.lobes == 3' r.json
   [ "$(channel m.exr diffuse.R 8 0)" = 0.062500000 ]
   paint-sbrdf -q p.xml#dark p.xml#sharp --mix 0.5 --size 1x1 --lobes 1 --report r.json -o one.exr
-  [ "$(jq -c '[.results.lobes, .results.refitted_texels]' r.json)" = '[1,1]' ]
+  jq -e '[.results.lobes, .results.refitted_texels] == [1,1]' r.json
   awk -v n="$(channel one.exr lobe0.n 0 0)" 'BEGIN { exit !(n > 8 && n < 64) }'
   paint-sbrdf -q "$wood" --lobes 1 --size 64x64 --crop 4,4,8,8 --threads 1 -o a.exr
   paint-sbrdf -q "$wood" --lobes 1 --size 64x64 --crop 4,4,8,8 --threads 3 -o b.exr
@@ -138,22 +138,22 @@ gray() { # gray FILE W H BYTES...: a gray picture, bytes as octal numbers
   paint-sbrdf -q "$TESTDATA/nameplate.sbrdf.exr" --crop 0,0,1,1 -o along.exr
   paint-sbrdf -q along.exr --turn 40 -o askew.exr
   paint-sbrdf -q along.exr askew.exr --mix 0.5 --report r.json -o both.exr
-  [ "$(jq -c '[.results.lobes, .results.lobe_frames, .results.refitted_texels]' r.json)" = '[5,true,0]' ]  # the round lobe is the same in both
+  jq -e '[.results.lobes, .results.lobe_frames, .results.refitted_texels] == [5,true,0]' r.json  # the round lobe is the same in both
   # A half of each lobe, with the angle of its own surface.
   awk -v a="$(channel along.exr lobe0.R 0 0)" -v b="$(channel both.exr lobe0.R 0 0)" -v c="$(channel both.exr lobe0.c 0 0)" \
     -v d="$(channel both.exr lobe1.c 0 0)" 'BEGIN { exit !(b > 0.499 * a && b < 0.501 * a && (c - d) ^ 2 > 0.1) }'
   # Written and read again it is the same, and a quarter of a turn needs no further frames.
   paint-sbrdf -q both.exr --tile 2x1 --report r.json -o again.exr
-  [ "$(jq -c '[.results.lobe_frames, .results.refitted_texels]' r.json)" = '[true,0]' ]
+  jq -e '[.results.lobe_frames, .results.refitted_texels] == [true,0]' r.json
   for name in lobe0.R lobe1.R lobe0.c lobe1.s lobe1.n; do
     [ "$(channel again.exr $name 1 0)" = "$(channel both.exr $name 0 0)" ] || { echo "$name"; false; }
   done
   paint-sbrdf -q along.exr --turn 90 -o across.exr
   paint-sbrdf -q along.exr across.exr --mix 0.5 --report r.json -o cross.exr
-  [ "$(jq -c '[.results.lobe_frames, .results.refitted_texels]' r.json)" = '[false,0]' ]
+  jq -e '[.results.lobe_frames, .results.refitted_texels] == [false,0]' r.json
   # Where fewer lobes are asked for, one direction has to do.
   paint-sbrdf -q along.exr askew.exr --mix 0.5 --lobes 2 --report r.json -o few.exr
-  [ "$(jq -c '[.results.lobes, .results.lobe_frames, .results.refitted_texels]' r.json)" = '[2,false,1]' ]
+  jq -e '[.results.lobes, .results.lobe_frames, .results.refitted_texels] == [2,false,1]' r.json
   oiiotool both.exr --ch "$(oiiotool --info -v both.exr | grep -oP 'channel list: \K.*' | tr -d ' ' | sed 's/lobe1.s,*//; s/,$//')" -o part.exr
   refused 3 "give c and s of every lobe" paint-sbrdf part.exr
 }
@@ -164,7 +164,7 @@ gray() { # gray FILE W H BYTES...: a gray picture, bytes as octal numbers
     read -r y alpha diffuse <<<"$row"
     [ "$(channel m.exr alpha 1 "$y") $(channel m.exr diffuse.R 1 "$y")" = "$alpha $diffuse" ] || { echo "$y"; false; }
   done
-  [ "$(jq -c '[.results.alpha_mean, .results.surfaces[0].kind]' r.json)" = '[0.375,"nothing"]' ]
+  jq -e '[.results.alpha_mean, .results.surfaces[0].kind] == [0.375,"nothing"]' r.json
   paint-sbrdf -q m.exr --crop 1,1,1,2 --tile 2x1 -o cut.exr
   [ "$(channel cut.exr alpha 1 0) $(channel cut.exr alpha 1 1)" = "0.500000000 1.000000000" ]
   paint-sbrdf -q m.exr --size 2x2 -o half.exr
@@ -172,7 +172,7 @@ gray() { # gray FILE W H BYTES...: a gray picture, bytes as octal numbers
   paint-sbrdf -q m.exr p.xml#dark --mix 0.5 -o mixed.exr
   [ "$(channel mixed.exr alpha 0 0) $(channel mixed.exr alpha 0 2)" = "0.500000000 1.000000000" ]
   paint-sbrdf -q p.xml#light p.xml#dark --mix 0.5 --size 1x1 --report r.json -o all.exr
-  [ "$(jq .results.alpha_mean r.json)" = 1 ]
+  jq -e '.results.alpha_mean == 1' r.json
   run oiiotool --info -v all.exr
   [[ "$output" != *alpha* ]]
   oiiotool m.exr --mulc 2 -o wrong.exr

@@ -206,11 +206,11 @@ lobes_paint() {
   run --separate-stderr prefilter-envmap --for p.paints.xml --size 8 --explain --report r.json "$sky" -o out.env.exr
   [ "$status" -eq 0 ]
   [[ "$stderr" =~ "left out: 70: at most "[0-9.e-]+" of what any of 1 paints reflects, below the tolerance 0.001" ]]
-  [ "$(jq -c '[.results.lobes[].exponent]' r.json)" = "[1,6,900]" ]
-  [ "$(jq -c '[.results.left_out[].exponent]' r.json)" = "[70]" ]
+  jq -e '[.results.lobes[].exponent] == [1,6,900]' r.json
+  jq -e '[.results.left_out[].exponent] == [70]' r.json
   lobes_paint 6:0.2 mirror:0.5 >m.paints.xml
   prefilter-envmap -q --for m.paints.xml --size 8 --report r.json "$sky" -o out.env.exr
-  [ "$(jq -c '[.results.lobes[].exponent]' r.json)" = '[1,6,"mirror"]' ]
+  jq -e '[.results.lobes[].exponent] == [1,6,"mirror"]' r.json
   run prefilter-envmap --for absent.xml "$sky" -o x.env.exr
   [ "$status" -eq 3 ]
   run prefilter-envmap --for p.paints.xml -e 6 "$sky" -o x.env.exr

@@ -42,13 +42,13 @@ gltf() {
     run --separate-stderr render-osmesa --mesh scaled.obj $view -o scaled.exr --report scaled.json
     [ "$status" -eq 0 ]
     [[ "$stderr" =~ "are taken as $said (4." ]]
-    [ "$(jq .results.mesh.unit_m scaled.json)" = "$unit" ]
+    jq -e ".results.mesh.unit_m == $unit" scaled.json
   done <<<"1000 0.001 millimeters
 100 0.01 centimeters
 39.37 0.0254 inches"
   run --separate-stderr render-osmesa --mesh "$TESTDATA/speed-shape.obj" $view -o meters.exr --report meters.json
   [[ ! "$stderr" =~ "taken as" ]]
-  [ "$(jq .results.mesh.unit_m meters.json)" = 1 ]
+  jq -e '.results.mesh.unit_m == 1' meters.json
 }
 
 @test "glTF that requires what is not known here, USD and STEP are refused, with what to do" {

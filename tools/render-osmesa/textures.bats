@@ -32,10 +32,10 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
 @test "a mesh with texture coordinates uses them, and the report says so" {
   draw uv square.obj Square=four.sbrdf.exr
   [ "$(texel uv.exr 11 19) $(texel uv.exr 20 19) $(texel uv.exr 11 11)" = "red blue green" ]
-  [ "$(jq -c '.results.textures' uv.json)" = '[{"part":"Square","file":"four.sbrdf.exr","projection":"uv","width":null}]' ]
+  jq -e '.results.textures == [{"part":"Square","file":"four.sbrdf.exr","projection":"uv","width":null}]' uv.json
   draw planar square.obj Square=four.sbrdf.exr,project=planar
   [ "$(texel planar.exr 11 19) $(texel planar.exr 20 19) $(texel planar.exr 11 11)" = "red blue green" ]
-  [ "$(jq -c '.results.textures[0] | [.projection, .width]' planar.json)" = '["planar",2]' ]
+  jq -e '(.results.textures[0] | [.projection, .width]) == ["planar",2]' planar.json
 }
 
 @test "a mesh without texture coordinates gets a box, which is told" {
@@ -76,14 +76,14 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
   draw half cube.obj Cube=four.sbrdf.exr,project=planar,axis=z,scale=4,center=1,1,0
   # A texture of four units about the corner: what is seen is its lower left quarter.
   for place in "11 19" "20 19" "20 11"; do [ "$(texel half.exr $place)" = red ] || { echo "$place"; false; }; done
-  [ "$(jq '.results.textures[0].width' half.json)" = 4 ]
+  jq -e '.results.textures[0].width == 4' half.json
   draw turned cube.obj Cube=four.sbrdf.exr,project=planar,axis=z,turn=180
   [ "$(texel turned.exr 20 11) $(texel turned.exr 11 11) $(texel turned.exr 11 19)" = "red blue green" ]
   azimuth=180
   draw behind cube.obj Cube=four.sbrdf.exr,project=planar,axis=z
   [ "$(texel behind.exr 11 19) $(texel behind.exr 20 19)" = "red blue" ]
   draw twice cube.obj 'Cube=four.sbrdf.exr*2,project=planar,axis=z'
-  [ "$(jq '.results.textures[0].width' twice.json)" = 1 ]
+  jq -e '.results.textures[0].width == 1' twice.json
 }
 
 @test "a decal lies once and on one side" {
@@ -106,7 +106,7 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
   draw box cube.obj Cube=four.sbrdf.exr,project=box
   draw three cube.obj Cube=four.sbrdf.exr,project=triplanar
   oiiotool box.exr three.exr --fail 0.001 --diff
-  [ "$(jq -c '.results.textures[0] | [.projection, .width]' three.json)" = '["triplanar",2]' ]
+  jq -e '(.results.textures[0] | [.projection, .width]) == ["triplanar",2]' three.json
 }
 
 @test "a mixture of maps that are brushed askew looks as the mean of both, in every engine" {

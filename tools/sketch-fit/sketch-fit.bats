@@ -416,7 +416,7 @@ EOF
       else # the control: a point has no mirror image, by which no gloss and much gloss differ
         [ "$(result gloss_60_gu)" = null ]
         [ "$(result gloss_from)" = undetermined ]
-        [ "$(result gloss_range_gu)" = '[0,100]' ]
+        jq -e '.results.gloss_range_gu == [0, 100]' r.json
       fi
     done
   done
