@@ -31,7 +31,8 @@ BlockTree::BlockTree(const Environment& env) : env_(&env) {
     sheets_.push_back({0, env.width(), env.height(), {}});
   else
     for (int face = 0; face < 6; ++face) sheets_.push_back({face * env.width(), env.width(), env.width(), {}});
-  for (Sheet& sheet : sheets_) build(sheet);
+  const SolidAngles solid_angles(env.grid());
+  for (Sheet& sheet : sheets_) build(sheet, solid_angles);
 }
 
 // Children into their parent: sums add up, caps are wrapped.
@@ -60,7 +61,7 @@ BlockTree::Block BlockTree::merged(const Sheet::Level& finer, int column, int ro
   return block;
 }
 
-void BlockTree::build(Sheet& sheet) const {
+void BlockTree::build(Sheet& sheet, const SolidAngles& solid_angles) const {
   const auto half = [](int n) { return (n + 1) / 2; };
   for (int w = half(sheet.width), h = half(sheet.height);; w = half(w), h = half(h)) {
     Sheet::Level level = {w, h, std::vector<Block>(static_cast<std::size_t>(w) * h)};
@@ -69,14 +70,33 @@ void BlockTree::build(Sheet& sheet) const {
       for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row)
         for (int column = 0; column < w; ++column)
           level.blocks[static_cast<std::size_t>(row) * w + column] =
-              finer != nullptr ? merged(*finer, column, row) : block_of_texels(sheet, column, row);
+              finer != nullptr ? merged(*finer, column, row) : block_of_texels(sheet, solid_angles, column, row);
     });
     sheet.levels.push_back(std::move(level));
     if (w == 1 && h == 1) break;
   }
 }
 
-BlockTree::Block BlockTree::block_of_texels(const Sheet& sheet, int column, int row) const {
+// Of a cube's face, no point of a rectangle is farther than one of its corners.
+double BlockTree::radius_of_texels(const Vec3& axis, int left, int right, int top, int bottom) const {
+  const SphereGrid& grid = env_->grid();
+  double radius = 0;
+  if (grid.is_cube()) {
+    const int face = top / grid.width(), first = face * grid.width();
+    for (const int column : {left, right})
+      for (const int row : {top - first, bottom - first})
+        radius = std::max(radius, angle_between(axis, cube_direction(face, grid.face_coordinate(column) + 1,
+                                                                     grid.face_coordinate(row) + 1, 2)));
+    return radius;
+  }
+  for (int y = top; y < bottom; ++y)
+    for (int x = left; x < right; ++x)
+      radius = std::max(radius, angle_between(axis, env_->direction(x, y)) + env_->radius_rad(x, y, x + 1, y + 1));
+  return radius;
+}
+
+BlockTree::Block BlockTree::block_of_texels(const Sheet& sheet, const SolidAngles& solid_angles, int column,
+                                            int row) const {
   const int left = 2 * column, right = std::min(left + 2, sheet.width);
   const int top = sheet.row + 2 * row, bottom = std::min(top + 2, sheet.row + sheet.height);
   Block block = {};
@@ -85,7 +105,7 @@ BlockTree::Block BlockTree::block_of_texels(const Sheet& sheet, int column, int 
   for (int y = top; y < bottom; ++y)
     for (int x = left; x < right; ++x) {
       const Vec3 w = moment_of_cell(*env_, {double(x), double(y), x + 1.0, y + 1.0});
-      const double texel = env_->solid_angle(x, y);
+      const double texel = solid_angles.at(x, y);
       const float* rgb = env_->radiance(x, y);
       axis += w;
       area += texel;
@@ -95,11 +115,7 @@ BlockTree::Block BlockTree::block_of_texels(const Sheet& sheet, int column, int 
       }
     }
   axis = length(axis) > 1e-6 * area ? normalized(axis) : Vec3{0, 1, 0};
-  double radius = 0;
-  for (int y = top; y < bottom; ++y)
-    for (int x = left; x < right; ++x)
-      radius = std::max(radius, angle_between(axis, env_->direction(x, y)) + env_->radius_rad(x, y, x + 1, y + 1));
-  set_cap(axis, radius, block);
+  set_cap(axis, radius_of_texels(axis, left, right, top, bottom), block);
   block.area = static_cast<float>(area);
   for (int c = 0; c < 3; ++c) {
     block.flux[c] = static_cast<float>(flux[c]);

@@ -45,9 +45,10 @@ class BlockTree {
     std::vector<Level> levels;  // level k holds blocks of 2^(k+1) texels a side
   };
 
-  void build(Sheet& sheet) const;
+  void build(Sheet& sheet, const SolidAngles& solid_angles) const;
   static Block merged(const Sheet::Level& finer, int column, int row);
-  Block block_of_texels(const Sheet& sheet, int column, int row) const;
+  Block block_of_texels(const Sheet& sheet, const SolidAngles& solid_angles, int column, int row) const;
+  double radius_of_texels(const Vec3& axis, int left, int right, int top, int bottom) const;
 
   template <class Opens, class Texel>
   static void visit(const Sheet& sheet, int level, int column, int row, const Opens& opens, const Texel& texel) {

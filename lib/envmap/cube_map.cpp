@@ -7,22 +7,26 @@ namespace goniochrome::envmap {
 
 // OpenGL 4.5 core, table 8.19: a face with its axes s (columns) and t (rows), both from -1 to 1. Read backwards:
 //   +X: (1,-t,-s)  -X: (-1,-t,s)  +Y: (s,1,t)  -Y: (s,-1,-t)  +Z: (s,-t,1)  -Z: (-s,-t,-1)
-Vec3 cube_direction(int face, double column, double row, int n) {
-  const double s = 2 * column / n - 1, t = 2 * row / n - 1;
+Vec3 cube_axes(int face, const Vec3& stw) {
+  const auto& [s, t, w] = stw;
   switch (face) {
     case 0:
-      return normalized({1, -t, -s});
+      return {w, -t, -s};
     case 1:
-      return normalized({-1, -t, s});
+      return {-w, -t, s};
     case 2:
-      return normalized({s, 1, t});
+      return {s, w, t};
     case 3:
-      return normalized({s, -1, -t});
+      return {s, -w, -t};
     case 4:
-      return normalized({s, -t, 1});
+      return {s, -t, w};
     default:
-      return normalized({-s, -t, -1});
+      return {-s, -t, -w};
   }
+}
+
+Vec3 cube_direction(int face, double column, double row, int n) {
+  return normalized(cube_axes(face, {2 * column / n - 1, 2 * row / n - 1, 1}));
 }
 
 CubePosition cube_position(const Vec3& d, int n) {
@@ -42,11 +46,14 @@ CubePosition cube_position(const Vec3& d, int n) {
   return {face, (s + 1) * n / 2, (t + 1) * n / 2};
 }
 
-// The solid angle of the rectangle [0,s] x [0,t] of the plane at distance 1 is atan(s t / sqrt(1 + s^2 + t^2)); a
-// texel is the alternating sum of its corners.
+// The solid angle of the rectangle [0,s] x [0,t] of the plane at distance 1 is atan(s t / sqrt(1 + s^2 + t^2)).
+double cube_corner_solid_angle(double s, double t) {
+  return std::atan2(s * t, std::sqrt(s * s + t * t + 1));
+}
+
 double cube_cell_solid_angle(double s0, double s1, double t0, double t1) {
-  const auto corner = [](double s, double t) { return std::atan2(s * t, std::sqrt(s * s + t * t + 1)); };
-  return corner(s1, t1) - corner(s0, t1) - corner(s1, t0) + corner(s0, t0);
+  return cube_corner_solid_angle(s1, t1) - cube_corner_solid_angle(s0, t1) - cube_corner_solid_angle(s1, t0) +
+         cube_corner_solid_angle(s0, t0);
 }
 
 namespace {

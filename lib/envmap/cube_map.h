@@ -25,6 +25,9 @@ struct CubeMap {
   }
 };
 
+// The direction of s, t, 1 on a face whose axes s (columns) and t (rows) run from -1 to 1, times any number: of `stw`.
+Vec3 cube_axes(int face, const Vec3& stw);
+
 // Unit direction through (column, row) of a face of size n, in texels from its upper left corner; a center is at +.5.
 Vec3 cube_direction(int face, double column, double row, int n);
 
@@ -35,7 +38,9 @@ struct CubePosition {
 };
 CubePosition cube_position(const Vec3& direction, int n);
 
-// Exact solid angle (sr) of the cell [s0,s1] x [t0,t1] of a face that spans -1..1; six faces are 4 pi.
+// Exact solid angle (sr) of the rectangle between the middle of a face and a point of it, signed as s t; and of the
+// cell [s0,s1] x [t0,t1] of a face that spans -1..1; six faces are 4 pi.
+double cube_corner_solid_angle(double s, double t);
 double cube_cell_solid_angle(double s0, double s1, double t0, double t1);
 
 // Bilinear lookup between texel centers, across face edges as OpenGL's seamless filtering does it (at a corner the

@@ -94,14 +94,13 @@ Environment Environment::dimmed(const std::vector<Dimmed>& texels) const {
 
 Vec3 Environment::flux(const Clip& clip) const {
   std::vector<Vec3> rows(static_cast<std::size_t>(height()));
+  const SolidAngles solid_angles(grid_);
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       const int y = static_cast<int>(row);
-      double area = solid_angle(0, y);  // of every texel of a lat-long row
       for (int column = 0; column < width(); ++column) {
-        if (layout() != Layout::kLatLong) area = solid_angle(column, y);
         const std::array<float, 3> rgb = clip.left_of(radiance(column, y));
-        rows[row] += area * Vec3{rgb[0], rgb[1], rgb[2]};
+        rows[row] += solid_angles.at(column, y) * Vec3{rgb[0], rgb[1], rgb[2]};
       }
     }
   });

@@ -108,8 +108,8 @@ class Environment {
     return &rgb_[3 * static_cast<std::size_t>(grid_.texel(direction))];
   }
 
-  // Radiance bilinear between the centers of texels, as a mirror shows it. The texels at the edges of a cube's faces and
-  // those of an angular map are not blended.
+  // Radiance bilinear between the centers of texels, as a mirror shows it. The texels at the edges of a cube's faces
+  // and those of an angular map are not blended.
   Vec3 blended(const Vec3& direction) const;
 
   // With single texels scaled: by column and row, and a factor of 0 or more.

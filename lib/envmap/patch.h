@@ -54,8 +54,34 @@ inline std::array<Cell, 4> quarters(const Cell& c) {
            {column, row, c.column1, c.row1}}};
 }
 
+// The integral of the direction over a rectangle of the plane s, t, 1 that a cube's face lies in: of (s, t, 1) by the
+// square of 1 + s^2 + t^2.
+inline Vec3 moment_on_face(double s0, double s1, double t0, double t1) {
+  const double radius = 0.5 * std::hypot(s1 - s0, t1 - t0);
+  if (radius > 0.2) {
+    const double s = (s0 + s1) / 2, t = (t0 + t1) / 2;
+    return moment_on_face(s0, s, t0, t) + moment_on_face(s, s1, t0, t) + moment_on_face(s0, s, t, t1) +
+           moment_on_face(s, s1, t, t1);
+  }
+  const math::GaussPoints& rule = math::kGaussPoints[radius > 0.01 ? 3 : 1];
+  Vec3 sum;
+  for (int j = 0; j < rule.count; ++j)
+    for (int i = 0; i < rule.count; ++i) {
+      const double s = s0 + rule.at[i] * (s1 - s0), t = t0 + rule.at[j] * (t1 - t0), square = 1 + s * s + t * t;
+      sum += (rule.weight[i] * rule.weight[j] / (square * square)) * Vec3{s, t, 1};
+    }
+  return (s1 - s0) * (t1 - t0) * sum;
+}
+
 // The integral of the direction over a cell, in sr.
 inline Vec3 moment_of_cell(const Environment& env, const Cell& cell) {
+  const SphereGrid& grid = env.grid();
+  if (grid.is_cube()) {
+    const int face = static_cast<int>(std::floor(cell.row0 / grid.width())), first = face * grid.width();
+    return cube_axes(face,
+                     moment_on_face(grid.face_coordinate(cell.column0), grid.face_coordinate(cell.column1),
+                                    grid.face_coordinate(cell.row0 - first), grid.face_coordinate(cell.row1 - first)));
+  }
   const double radius = env.radius_rad(cell.column0, cell.row0, cell.column1, cell.row1);
   if (radius > 0.2) {
     Vec3 sum;

@@ -9,8 +9,6 @@
 
 namespace goniochrome::envmap {
 
-namespace {}
-
 // A cube whose texel centers lie on the face edges has its cell edges half way between them, at (i-.5)/(N-1), and at
 // the face edges.
 double SphereGrid::face_coordinate(double position) const {
@@ -161,6 +159,31 @@ int SphereGrid::texel(const Vec3& d) const {
   const GridPosition p = position(d);
   const auto inside = [](double x, int n) { return std::clamp(static_cast<int>(std::floor(x)), 0, n - 1); };
   return inside(p.row, height_) * width_ + inside(p.column, width_);
+}
+
+// A cube's texels are the alternating sums of its corners, each of which four of them share.
+SolidAngles::SolidAngles(const SphereGrid& grid) {
+  const auto width = static_cast<std::size_t>(grid.width());
+  if (grid.layout() == SphereGrid::Layout::kLatLong) {
+    rows_ = grid.height(), row_step_ = 1;
+    for (int row = 0; row < rows_; ++row) values_.push_back(grid.solid_angle(0, row));
+    return;
+  }
+  rows_ = grid.is_cube() ? grid.width() : grid.height();
+  row_step_ = width, column_step_ = 1;
+  values_.resize(width * static_cast<std::size_t>(rows_));
+  std::vector<double> corners((width + 1) * (width + 1));
+  for (std::size_t j = 0; grid.is_cube() && j <= width; ++j)
+    for (std::size_t i = 0; i <= width; ++i)
+      corners[j * (width + 1) + i] = cube_corner_solid_angle(grid.face_coordinate(static_cast<double>(i)),
+                                                             grid.face_coordinate(static_cast<double>(j)));
+  for (std::size_t row = 0; row < static_cast<std::size_t>(rows_); ++row)
+    for (std::size_t column = 0; column < width; ++column) {
+      const double* upper = &corners[row * (width + 1) + column];
+      values_[row * width + column] = grid.is_cube()
+                                          ? upper[0] - upper[1] - upper[width + 1] + upper[width + 2]
+                                          : grid.solid_angle(static_cast<int>(column), static_cast<int>(row));
+    }
 }
 
 }  // namespace goniochrome::envmap

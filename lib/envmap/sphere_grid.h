@@ -2,6 +2,9 @@
 // a direction meets. goniochrome-theory(7), ENVIRONMENTS.
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "base/vec3.h"
 
 namespace goniochrome::envmap {
@@ -69,6 +72,22 @@ class SphereGrid {
 
   Layout layout_ = Layout::kLatLong;
   int width_ = 0, height_ = 0;
+};
+
+// The exact solid angles of all texels of a grid. The six faces of a cube have the same, and a row of a lat-long map
+// has one.
+class SolidAngles {
+ public:
+  explicit SolidAngles(const SphereGrid& grid);
+
+  double at(int column, int row) const {
+    return values_[static_cast<std::size_t>(row % rows_) * row_step_ + static_cast<std::size_t>(column) * column_step_];
+  }
+
+ private:
+  int rows_ = 0;  // that differ
+  std::size_t row_step_ = 0, column_step_ = 0;
+  std::vector<double> values_;
 };
 
 }  // namespace goniochrome::envmap

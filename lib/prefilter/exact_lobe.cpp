@@ -220,9 +220,10 @@ class Summation {
 Vec3 mean_of(const envmap::SphereGrid& grid, const std::vector<float>& texels) {
   Vec3 sum;
   const float* rgb = texels.data();
+  const envmap::SolidAngles solid_angles(grid);
   for (int row = 0; row < grid.height(); ++row)
     for (int column = 0; column < grid.width(); ++column, rgb += 3)
-      sum += grid.solid_angle(column, row) * Vec3{rgb[0], rgb[1], rgb[2]};
+      sum += solid_angles.at(column, row) * Vec3{rgb[0], rgb[1], rgb[2]};
   return (1 / (4 * kPi)) * sum;
 }
 

@@ -112,15 +112,14 @@ LobePlan lobe_plan(const envmap::Environment& env, const PrefilterRequest& reque
 // What the harmonics up to each degree leave of a clipped map: its root mean square, per channel, by Parseval.
 std::vector<Vec3> residual_rms(const envmap::Environment& env, const envmap::Clip& clip, const Harmonics& harmonics) {
   std::vector<Vec3> rows(static_cast<std::size_t>(env.height()));
+  const envmap::SolidAngles solid_angles(env.grid());
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       const int y = static_cast<int>(row);
-      double area = env.solid_angle(0, y);  // of every texel of a lat-long row
       for (int column = 0; column < env.width(); ++column) {
-        if (env.layout() != envmap::Environment::Layout::kLatLong) area = env.solid_angle(column, y);
         const std::array<float, 3> rgb = clip.left_of(env.radiance(column, y));
         const Vec3 value = {rgb[0], rgb[1], rgb[2]};
-        rows[row] += area * (value * value);
+        rows[row] += solid_angles.at(column, y) * (value * value);
       }
     }
   });
@@ -545,18 +544,14 @@ envmap::PrefilteredEnvironment prefiltered(
 
 double energy_ratio(const Vec3& flux, const envmap::PrefilteredLobe& lobe) {
   const envmap::SphereGrid grid = envmap::map_grid(lobe.layout, lobe.map.size);
-  // The six faces of a cube have the same solid angles.
-  const int rows = grid.is_cube() ? grid.width() : grid.height();
-  std::vector<Vec3> sums(static_cast<std::size_t>(rows));  // of the rows that are alike
+  const envmap::SolidAngles solid_angles(grid);
+  std::vector<Vec3> sums(static_cast<std::size_t>(grid.height()));
   parallel_for(sums.size(), 8, [&](std::size_t begin, std::size_t end) {
     const std::size_t width = static_cast<std::size_t>(grid.width());
     for (std::size_t row = begin; row < end; ++row)
       for (std::size_t column = 0; column < width; ++column) {
-        const double solid_angle = grid.solid_angle(static_cast<int>(column), static_cast<int>(row));
-        for (std::size_t like = row; like < static_cast<std::size_t>(grid.height()); like += sums.size()) {
-          const float* rgb = &lobe.map.texels[3 * (like * width + column)];
-          sums[row] += solid_angle * Vec3{rgb[0], rgb[1], rgb[2]};
-        }
+        const float* rgb = &lobe.map.texels[3 * (row * width + column)];
+        sums[row] += solid_angles.at(static_cast<int>(column), static_cast<int>(row)) * Vec3{rgb[0], rgb[1], rgb[2]};
       }
   });
   Vec3 sum;

@@ -44,23 +44,23 @@ EnvironmentTable::EnvironmentTable(const envmap::Environment& environment)
   std::vector<double> sums(static_cast<std::size_t>(width_) + 1, 0.0);
   std::vector<double> row_sums;
   double squares = 0, sphere = 0;
+  const envmap::SolidAngles solid_angles(environment.grid());
   for (int row = 0; row < height_; ++row) {
-    double rising = 0;
     for (int column = 0; column < width_; ++column) {
       const color::Rgb light = texel_radiance(environment, column, row);
-      const double mean = (light.x + light.y + light.z) / 3, solid_angle = environment.solid_angle(column, row);
+      const double mean = (light.x + light.y + light.z) / 3, solid_angle = solid_angles.at(column, row);
       const auto at = static_cast<std::size_t>(column);
       sums[at + 1] = sums[at] + mean * solid_angle;
-      rising += solid_angle * environment.direction_at(column + 0.5, row + 0.5).y;
       squares += mean * mean * solid_angle;
       sphere += solid_angle;
     }
-    row_solid_angle_.push_back(environment.solid_angle(0, row));
+    row_solid_angle_.push_back(solid_angles.at(0, row));
     row_cosine_.push_back(std::cos(kPi * row / height_));
     const double sum = sums.back();
     float* cumulative = &columns_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1)];
     for (std::size_t i = 0; i < sums.size(); ++i) cumulative[i] = sum > 0 ? static_cast<float>(sums[i] / sum) : 0.0F;
-    row_sums.push_back(sum), below_.push_back(rising < 0);
+    row_sums.push_back(sum);
+    below_.push_back(environment.direction_at(0.5 * width_, row + 0.5).y < 0);
     order_.push_back(row);
   }
   std::ranges::stable_partition(order_, [this](int row) { return below_[static_cast<std::size_t>(row)]; });

@@ -98,13 +98,13 @@ Result<ProjectedGround> ProjectedGround::create(const Ground& ground, const envm
   std::vector<BrightTexel> texels;
   result.soft_rows_.assign(static_cast<std::size_t>(environment.height()) + 1, 0.0);
   double below = 0, below_squares = 0;
+  const envmap::SolidAngles solid_angles(environment.grid());
   const bool rows_agree = environment.layout() == envmap::Environment::Layout::kLatLong;
   for (int row = 0; row < environment.height(); ++row) {
     double weight = 0;
     for (int column = 0; column < environment.width(); ++column) {
       if (environment.direction_at(column + 0.5, row + 0.5).y < 0) {
-        const double mean = gray_of(texel(environment, column, row)),
-                     solid_angle = environment.solid_angle(column, row);
+        const double mean = gray_of(texel(environment, column, row)), solid_angle = solid_angles.at(column, row);
         below += mean * solid_angle, below_squares += mean * mean * solid_angle;
       }
       if (column == 0 || !rows_agree) weight = upward_weight(environment, column, row);
