@@ -315,22 +315,39 @@ std::shared_ptr<const DiscLobeTable> made_table(double exponent, double radius) 
   return table;
 }
 
-}  // namespace
-
-std::shared_ptr<const DiscLobeTable> disc_lobe_table(double exponent, double radius_rad) {
+// The table of a key, made once by any number of threads, and forgotten where there are too many.
+template <class Table, class Key, class Make>
+std::shared_ptr<const Table> kept(const Key& key, const Make& make) {
   constexpr std::size_t kMost = 4096;
   static std::mutex mutex;
-  static std::map<std::pair<double, double>, std::shared_ptr<const DiscLobeTable>> tables;
-  const std::pair<double, double> key{exponent, radius_rad};
+  static std::map<Key, std::shared_ptr<const Table>> tables;
   {
     const std::scoped_lock lock(mutex);
     const auto found = tables.find(key);
     if (found != tables.end()) return found->second;
   }
-  std::shared_ptr<const DiscLobeTable> made = made_table(exponent, radius_rad);
+  std::shared_ptr<const Table> made = make();
   const std::scoped_lock lock(mutex);
   if (tables.size() >= kMost) tables.clear();
   return tables.emplace(key, std::move(made)).first->second;
+}
+
+}  // namespace
+
+std::shared_ptr<const DiscLobeTable> disc_lobe_table(double exponent, double radius_rad) {
+  return kept<DiscLobeTable>(std::pair{exponent, radius_rad}, [&] { return made_table(exponent, radius_rad); });
+}
+
+std::shared_ptr<const DiscHorizonTable> disc_horizon_table(double radius_rad) {
+  return kept<DiscHorizonTable>(radius_rad, [&] {
+    const auto table = std::make_shared<DiscHorizonTable>();
+    for (int i = 0; i <= DiscHorizonTable::kNodes; ++i) {
+      const double sine = std::sin(radius_rad) * std::min(1.0, 2.0 * i / (DiscHorizonTable::kNodes - 1) - 1);
+      table->nodes.push_back(
+          {static_cast<float>(disc_irradiance(sine, radius_rad)), static_cast<float>(disc_above(sine, radius_rad))});
+    }
+    return std::shared_ptr<const DiscHorizonTable>(table);
+  });
 }
 
 DiscLobeTable::Node disc_lobe(double exponent, double radius_rad, double chord) {

@@ -236,5 +236,19 @@ TEST(DiscLight, NodesThatAreFilledAgreeWithThoseThatAreComputed) {
   RecordProperty("worst", std::to_string(worst));
 }
 
+// Between its nodes the table is linear, and the ends of both functions are steeper than lines.
+TEST(DiscLight, TheTableOfTheHorizonIsCloseToIt) {
+  for (const double radius : {1e-3, 0.01, 0.1, 0.5, 1.2, kWidestDisc_rad}) {
+    const auto table = disc_horizon_table(radius);
+    const double sine = std::sin(radius), most = disc_irradiance(sine, radius);
+    for (int i = 0; i <= 5000; ++i) {
+      const float part = static_cast<float>(i) / 2500 - 1;
+      const auto [irradiance, above] = table->at(part);
+      EXPECT_NEAR(irradiance, disc_irradiance(part * sine, radius), 1e-4 * most) << radius << ' ' << part;
+      EXPECT_NEAR(above, disc_above(part * sine, radius), 1e-4) << radius << ' ' << part;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace goniochrome::brdf::disc_light_test

@@ -261,12 +261,13 @@ void CpuEngine::set_lights(const Scene& scene, const Effects& effects) {
 }
 
 void CpuEngine::set_discs(const std::vector<Light>& lights, const Effects& effects) {
-  discs_.clear(), disc_tables_.clear(), disc_lobes_.clear();
+  discs_.clear(), disc_tables_.clear(), disc_lobes_.clear(), disc_horizons_.clear();
   shading_.discs = nullptr;
   if (!effects.discs() || lights.empty()) return;
   for (const Light& light : lights) {
     CpuShading::Disc disc;
-    disc.radius_rad = light.radius_rad;
+    disc_horizons_.push_back(brdf::disc_horizon_table(light.radius_rad));
+    disc.horizon = disc_horizons_.back().get();
     disc.sine = static_cast<float>(std::sin(light.radius_rad));
     disc.chord = light.radius_rad > 0 ? static_cast<float>(2 * std::sin(0.5 * light.radius_rad)) : -1;
     if (light.radius_rad > 0 && light.mirrored)

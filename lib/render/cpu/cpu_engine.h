@@ -80,6 +80,7 @@ class CpuEngine : public Engine {
   Vec3 origin_;
   std::vector<CpuShading::Disc> discs_;
   std::vector<std::shared_ptr<const brdf::DiscLobeTable>> disc_tables_;
+  std::vector<std::shared_ptr<const brdf::DiscHorizonTable>> disc_horizons_;
   std::vector<const brdf::DiscLobeTable*> disc_lobes_;
 };
 

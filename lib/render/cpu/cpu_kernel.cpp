@@ -422,8 +422,9 @@ HWY_INLINE void add_disc(const CpuShading& s, int light, const PointArrays& poin
     view.irradiance[i] = cosine[i];
     float part = 1;
     if (cosine[i] < disc.sine) {
-      view.irradiance[i] = static_cast<float>(brdf::disc_irradiance(cosine[i], disc.radius_rad));
-      part = static_cast<float>(brdf::disc_above(cosine[i], disc.radius_rad));
+      const auto [irradiance, above] = disc.horizon->at(std::max(-1.0F, cosine[i] / disc.sine));
+      view.irradiance[i] = irradiance;
+      part = above;
       view.above[i] *= part;
     }
     if (!s.coat) continue;

@@ -50,7 +50,7 @@ struct CpuShading {
 
   // Where lamps are drawn as discs: for each light its disc, and for each light and lobe what the lobe gathers of it.
   struct Disc {
-    double radius_rad = 0;
+    const brdf::DiscHorizonTable* horizon = nullptr;
     float sine = 0, chord = 0;  // of the radius
     float mirrored = 0;         // of the mirror, within the disc, beside pi times the light: 1/(pi sin^2 of the radius)
   };

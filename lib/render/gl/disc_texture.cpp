@@ -1,6 +1,5 @@
 #include "render/gl/disc_texture.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "brdf/disc_light.h"
@@ -21,12 +20,8 @@ FloatTexture disc_texture(const std::vector<Light>& lights, const Effects& effec
       texels.insert(texels.end(), {static_cast<float>(table->first_chord), static_cast<float>(table->nodes_per_chord)});
       texels.insert(texels.end(), {0, 0});
     }
-    for (int i = 0; i <= kNodes; ++i) {
-      const double sine = std::sin(light.radius_rad) * std::min(1.0, 2.0 * i / (kNodes - 1) - 1);
-      texels.push_back(static_cast<float>(brdf::disc_irradiance(sine, light.radius_rad)));
-      texels.push_back(static_cast<float>(brdf::disc_above(sine, light.radius_rad)));
-      texels.insert(texels.end(), {0, 0});
-    }
+    for (const auto& [irradiance, above] : brdf::disc_horizon_table(light.radius_rad)->nodes)
+      texels.insert(texels.end(), {irradiance, above, 0, 0});
   }
   return texture;
 }
