@@ -16,7 +16,9 @@
 #include "envmap/prefiltered.h"
 #include "fit/paint_fit.h"
 #include "formats/default_basis.h"
+#include "render/effect_union.h"
 #include "render/renderer.h"
+#include "render/scene_effects.h"
 #include "render/trim.h"
 
 namespace goniochrome::tool {
@@ -52,6 +54,7 @@ class PaintDrawing {
     std::optional<render::Renderer> renderer;
     std::optional<display::Display> display;
     render::Scene scene;
+    std::optional<render::Effects> loaded;  // what all paints so far call for
     double stops = 0;
   };
   explicit PaintDrawing(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -140,7 +143,13 @@ inline Result<image::Image> PaintDrawing::image(const paint::Paint& paint) {
   for (std::size_t part = 0; part < s.mesh.parts.size(); ++part) {
     if (const auto trim = render::trim_of(s.mesh.parts[part], with_mirror)) s.scene.paints[part] = *trim;
   }
-  GONIO_TRY(s.renderer->load(s.scene, "cpu"));
+  const render::Effects wanted = render::effects_of(s.scene);
+  if (s.loaded && render::covers(*s.loaded, wanted)) {
+    s.renderer->load_paints(s.scene);
+  } else {
+    s.loaded = s.loaded ? render::united(*s.loaded, wanted) : wanted;
+    GONIO_TRY(s.renderer->load(s.scene, *s.loaded, "cpu"));
+  }
   const render::Camera camera =
       render::Camera::orbit(s.mesh, 35, 12, kDistance, 30, static_cast<double>(s.setup.width) / s.setup.height);
   GONIO_ASSIGN(const render::Frame frame, s.renderer->draw(camera, s.setup.width, s.setup.height, kSamples));
