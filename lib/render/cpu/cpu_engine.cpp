@@ -236,17 +236,23 @@ void CpuEngine::set_lights(const Scene& scene, const Effects& effects) {
   lights_.clear(), exponents_.clear();
   const std::vector<Light> lights = single_lights(scene, effects);
   for (const Light& light : lights) {
-    for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(light.direction[c]));
-    lights_.push_back(0);
-    const color::Matrix3 product =
-        color::reflection_matrix(effects.reflection ? scene.reflection : color::component_wise(), kPi * light.white);
-    for (std::size_t column = 0; column < 3; ++column) {
-      for (std::size_t row = 0; row < 3; ++row) lights_.push_back(static_cast<float>(product[row][column]));
+    for (const Vec3& value : {light.direction, kPi * light.white}) {
+      for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(value[c]));
       lights_.push_back(0);
     }
   }
+  products_.clear();
+  for (const color::Rgb& channel : {color::Rgb{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
+    const color::Matrix3 product =
+        color::reflection_matrix(effects.reflection ? scene.reflection : color::component_wise(), channel);
+    for (std::size_t column = 0; column < 3; ++column) {
+      for (std::size_t row = 0; row < 3; ++row) products_.push_back(static_cast<float>(product[row][column]));
+      products_.push_back(0);
+    }
+  }
+  shading_.product = products_.data();
   for (const Effects::LobeUse& lobe : effects.lobes) exponents_.push_back(static_cast<float>(lobe.exponent));
-  shading_.lights = static_cast<int>(lights_.size() / 16);
+  shading_.lights = static_cast<int>(lights_.size() / 8);
   shading_.light = lights_.data();
   shading_.lobes = static_cast<int>(exponents_.size());
   shading_.exponents = exponents_.data();
@@ -268,6 +274,7 @@ void CpuEngine::set_discs(const std::vector<Light>& lights, const Effects& effec
     CpuShading::Disc disc;
     disc_horizons_.push_back(brdf::disc_horizon_table(light.radius_rad));
     disc.horizon = disc_horizons_.back().get();
+    disc.radius_rad = static_cast<float>(light.radius_rad);
     disc.sine = static_cast<float>(std::sin(light.radius_rad));
     disc.chord = light.radius_rad > 0 ? static_cast<float>(2 * std::sin(0.5 * light.radius_rad)) : -1;
     if (light.radius_rad > 0 && light.mirrored)

@@ -66,7 +66,7 @@ class CpuEngine : public Engine {
   std::vector<Stack> stacks_, other_stacks_;  // those with other spots; none: not yet
   Stack background_map_;
   ProductForms forms_;
-  std::vector<float> weights_, lights_, exponents_, tilts_, colors_of_forms_;
+  std::vector<float> weights_, lights_, products_, exponents_, tilts_, colors_of_forms_;
   std::vector<int> first_tilt_;
   std::vector<bool> bare_;  // parts whose paint shows nothing, as it lies under a texture
   CpuShading shading_;

@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 // After highway.h:
 #include "brdf/lobe_model.h"
+#include "math/elementary.h"
 #include "render/cpu/cube_lookup-inl.h"
 #include "render/cpu/lamps-inl.h"
 
@@ -270,102 +271,156 @@ HWY_INLINE float let_in(float c, float index2) {
   return 1 - 0.5F * (r_s * r_s + r_p * r_p);
 }
 
-// What every lobe sends from a light to the viewer, cos^E of the angle to the mirror direction, mean over the tilts.
-HWY_INLINE void lobe_powers(const CpuShading& s, const LampSeen& lamp, const PointArrays& points, const Frame& frame,
-                            const float* cos_i, float* powers) {
-  const D f;
-  Tilted tilted;
-  for (int which = 0; which < s.most_tilts; ++which) {
-    if (s.tilts != nullptr) tilt(s, points, which, tilted);
-    for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
-      const Direction r = s.tilts != nullptr ? tilted.r(i) : frame.r(i), l = lamp.toward(i);
-      const Direction apart = {hn::Sub(r.x, l.x), hn::Sub(r.y, l.y), hn::Sub(r.z, l.z)};
-      const V versine = hn::Mul(hn::Set(f, 0.5F), dot(apart, apart)), log_cos = log_cos_of(versine);
-      const auto lit = hn::And(hn::Lt(versine, hn::Set(f, 1.0F)), hn::Gt(hn::Load(f, cos_i + i), hn::Zero(f)));
-      const V share = s.tilts != nullptr ? hn::Load(f, tilted.share + i) : hn::Set(f, 1.0F);
-      for (int j = 0; j < s.lobes; ++j) {
-        float* power = powers + j * kPointsAtOnce + i;
-        const V x = hn::Mul(hn::Set(f, s.exponents[j]), log_cos);
-        const auto seen = hn::And(lit, hn::Gt(x, hn::Set(f, -80.0F)));
-        const V here = hn::IfThenElseZero(seen, hn::Mul(share, hn::Exp(f, hn::Max(x, hn::Set(f, -80.0F)))));
-        hn::Store(which > 0 ? hn::Add(here, hn::Load(f, power)) : here, f, power);
-      }
+// The light that each slot of the weights meets, of all lamps together: slot by slot, channel by channel, of each
+// point. A lamp then costs what its lobes gather, and the weights are fetched once.
+class Lit {
+ public:
+  HWY_INLINE explicit Lit(const CpuShading& s) { std::fill_n(light_, 3 * slots(s) * kPointsAtOnce, 0.0F); }
+
+  static int slots(const CpuShading& s) { return 2 * s.lobes + 2; }
+  static int flake(int lobe) { return 1 + 2 * lobe; }
+  static int gloss(int lobe) { return 2 + 2 * lobe; }
+  static int mirror(const CpuShading& s) { return 1 + 2 * s.lobes; }
+
+  // `share` of the light of a lamp, for points from i on.
+  HWY_INLINE void add(int slot, std::size_t i, V share, const float* white) {
+    const D f;
+    for (int c = 0; c < 3; ++c) {
+      float* at = light_ + (3 * slot + c) * kPointsAtOnce + i;
+      hn::Store(hn::MulAdd(share, hn::Set(f, white[c]), hn::Load(f, at)), f, at);
     }
   }
+
+  // Adds what the points show of it: for each channel of the light the sum over the slots, times the product's matrix.
+  HWY_INLINE void show(const CpuShading& s, const PointArrays& points, const Frame& frame, int count,
+                       float* rgba) const {
+    for (int i = 0; i < count; ++i) {
+      const float* weight = frame.weights(s, points, i) + s.light_offset;
+      const Quad t = Quad::filled(frame.t[i]);
+      Quad sums[3] = {Quad::filled(0), Quad::filled(0), Quad::filled(0)};
+      const float* light = light_ + i;
+      for (int slot = 0; slot < slots(s); ++slot, weight += 8, light += 3 * kPointsAtOnce) {
+        const Quad shown = mul_add(t, Quad::load(weight + 4), Quad::load(weight));
+        for (int c = 0; c < 3; ++c) sums[c] = mul_add(Quad::filled(light[c * kPointsAtOnce]), shown, sums[c]);
+      }
+      float* pixel = rgba + 4 * i;
+      Quad color = Quad::load(pixel);
+      for (int c = 0; c < 3; ++c) {
+        float by_channel[4];
+        sums[c].store(by_channel);
+        for (int k = 0; k < 3; ++k)
+          color = mul_add(Quad::filled(by_channel[k]), Quad::load(s.product + 12 * c + 4 * k), color);
+      }
+      color.store(pixel);
+    }
+  }
+
+ private:
+  HWY_ALIGN float light_[3 * (2 * kMostLobes + 2) * kPointsAtOnce];
+};
+
+// The square of the index of each point's coat.
+HWY_INLINE void coat_indices(const CpuShading& s, const PointArrays& points, const Frame& frame, int count,
+                             float* index2) {
+  std::fill(index2, index2 + kPointsAtOnce, 1.0F);
+  for (int i = 0; s.coat && i < count; ++i) index2[i] = (frame.weights(s, points, i) + s.light_offset)[3];
 }
 
-// The exact BRDF times cos_i, so that the gloss term's 1/cos_i is gone.
+// The exact BRDF of a point lamp times cos_i, so that the gloss term's 1/cos_i is gone: cos^E of the angle to the
+// mirror direction for every lobe, mean over the tilts.
 HWY_INLINE void add_light(const CpuShading& s, int number, const PointArrays& points, const Frame& frame, int count,
-                          float* rgba) {
+                          const float* index2, Lit& lit) {
   const D f;
-  const float* light = s.light + 16 * number;
-  HWY_ALIGN float cos_i[kPointsAtOnce], fresnel[kPointsAtOnce];
-  HWY_ALIGN float powers[kMostLobes * kPointsAtOnce];
+  const float* light = s.light + 8 * number;
+  HWY_ALIGN float base[kPointsAtOnce], fresnel[kPointsAtOnce];
   LampSeen lamp;
   see_lamp(light, s.placed != nullptr ? s.placed + number : nullptr, points, lamp);
-  // 1. The cosine at the surface and the Fresnel reflectance at half the angle between light and viewer.
+  // 1. The cosine at the surface, as the coat lets light in, and the Fresnel reflectance at half the angle between
+  // light and viewer; the first is 0 below the horizon.
   for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
     const Direction l = lamp.toward(i);
-    hn::Store(hn::Max(dot(normal_of(points, i), l), hn::Zero(f)), f, cos_i + i);
+    hn::Store(hn::Max(dot(normal_of(points, i), l), hn::Zero(f)), f, base + i);
     const V half = hn::Set(f, 0.5F), cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), l), half);
     hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, hn::Zero(f)))) : hn::Set(f, 1.0F), f, fresnel + i);
   }
-  // 2. What each lobe sends to the viewer.
-  lobe_powers(s, lamp, points, frame, cos_i, powers);
-  // 3. Point by point, the weighted sum of diffuse part and lobes, times the light through the product's matrix.
-  for (int i = 0; i < count; ++i) {
-    if (!(cos_i[i] > 0)) continue;
-    const float* weight = frame.weights(s, points, i) + s.light_offset;
-    const Quad t = Quad::filled(frame.t[i]);
-    Quad reflected = Quad::filled(0);
-    const auto add = [&](float share) HWY_ATTR {
-      reflected = mul_add(Quad::filled(share), mul_add(t, Quad::load(weight + 4), Quad::load(weight)), reflected);
-      weight += 8;
-    };
-    const float base = s.coat ? cos_i[i] * let_in(cos_i[i], weight[3]) : cos_i[i];
-    add(s.lit_diffuse ? base : 0);
-    for (int j = 0; j < s.lobes; ++j) {
-      const float power = powers[j * kPointsAtOnce + i];
-      if (power == 0) {
-        weight += 16;
-        continue;
+  for (int i = 0; s.coat && i < count; ++i) base[i] *= let_in(base[i], index2[i]);
+  // 2. What the diffuse part meets, and each lobe.
+  Tilted tilted;
+  for (int which = 0; which < s.most_tilts; ++which) {
+    if (s.tilts != nullptr) tilt(s, points, which, tilted);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
+      const V strength = hn::Load(f, lamp.strength + i), by_cosine = hn::Mul(strength, hn::Load(f, base + i)),
+              by_coat = hn::Mul(strength, hn::Load(f, fresnel + i));
+      if (which == 0 && s.lit_diffuse) lit.add(0, i, by_cosine, light + 4);
+      const Direction r = s.tilts != nullptr ? tilted.r(i) : frame.r(i), l = lamp.toward(i);
+      const Direction apart = {hn::Sub(r.x, l.x), hn::Sub(r.y, l.y), hn::Sub(r.z, l.z)};
+      const V versine = hn::Mul(hn::Set(f, 0.5F), dot(apart, apart)), log_cos = log_cos_of(versine);
+      const auto reached = hn::And(hn::Lt(versine, hn::Set(f, 1.0F)), hn::Gt(hn::Load(f, base + i), hn::Zero(f)));
+      const V share = s.tilts != nullptr ? hn::Load(f, tilted.share + i) : hn::Set(f, 1.0F);
+      for (int j = 0; j < s.lobes; ++j) {
+        const V x = hn::Mul(hn::Set(f, s.exponents[j]), log_cos);
+        const auto seen = hn::And(reached, hn::Gt(x, hn::Set(f, -80.0F)));
+        if (hn::AllFalse(f, seen)) continue;
+        const V power = hn::IfThenElseZero(seen, hn::Mul(share, hn::Exp(f, hn::Max(x, hn::Set(f, -80.0F)))));
+        lit.add(Lit::flake(j), i, hn::Mul(power, by_cosine), light + 4);
+        lit.add(Lit::gloss(j), i, hn::Mul(power, by_coat), light + 4);
       }
-      add(base * power);
-      add(fresnel[i] * power);
     }
-    float k[4];
-    reflected.store(k);
-    float* pixel = rgba + 4 * i;
-    Quad sum = Quad::load(pixel);
-    for (int c = 0; c < 3; ++c)
-      sum = mul_add(Quad::filled(lamp.strength[i] * k[c]), Quad::load(light + 4 + 4 * c), sum);
-    sum.store(pixel);
   }
 }
 
-// What every lobe sends of a disc to the viewer: with its flake weight, and with its gloss weight.
-struct DiscSums {
-  HWY_ALIGN float flake[kMostLobes * kPointsAtOnce];
-  HWY_ALIGN float gloss[kMostLobes * kPointsAtOnce];
-};
+constexpr int kNodeFloats = 4;  // cosine, cosine, plain, plain
+static_assert(sizeof(brdf::DiscLobeTable::Node) == kNodeFloats * sizeof(float));
 
-// The disc above the horizon of each point: its irradiance as the coat lets it in, and its part times the coat's
-// reflectance in its middle; and the square of the coat's index.
-struct DiscView {
-  HWY_ALIGN float irradiance[kPointsAtOnce];
-  HWY_ALIGN float above[kPointsAtOnce];
-  HWY_ALIGN float index2[kPointsAtOnce];
-};
+// Of the middle of a disc with that sine, relative to its radius, -1 or more.
+HWY_INLINE float elevation_of(float sine, const CpuShading::Disc& disc) {
+  return std::max(-1.0F, static_cast<float>(math::asin(std::max(-1.0F, sine))) / disc.radius_rad);
+}
 
-// Each lobe is looked up by the chord between the mirror direction and the middle of the disc. Of what it gathers, one
-// part counts with cosine and coat at the disc and the other with those at the mirror direction. Mean over the tilts.
-HWY_INLINE void gather_disc(const CpuShading& s, int light, const LampSeen& lamp, const PointArrays& points,
-                            const Frame& frame, const DiscView& view, int count, DiscSums& sums) {
+// The same of a disc, with its mirror image. Each lobe is looked up by the chord between the mirror direction and the
+// middle of the disc. Of what it gathers, one part counts with cosine and coat at the disc and the other with those at
+// the mirror direction.
+HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& points, const Frame& frame, int count,
+                         const float* index2, Lit& lit) {
   const D f;
-  const V half = hn::Set(f, 0.5F), zero = hn::Zero(f);
-  HWY_ALIGN float chord[kPointsAtOnce], cos_r[kPointsAtOnce], coat_r[kPointsAtOnce];
-  std::fill_n(sums.flake, s.lobes * kPointsAtOnce, 0.0F), std::fill_n(sums.gloss, s.lobes * kPointsAtOnce, 0.0F);
+  const float* light = s.light + 8 * number;
+  const CpuShading::Disc& disc = s.discs[number];
+  LampSeen lamp;
+  see_lamp(light, s.placed != nullptr ? s.placed + number : nullptr, points, lamp);
+  const V half = hn::Set(f, 0.5F), zero = hn::Zero(f), one = hn::Set(f, 1.0F);
+  // 1. How much of the disc stands above the horizon of each point: its irradiance as the coat lets it in, and its part
+  // times the coat's reflectance in its middle.
+  HWY_ALIGN float irradiance[kPointsAtOnce], above[kPointsAtOnce], seen[kPointsAtOnce];
+  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    const Direction l = lamp.toward(i);
+    const V cosine = dot(normal_of(points, i), l), cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), l), half);
+    hn::Store(cosine, f, irradiance + i);
+    hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero))) : one, f, above + i);
+    hn::Store(hn::IfThenElseZero(hn::Gt(cosine, hn::Set(f, -disc.sine)), hn::Load(f, lamp.strength + i)), f, seen + i);
+  }
+  if (std::none_of(seen, seen + count, [](float strength) { return strength > 0; })) return;
+  for (int i = 0; i < count; ++i) {
+    float part = 1;
+    if (irradiance[i] < disc.sine) {
+      const auto [cut, shown] = disc.horizon->at(elevation_of(irradiance[i], disc));
+      irradiance[i] = cut, part = shown;
+      above[i] *= part;
+    }
+    // At the mean cosine of what is seen of the disc.
+    if (s.coat && part > 0) irradiance[i] *= let_in(std::min(irradiance[i] / part, 1.0F), index2[i]);
+  }
+  // 2. What the diffuse part meets, the mirror, and each lobe.
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
+    const V strength = hn::Load(f, seen + i);
+    if (s.lit_diffuse) lit.add(0, i, hn::Mul(strength, hn::Load(f, irradiance + i)), light + 4);
+    const Direction r = frame.r(i), l = lamp.toward(i);
+    const Direction apart = {hn::Sub(r.x, l.x), hn::Sub(r.y, l.y), hn::Sub(r.z, l.z)};
+    const auto within = hn::Le(hn::Sqrt(dot(apart, apart)), hn::Set(f, disc.chord));
+    if (!hn::AllFalse(f, within))
+      lit.add(Lit::mirror(s), i, hn::IfThenElseZero(within, hn::Mul(strength, hn::Set(f, disc.mirrored))), light + 4);
+  }
   Tilted tilted;
+  HWY_ALIGN float chord[kPointsAtOnce], cos_r[kPointsAtOnce], coat_r[kPointsAtOnce];
   for (int which = 0; which < s.most_tilts; ++which) {
     if (s.tilts != nullptr) tilt(s, points, which, tilted);
     for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
@@ -374,106 +429,57 @@ HWY_INLINE void gather_disc(const CpuShading& s, int light, const LampSeen& lamp
       hn::Store(hn::Sqrt(dot(apart, apart)), f, chord + i);
       hn::Store(hn::Max(dot(normal_of(points, i), r), zero), f, cos_r + i);
       const V cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), r), half);
-      hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero))) : hn::Set(f, 1.0F), f, coat_r + i);
+      hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero))) : one, f, coat_r + i);
     }
-    for (int i = 0; s.coat && i < count; ++i) cos_r[i] *= let_in(cos_r[i], view.index2[i]);
+    for (int i = 0; s.coat && i < count; ++i) cos_r[i] *= let_in(cos_r[i], index2[i]);
     for (int j = 0; j < s.lobes; ++j) {
-      const brdf::DiscLobeTable& table = *s.disc_lobes[light * s.lobes + j];
-      const auto first = static_cast<float>(table.first_chord), scale = static_cast<float>(table.nodes_per_chord);
-      float *flake = sums.flake + j * kPointsAtOnce, *gloss = sums.gloss + j * kPointsAtOnce;
-      for (int i = 0; i < count; ++i) {
-        const float x = (chord[i] - first) * scale, share = s.tilts != nullptr ? tilted.share[i] : 1.0F;
-        if (!(x < brdf::DiscLobeTable::kNodes - 1) || share == 0) continue;
-        const float from = x > 0 ? x : 0.0F;
-        const auto node = static_cast<int>(from);
-        const brdf::DiscLobeTable::Node* at = table.nodes.data() + node;
-        const float t = share * (from - static_cast<float>(node)), rest = share - t;
-        flake[i] += (rest * at->cosine[0] + t * at[1].cosine[0]) * view.irradiance[i] +
-                    (rest * at->cosine[1] + t * at[1].cosine[1]) * cos_r[i];
-        gloss[i] += (rest * at->plain[0] + t * at[1].plain[0]) * view.above[i] +
-                    (rest * at->plain[1] + t * at[1].plain[1]) * coat_r[i];
+      const brdf::DiscLobeTable& table = *s.disc_lobes[number * s.lobes + j];
+      const V first = hn::Set(f, static_cast<float>(table.first_chord)),
+              scale = hn::Set(f, static_cast<float>(table.nodes_per_chord)),
+              last = hn::Set(f, static_cast<float>(brdf::DiscLobeTable::kNodes - 1));
+      const float* nodes = table.nodes.front().cosine;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
+        const V x = hn::Max(hn::Mul(hn::Sub(hn::Load(f, chord + i), first), scale), zero);
+        const auto meets = hn::Lt(x, last);
+        if (hn::AllFalse(f, meets)) continue;
+        const V from = hn::IfThenElseZero(meets, x);
+        const auto node = hn::ConvertTo(hn::RebindToSigned<D>(), from);
+        const auto index = hn::ShiftLeft<2>(node);
+        const V t = hn::Sub(from, hn::ConvertTo(f, node));
+        const auto value = [&](int k) HWY_ATTR {
+          const V here = hn::GatherIndex(f, nodes + k, index),
+                  next = hn::GatherIndex(f, nodes + kNodeFloats + k, index);
+          return hn::MulAdd(t, hn::Sub(next, here), here);
+        };
+        const V strength = hn::IfThenElseZero(meets, hn::Load(f, seen + i));
+        const V share = s.tilts != nullptr ? hn::Mul(strength, hn::Load(f, tilted.share + i)) : strength;
+        const V by_cosine =
+            hn::MulAdd(value(0), hn::Load(f, irradiance + i), hn::Mul(value(1), hn::Load(f, cos_r + i)));
+        const V by_coat = hn::MulAdd(value(2), hn::Load(f, above + i), hn::Mul(value(3), hn::Load(f, coat_r + i)));
+        lit.add(Lit::flake(j), i, hn::Mul(share, by_cosine), light + 4);
+        lit.add(Lit::gloss(j), i, hn::Mul(share, by_coat), light + 4);
       }
     }
   }
 }
 
-// As add_light() for a disc, with its mirror image.
-HWY_INLINE void add_disc(const CpuShading& s, int light, const PointArrays& points, const Frame& frame, int count,
-                         float* rgba) {
-  const D f;
-  const float* from = s.light + 16 * light;
-  const CpuShading::Disc& disc = s.discs[light];
-  LampSeen lamp;
-  see_lamp(from, s.placed != nullptr ? s.placed + light : nullptr, points, lamp);
-  const V half = hn::Set(f, 0.5F), zero = hn::Zero(f);
-  // 1. How much of the disc stands above the horizon of each point, and the coat's reflectance at its middle.
-  DiscView view;
-  HWY_ALIGN float cosine[kPointsAtOnce], apart[kPointsAtOnce];
-  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
-    const Direction l = lamp.toward(i);
-    hn::Store(dot(normal_of(points, i), l), f, cosine + i);
-    const V cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), l), half);
-    hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero))) : hn::Set(f, 1.0F), f, view.above + i);
-    const Direction r = frame.r(i), to_disc = {hn::Sub(r.x, l.x), hn::Sub(r.y, l.y), hn::Sub(r.z, l.z)};
-    hn::Store(hn::Sqrt(dot(to_disc, to_disc)), f, apart + i);
-  }
-  if (std::none_of(cosine, cosine + count, [&](float c) { return c > -disc.sine; })) return;
-  for (int i = 0; i < count; ++i) {
-    view.irradiance[i] = cosine[i];
-    float part = 1;
-    if (cosine[i] < disc.sine) {
-      const auto [irradiance, above] = disc.horizon->at(std::max(-1.0F, cosine[i] / disc.sine));
-      view.irradiance[i] = irradiance;
-      part = above;
-      view.above[i] *= part;
-    }
-    if (!s.coat) continue;
-    view.index2[i] = (frame.weights(s, points, i) + s.light_offset)[3];
-    // At the mean cosine of what is seen of the disc.
-    if (part > 0) view.irradiance[i] *= let_in(std::min(view.irradiance[i] / part, 1.0F), view.index2[i]);
-  }
-  // 2. What each lobe gathers.
-  DiscSums sums;
-  gather_disc(s, light, lamp, points, frame, view, count, sums);
-  // 3. Point by point, the weighted sum of diffuse part, lobes and mirror, times the light through the product's
-  // matrix.
-  for (int i = 0; i < count; ++i) {
-    if (!(cosine[i] > -disc.sine)) continue;
-    const float* weight = frame.weights(s, points, i) + s.light_offset;
-    const Quad t = Quad::filled(frame.t[i]);
-    Quad reflected = Quad::filled(0);
-    const auto add = [&](float share) HWY_ATTR {
-      if (share != 0)
-        reflected = mul_add(Quad::filled(share), mul_add(t, Quad::load(weight + 4), Quad::load(weight)), reflected);
-      weight += 8;
-    };
-    add(s.lit_diffuse ? view.irradiance[i] : 0);
-    for (int j = 0; j < s.lobes; ++j) {
-      add(sums.flake[j * kPointsAtOnce + i]);
-      add(sums.gloss[j * kPointsAtOnce + i]);
-    }
-    add(apart[i] <= disc.chord ? disc.mirrored : 0);
-    float k[4];
-    reflected.store(k);
-    float* pixel = rgba + 4 * i;
-    Quad sum = Quad::load(pixel);
-    for (int c = 0; c < 3; ++c) sum = mul_add(Quad::filled(lamp.strength[i] * k[c]), Quad::load(from + 4 + 4 * c), sum);
-    sum.store(pixel);
-  }
-}
-
-// A point's view and segment of weights; the environment by prefiltered maps; then the lights, one by one.
+// A point's view and segment of weights; the environment by prefiltered maps; then the lights.
 void ShadePoints(const CpuShading& s, PointArrays& points, int count, float* rgba) {
   Frame frame;
   set_up(s, points, frame);
   add_environment(s, points, frame, count, rgba);
+  if (s.lights == 0) return;
+  HWY_ALIGN float index2[kPointsAtOnce];
+  coat_indices(s, points, frame, count, index2);
+  Lit lit(s);
   for (int i = 0; i < s.lights; ++i) {
     if (s.discs != nullptr) {
-      add_disc(s, i, points, frame, count, rgba);
+      add_disc(s, i, points, frame, count, index2, lit);
     } else {
-      add_light(s, i, points, frame, count, rgba);
+      add_light(s, i, points, frame, count, index2, lit);
     }
   }
+  lit.show(s, points, frame, count, rgba);
 }
 
 void LookUpBackground(const InterleavedMaps& map, PointArrays& points, int count, float* rgba) {

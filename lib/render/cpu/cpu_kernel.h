@@ -41,8 +41,8 @@ struct CpuShading {
   int most_tilts = 1;
 
   int lights = 0;
-  const float* light =
-      nullptr;  // 16 a light: direction, 0, and the columns (4 floats) of pi times its product's matrix
+  const float* light = nullptr;    // 8 a light: direction, 0, pi times its white, 0
+  const float* product = nullptr;  // the columns (4 floats) of the matrices by which red, green and blue light multiply
   const PlacedLamp* placed = nullptr;  // of each light; null: all are far away
   int lobes = 0;
   const float* exponents = nullptr;
@@ -51,8 +51,8 @@ struct CpuShading {
   // Where lamps are drawn as discs: for each light its disc, and for each light and lobe what the lobe gathers of it.
   struct Disc {
     const brdf::DiscHorizonTable* horizon = nullptr;
-    float sine = 0, chord = 0;  // of the radius
-    float mirrored = 0;         // of the mirror, within the disc, beside pi times the light: 1/(pi sin^2 of the radius)
+    float radius_rad = 0, sine = 0, chord = 0;  // of the radius
+    float mirrored = 0;  // of the mirror, within the disc, beside pi times the light: 1/(pi sin^2 of the radius)
   };
   const Disc* discs = nullptr;  // null: all are points
   const brdf::DiscLobeTable* const* disc_lobes = nullptr;

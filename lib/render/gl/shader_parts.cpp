@@ -203,7 +203,7 @@ std::string disc_loop(const Effects& effects, const std::string& index2) {
     vec3 l = {}, disc = light_disc[i];
     float cos_i = dot(n, l);
     if (cos_i <= -disc.x) continue;
-    vec2 seen = cos_i >= disc.x ? vec2(cos_i, 1.0) : disc_horizon(i, cos_i / disc.x);
+    vec2 seen = cos_i >= disc.x ? vec2(cos_i, 1.0) : disc_horizon(i, asin(cos_i) / asin(disc.x));
 {})",
       effects.single_lights(), lamp_direction(effects),
       // At the mean cosine of what is seen of the disc.

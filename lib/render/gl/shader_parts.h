@@ -64,7 +64,7 @@ std::string fresnel_function();
 bool lit_gloss(const Effects& effects);
 
 // What a lobe gathers of a disc, by the chord from the mirror direction to its middle; and how much of a disc stands
-// above the horizon, by the cosine to its middle relative to the sine of its radius: irradiance and part.
+// above the horizon, by the elevation of its middle relative to its radius: irradiance and part.
 std::string disc_functions(std::size_t lobes);
 
 // Lamps at a place: `lamps` holds the direction of each and its light relative to light_white, as they are at a point,
