@@ -412,6 +412,32 @@ TEST_F(Cxf, ReadsTheColorsOfCxf2) {
   EXPECT_NEAR(paints.paints[1].measurement->rows.at(0).lab.L, 51.8372, 1e-4);  // 116 (.2)^(1/3) - 16
 }
 
+// Each set of colors states its light and observer, and what it does not state is told.
+TEST_F(Cxf, HearsTheConditionOfCxf2) {
+  const auto set = [](const std::string& name, const std::string& stated) {
+    return "<ColorSet>" + stated + "<Color ColorName='" + name +
+           "'><ColorSpaceCIELab><L>50</L><A>1</A><B>-2</B></ColorSpaceCIELab></Color></ColorSet>";
+  };
+  const std::string d50 =
+      "<CollectionColorSpaceSpecification><ColorSpaceSpecificationSpectrumTristimulus>"
+      "<FieldOfView>FieldOfView_2_Degree</FieldOfView><IlluminationOptions><Illuminant>Illuminant_D50</Illuminant>"
+      "</IlluminationOptions></ColorSpaceSpecificationSpectrumTristimulus></CollectionColorSpaceSpecification>";
+  ImportOptions options;
+  options.viewings = {{"", geometry("45as45")}};
+  const auto palette = [](const std::string& sets) {
+    return "<CxF xmlns='http://colorexchangeformat.com/v2'><Palette>" + sets + "</Palette></CxF>";
+  };
+  const auto stated = good(palette(set("p", d50)), options);
+  ASSERT_EQ(stated.paints.size(), 1u);
+  EXPECT_EQ(paint::condition_of(stated.paints[0]), (color::ViewingCondition{"D50", 2}));
+  EXPECT_THAT(stated.warnings, Not(Contains(HasSubstr("is not stated: taken as D65/10"))));
+  const auto both = good(palette(set("p", d50) + set("q", "")), options);
+  ASSERT_EQ(both.paints.size(), 2u);
+  EXPECT_EQ(paint::condition_of(both.paints[0]), (color::ViewingCondition{"D50", 2}));
+  EXPECT_EQ(paint::condition_of(both.paints[1]), (color::ViewingCondition{"D65", 10}));
+  EXPECT_THAT(both.warnings, Contains(HasSubstr("is not stated: taken as D65/10")));
+}
+
 TEST_F(Cxf, RefusalsNameTheLine) {
   EXPECT_THAT(refusal(cxf("\n" + object("p", lab("a", "\n<L>12,5</L><A>1</A><B>2</B>")), "")),
               HasSubstr(":3: L is \"12,5\": write a number with a decimal point"));
