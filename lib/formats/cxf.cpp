@@ -98,7 +98,12 @@ class CxfHandler final : public XmlHandler {
           object_->unread.push_back(path_.back());
         return {};
       }
-      color_ = {.kind = *kind, .specification = is_cxf2_ ? set_ : attribute("ColorSpecification")};
+      constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+      color_ = {.kind = *kind,
+                .specification = is_cxf2_ ? set_ : attribute("ColorSpecification"),
+                .lab = {kMissing, kMissing, kMissing},
+                .xyz = {kMissing, kMissing, kMissing}};
+      chroma_ = hue_deg_ = kMissing;
       if (const std::string first = attribute("StartWL"); !first.empty()) {
         GONIO_ASSIGN(color_.first_nm, number("StartWL", first));
       }
@@ -188,6 +193,7 @@ class CxfHandler final : public XmlHandler {
     }
   }
   Remarks& remarks() { return remarks_; }
+  const char* format() const { return is_cxf2_ ? "CxF2" : "CxF3"; }
 
  private:
   bool in(std::string_view parent, std::string_view name) const {
@@ -279,6 +285,12 @@ class CxfHandler final : public XmlHandler {
     if (in("ColorCIELCh", "L")) return take(color_.lab.L, "L", content);
     if (in("ColorCIELCh", "C")) return take(chroma_, "C", content);
     if (in("ColorCIELCh", "H")) return take(hue_deg_, "H", content);
+    if (in("ColorValues", "ColorCIELab") && std::isnan(color_.lab.L + color_.lab.a + color_.lab.b))
+      return error("a Lab lacks one of L, A and B: write all three");
+    if (in("ColorValues", "ColorCIELCh") && std::isnan(color_.lab.L + chroma_ + hue_deg_))
+      return error("an LCh lacks one of L, C and H: write all three");
+    if (in("ColorValues", "ColorCIEXYZ") && std::isnan(color_.xyz.X + color_.xyz.Y + color_.xyz.Z))
+      return error("an XYZ lacks one of X, Y and Z: write all three");
     if (in("ColorValues", "ColorCIELCh")) {
       color_.lab.a = chroma_ * std::cos(hue_deg_ * kDegree);
       color_.lab.b = chroma_ * std::sin(hue_deg_ * kDegree);
@@ -489,7 +501,8 @@ Result<CxfReader> CxfReader::open(InputFile input, const ImportOptions& options)
   state->specifications.place_by(state->options, state->objects.remarks());
   ScaleJudge judge;
   state->specifications.judge_spectra(judge);
-  const auto unit = judge.unit_of_format("CxF3", Scale::kFactor, options.scale, state->objects.remarks());
+  const auto unit =
+      judge.unit_of_format(state->specifications.format(), Scale::kFactor, options.scale, state->objects.remarks());
   if (!unit.ok()) return input_error("{}: {}", name, unit.error().message);
   state->resolver.set_unit(*unit);
   return CxfReader(std::move(state));

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 
 #include "formats/internal/import_for_test.h"
@@ -436,6 +437,18 @@ TEST_F(Cxf, HearsTheConditionOfCxf2) {
   EXPECT_EQ(paint::condition_of(both.paints[0]), (color::ViewingCondition{"D50", 2}));
   EXPECT_EQ(paint::condition_of(both.paints[1]), (color::ViewingCondition{"D65", 10}));
   EXPECT_THAT(both.warnings, Contains(HasSubstr("is not stated: taken as D65/10")));
+}
+
+// A part of a color that is not there was 0.
+TEST_F(Cxf, ColorsAreWhole) {
+  const std::string at_15 = specification("a", angles({{15, ""}}));
+  EXPECT_THAT(refusal(cxf(object("p", lab("a", "<L>50</L><A>1</A>")), at_15)),
+              HasSubstr("a Lab lacks one of L, A and B: write all three"));
+  for (const auto& [kind, value, told] : {std::array<const char*, 3>{"CIEXYZ", "<X>20</X><Y>20</Y>", "X, Y and Z"},
+                                          {"CIELCh", "<L>50</L><C>10</C>", "L, C and H"}})
+    EXPECT_THAT(
+        refusal(cxf(object("p", fmt::format("<Color{0} ColorSpecification=\"a\">{1}</Color{0}>", kind, value)), at_15)),
+        HasSubstr(told));
 }
 
 TEST_F(Cxf, RefusalsNameTheLine) {
