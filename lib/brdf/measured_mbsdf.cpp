@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/text.h"
 #include "brdf/internal/measured_formats.h"
 #include "color/acescg.h"
 
@@ -10,7 +11,10 @@ namespace goniochrome::brdf {
 
 namespace {
 
-constexpr std::string_view kMbsdfMagic = "NVIDIA ARC MBSDF", kReflection = "MBSDF_DATA_REFLECTION=\n";
+// Before the part of reflection stands one of two marks; files of reflection alone may have the shorter one. [MDL,
+// MBSDF file format]
+constexpr std::string_view kMbsdfMagic = "NVIDIA ARC MBSDF", kReflection = "MBSDF_DATA_REFLECTION=\n",
+                           kReflectionAlone = "MBSDF_DATA=\n", kTransmission = "MBSDF_DATA_TRANSMISSION=\n";
 
 // Values at the centers of cells: theta (i + 1/2) 90/n_theta deg for light and viewer, azimuth (k + 1/2) 180/n_phi deg,
 // 180 deg across the normal from the light.
@@ -56,8 +60,14 @@ class MbsdfBrdf final : public MeasuredBrdf {
   Grid grid_;
 };
 
-// A line of the header, which files of paint-export have; others say nothing of their colors.
-constexpr std::string_view kAcescg = "\ncolorspace=\"acescg\"\n";
+// The value of a line key="value" of the header; "" where there is none.
+std::string header_value(std::string_view header, const std::string& key) {
+  const std::string begin = "\n" + key + "=\"";
+  const auto at = header.find(begin);
+  if (at == std::string_view::npos) return "";
+  header.remove_prefix(at + begin.size());
+  return std::string(header.substr(0, header.find_first_of("\"\n")));
+}
 
 void turn_into_rec709(Grid& grid) {
   for (std::size_t i = 0; i < grid.values.size(); i += 3) {
@@ -94,9 +104,18 @@ bool looks_mbsdf(std::string_view, std::string_view head) {
 }
 
 Result<MeasuredPointer> read_mbsdf(const std::string& path, std::string_view bytes) {
-  const auto found = bytes.find(kReflection);
-  if (found == std::string_view::npos) return input_error("{}: has no MBSDF_DATA_REFLECTION part", path);
-  ByteReader reader(bytes.substr(found + kReflection.size()));
+  std::string_view mark = kReflection;
+  auto found = bytes.find(mark);
+  if (found == std::string_view::npos) found = bytes.find(mark = kReflectionAlone);
+  if (found == std::string_view::npos)
+    return input_error("{}: has no MBSDF_DATA_REFLECTION part: export a measurement of reflected light", path);
+  // Files of paint-export state their colors; others say nothing, and are Rec.709.
+  const std::string_view header = bytes.substr(0, found);
+  const std::string space = header_value(header, "colorspace");
+  if (!space.empty() && space != "lin_rec709" && space != "acescg")
+    return input_error("{}: its colorspace is \"{}\", and lin_rec709 and acescg are read: convert it to one of them",
+                       path, shown(space));
+  ByteReader reader(bytes.substr(found + mark.size()));
   const auto type = reader.next<std::uint32_t>(), theta = reader.next<std::uint32_t>(),
              phi = reader.next<std::uint32_t>();
   if (!phi) return input_error("{}: ends within the header of its reflection part", path);
@@ -112,10 +131,12 @@ Result<MeasuredPointer> read_mbsdf(const std::string& path, std::string_view byt
   if (!data)
     return input_error("{}: {} bytes of values where a grid of {} x {} x {} has {}: the file is cut", path,
                        reader.left(), grid.theta, grid.theta, grid.phi, count * sizeof(float));
-  MeasuredTraits traits{.format = "mbsdf"};
+  MeasuredTraits traits{.format = "mbsdf", .description = header_value(header, "description")};
+  if (bytes.substr(bytes.size() - reader.left()).starts_with(kTransmission))
+    traits.findings.emplace_back("its values of light that goes through are left out");
   grid.values.resize(count);
   std::memcpy(grid.values.data(), data->data(), data->size());
-  const bool acescg = grid.channels == 3 && bytes.substr(0, found).find(kAcescg) != std::string_view::npos;
+  const bool acescg = grid.channels == 3 && space == "acescg";
   double negative_square = 0;
   for (std::size_t i = 0; i < count; ++i) {
     if (!std::isfinite(grid.values[i])) return input_error("{}: value {} is not finite", path, i);

@@ -113,7 +113,7 @@ Result<MeasuredPointer> read_openmaterial(const std::string& path, std::string_v
   MeasuredTraits traits{.format = "openmaterial", .description = table.name, .scattered = true};
   std::map<double, std::size_t> wavelengths;
   std::map<std::array<double, 3>, std::map<double, double>> spectra;  // of the directions, in their order
-  std::size_t unknown = 0;
+  std::size_t unknown = 0, repeated = 0;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const TableRow& row = table.rows[i];
     if (std::ranges::any_of(row, [](double value) { return std::isnan(value); })) {
@@ -124,8 +124,10 @@ Result<MeasuredPointer> read_openmaterial(const std::string& path, std::string_v
       return input_error("{}: {}", path, checked.error().message);
     const double nm = std::round(row[0] * 1e12) / 1e3;
     wavelengths[nm] = 0;
-    spectra[{row[1], row[2], row[3]}].try_emplace(nm, row[4]);
+    const auto [kept, is_new] = spectra[{row[1], row[2], row[3]}].try_emplace(nm, row[4]);
+    repeated += !is_new && kept->second != row[4];
   }
+  if (unknown == table.rows.size()) return input_error("{}: has null in every row of its lookupTable", path);
   table.rows.clear();
   if (wavelengths.size() < 2)
     return input_error("{}: has {} wavelength: a color takes two or more in the visible", path, wavelengths.size());
@@ -144,6 +146,9 @@ Result<MeasuredPointer> read_openmaterial(const std::string& path, std::string_v
   const std::size_t partial = spectra.size() - rows.size();
   if (rows.empty())
     return input_error("{}: has no pair of directions with all of its {} wavelengths", path, wavelengths.size());
+  if (repeated > 0)
+    traits.findings.push_back(fmt::format(
+        "{} rows repeat a wavelength and its directions with another BRDF: the first row counts", repeated));
   if (unknown > 0) traits.findings.push_back(fmt::format("{} rows have null, and were left out", unknown));
   if (partial > 0)
     traits.findings.push_back(fmt::format("{} pairs of directions lack wavelengths, and were left out", partial));

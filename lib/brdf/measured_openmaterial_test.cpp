@@ -52,6 +52,17 @@ TEST(OpenMaterial, GivesItsOwnSamplesBack) {
   }
 }
 
+// The first of rows that contradict each other was taken in silence.
+TEST(OpenMaterial, ContradictionsAreTold) {
+  std::string text = openmaterial_text();
+  text.insert(text.size() - 3,
+              fmt::format(",[4e-7,0.2,0,0,9],[7e-7,0.2,0,0,{}]", lobe({std::sin(.2), 0, std::cos(.2)}, {0, 0, 1}, 2)));
+  const auto brdf = read_measured("a.xompt", text);
+  ASSERT_TRUE(brdf.ok()) << brdf.error().message;
+  EXPECT_THAT((*brdf)->traits().findings,
+              testing::ElementsAre(HasSubstr("1 rows repeat a wavelength and its directions with another BRDF")));
+}
+
 TEST(OpenMaterial, RefusalsNameTheRow) {
   const std::string whole = openmaterial_text();
   const auto with = [&](const std::string& row) {
@@ -64,6 +75,7 @@ TEST(OpenMaterial, RefusalsNameTheRow) {
   EXPECT_THAT(refusal(with("[4e-7,0,0,0,\"1\"]")), HasSubstr("holds a text where a number stands"));
   EXPECT_THAT(refusal(with("[400,0,0,0,1]")), HasSubstr("has the wavelength 400: give meters"));
   EXPECT_THAT(refusal(with("[4e-7,0,0,0,1]")), HasSubstr("has 1 wavelength"));
+  EXPECT_THAT(refusal(with("[4e-7,0,0,0,null]")), HasSubstr("has null in every row of its lookupTable"));
   EXPECT_THAT(refusal(with("")), HasSubstr("has no brdf with a lookupTable"));
 }
 

@@ -1,6 +1,8 @@
 #include "color/reflection_file.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -169,6 +171,13 @@ Result<ReflectionOperator> read_reflection_operator(const std::string& path) {
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("k") || !is_table(json["k"]))
     return input_error("{}: a reflection operator is a JSON object with \"k\", three tables of 3 x 3 numbers", path);
+  for (const auto& entry : json.items()) {
+    constexpr std::string_view kKnown[] = {"k", "primaries", "white", "name", "comment"};
+    if (std::ranges::find(kKnown, entry.key()) == std::end(kKnown))
+      return input_error(
+          "{}: \"{}\" is not known: an operator has \"k\", \"primaries\", \"white\", \"name\" and \"comment\"", path,
+          shown(entry.key()));
+  }
   ReflectionOperator op;
   json["k"].get_to(op.k);
   GONIO_TRY(check_coherent(op, path));

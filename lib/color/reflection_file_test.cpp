@@ -42,6 +42,8 @@ TEST(ReflectionFile, ReadsBackWhatItWritesAndRefusesTheRest) {
         {plain + ", \"primaries\": [[0.6,0.3],[0.3,0.6]]}", "x and y of red, green and blue"},
         {plain + ", \"primaries\": [[0.1,0.1],[0.2,0.2],[0.3,0.3]]}", "on one line"},
         {plain + ", \"primaries\": \"rec709\", \"white\": 6500}", "\"white\" is 6500"},
+        // A name in other words left the table to Rec.2020.
+        {plain + ", \"primaires\": \"rec709\"}", "\"primaires\" is not known"},
         {plain + ", \"white\": [0.3,0.3]}", "without \"primaries\""}}) {
     const auto refused = read(text);
     ASSERT_FALSE(refused.ok()) << text;

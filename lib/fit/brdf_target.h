@@ -34,6 +34,7 @@ struct BrdfTarget {
   paint::Paint paint;  // its name, and what a five-angle instrument would have read, D65/2
   std::vector<BrdfSample> samples;
   std::shared_ptr<const brdf::MeasuredBrdf> source = {};  // where the BRDF was read from a file
+  std::vector<std::string> remarks = {};                  // then: reasons to doubt what the file says
 };
 
 // The samples of a measured BRDF, and its readings at 15, 25, 45, 75 and 110 deg. Both are seen under D65 by the 2 deg

@@ -25,6 +25,11 @@ class BasisHandler : public XmlHandler {
     element_ = tag.name;
     line_ = tag.line;
     text_.clear();
+    if (depth_ == 1 && !ours && tag.name == "basis")
+      return values.error(
+          fmt::format("this <basis> is of the namespace \"{}\": the first element must be <basis "
+                      "xmlns=\"{}\" name=\"...\">",
+                      shown(tag.space), kBasisNamespace));
     if (depth_ == 1 && (!ours || tag.name != "basis"))
       return values.error(
           fmt::format("this begins with <{}>, not with a basis: the first element must be <basis "

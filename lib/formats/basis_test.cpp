@@ -77,6 +77,8 @@ TEST(BasisXml, WrongValuesAreNamedWithLineAndRemedy) {
   EXPECT_THAT(error(""), HasSubstr("the basis has no <exponent>: give it at least one"));
   EXPECT_THAT(read_basis(testdata("paints.paints.xml")).error().message,
               HasSubstr("this begins with <paints>, not with a basis"));
+  EXPECT_THAT(read_basis(folder.file("c.xml", "<basis xmlns=\"urn:goniochrome:basis:2\" name=\"b\"/>")).error().message,
+              HasSubstr("c.xml:1: this <basis> is of the namespace \"urn:goniochrome:basis:2\": the first element"));
 }
 
 }  // namespace

@@ -23,12 +23,23 @@ namespace {
 constexpr std::string_view kNamespace = "http://colorexchangeformat.com/CxF3-core",
                            kNamespace2 = "http://colorexchangeformat.com/v2";
 
-// The elements of CxF2 that say what those of CxF3 do. Colors stand in their object itself.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kNamesOfCxf2 = {
+// The elements of CxF2 that say what those of CxF3 do. Colors stand in their object itself, and each set of colors
+// states its illuminant and observer.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kNamesOfCxf2 = {
     {{"ColorSet", "ObjectCollection"},
      {"Color", "Object"},
      {"ColorSpaceCIELab", "ColorCIELab"},
-     {"ColorSpaceCIEXYZ", "ColorCIEXYZ"}}};
+     {"ColorSpaceCIEXYZ", "ColorCIEXYZ"},
+     {"ColorSpaceSpecificationSpectrumTristimulus", "TristimulusSpec"},
+     {"IlluminationOptions", "TristimulusSpec"},
+     {"FieldOfView", "Observer"}}};
+
+// A word of CxF3 for what CxF2 calls Illuminant_D50 or FieldOfView_2_Degree.
+std::string_view without_prefix(std::string_view word) {
+  for (const std::string_view prefix : {"Illuminant_", "FieldOfView_"})
+    if (word.starts_with(prefix)) word.remove_prefix(prefix.size());
+  return word;
+}
 
 // The observer (deg) that a word of CxF3 means; 0 for none.
 int observer_of(std::string_view word) {
@@ -67,6 +78,10 @@ class CxfHandler final : public XmlHandler {
         if (a.name == name && a.space.empty()) return std::string(a.value);
       return "";
     };
+    if (is_cxf2_ && path_.back() == "ObjectCollection") {
+      set_ = fmt::format("set {}", ++sets_);
+      if (pass_ == Pass::kSpecifications) specification_ = &specifications_[set_];
+    }
     if (in("ObjectCollection", "Object")) {
       ++objects_seen_;
       std::string& own_name = object_.emplace().paint.name;
@@ -83,7 +98,12 @@ class CxfHandler final : public XmlHandler {
           object_->unread.push_back(path_.back());
         return {};
       }
-      color_ = {.kind = *kind, .specification = attribute("ColorSpecification")};
+      constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+      color_ = {.kind = *kind,
+                .specification = is_cxf2_ ? set_ : attribute("ColorSpecification"),
+                .lab = {kMissing, kMissing, kMissing},
+                .xyz = {kMissing, kMissing, kMissing}};
+      chroma_ = hue_deg_ = kMissing;
       if (const std::string first = attribute("StartWL"); !first.empty()) {
         GONIO_ASSIGN(color_.first_nm, number("StartWL", first));
       }
@@ -173,6 +193,7 @@ class CxfHandler final : public XmlHandler {
     }
   }
   Remarks& remarks() { return remarks_; }
+  const char* format() const { return is_cxf2_ ? "CxF2" : "CxF3"; }
 
  private:
   bool in(std::string_view parent, std::string_view name) const {
@@ -201,12 +222,10 @@ class CxfHandler final : public XmlHandler {
     return *value;
   }
 
-  // CxF2 has no specifications: nothing is stated.
   Result<void> check_root(const XmlTag& tag) {
     if (tag.name == "CxF" && tag.space == kNamespace) return {};
     if (tag.name == "CxF" && tag.space == kNamespace2) {
       is_cxf2_ = true;
-      specifications_[""] = {};
       return {};
     }
     if (lower(tag.name) == "cxf")
@@ -266,6 +285,12 @@ class CxfHandler final : public XmlHandler {
     if (in("ColorCIELCh", "L")) return take(color_.lab.L, "L", content);
     if (in("ColorCIELCh", "C")) return take(chroma_, "C", content);
     if (in("ColorCIELCh", "H")) return take(hue_deg_, "H", content);
+    if (in("ColorValues", "ColorCIELab") && std::isnan(color_.lab.L + color_.lab.a + color_.lab.b))
+      return error("a Lab lacks one of L, A and B: write all three");
+    if (in("ColorValues", "ColorCIELCh") && std::isnan(color_.lab.L + chroma_ + hue_deg_))
+      return error("an LCh lacks one of L, C and H: write all three");
+    if (in("ColorValues", "ColorCIEXYZ") && std::isnan(color_.xyz.X + color_.xyz.Y + color_.xyz.Z))
+      return error("an XYZ lacks one of X, Y and Z: write all three");
     if (in("ColorValues", "ColorCIELCh")) {
       color_.lab.a = chroma_ * std::cos(hue_deg_ * kDegree);
       color_.lab.b = chroma_ * std::sin(hue_deg_ * kDegree);
@@ -313,7 +338,8 @@ class CxfHandler final : public XmlHandler {
     return {};
   }
 
-  Result<void> end_in_specification(const std::string& content) {
+  Result<void> end_in_specification(const std::string& text) {
+    const std::string content(is_cxf2_ ? without_prefix(text) : text);
     CxfSpecification& specification = *specification_;
     if (in("TristimulusSpec", "Illuminant"))
       specification.condition.illuminant =
@@ -392,6 +418,8 @@ class CxfHandler final : public XmlHandler {
   std::vector<std::string> path_;  // local names from the root; "" for elements of other vocabularies
   std::string text_;
   bool own_tags_ = false, is_cxf2_ = false;
+  std::string set_;  // of the colors of CxF2: the specification that is open
+  int sets_ = 0;
 
   CxfColor color_;
   double chroma_ = 0, hue_deg_ = 0, measurement_deg_ = 0;
@@ -474,7 +502,8 @@ Result<CxfReader> CxfReader::open(InputFile input, const ImportOptions& options)
   state->specifications.place_by(state->options, state->objects.remarks());
   ScaleJudge judge;
   state->specifications.judge_spectra(judge);
-  const auto unit = judge.unit_of_format("CxF3", Scale::kFactor, options.scale, state->objects.remarks());
+  const auto unit =
+      judge.unit_of_format(state->specifications.format(), Scale::kFactor, options.scale, state->objects.remarks());
   if (!unit.ok()) return input_error("{}: {}", name, unit.error().message);
   state->resolver.set_unit(*unit, state->specifications.has_spectra());
   return CxfReader(std::move(state));

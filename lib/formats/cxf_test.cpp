@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 
 #include "formats/internal/import_for_test.h"
@@ -423,6 +424,44 @@ TEST_F(Cxf, ReadsTheColorsOfCxf2) {
   EXPECT_EQ(paints.paints[0].measurement->rows.at(0).lab, (color::Lab{50, 1, -2}));
   EXPECT_EQ(paints.paints[1].measurement->spectra.at(0).factors.size(), 31u);
   EXPECT_NEAR(paints.paints[1].measurement->rows.at(0).lab.L, 51.8372, 1e-4);  // 116 (.2)^(1/3) - 16
+}
+
+// Each set of colors states its light and observer, and what it does not state is told.
+TEST_F(Cxf, HearsTheConditionOfCxf2) {
+  const auto set = [](const std::string& name, const std::string& stated) {
+    return "<ColorSet>" + stated + "<Color ColorName='" + name +
+           "'><ColorSpaceCIELab><L>50</L><A>1</A><B>-2</B></ColorSpaceCIELab></Color></ColorSet>";
+  };
+  const std::string d50 =
+      "<CollectionColorSpaceSpecification><ColorSpaceSpecificationSpectrumTristimulus>"
+      "<FieldOfView>FieldOfView_2_Degree</FieldOfView><IlluminationOptions><Illuminant>Illuminant_D50</Illuminant>"
+      "</IlluminationOptions></ColorSpaceSpecificationSpectrumTristimulus></CollectionColorSpaceSpecification>";
+  ImportOptions options;
+  options.viewings = {{"", geometry("45as45")}};
+  const auto palette = [](const std::string& sets) {
+    return "<CxF xmlns='http://colorexchangeformat.com/v2'><Palette>" + sets + "</Palette></CxF>";
+  };
+  const auto stated = good(palette(set("p", d50)), options);
+  ASSERT_EQ(stated.paints.size(), 1u);
+  EXPECT_EQ(paint::condition_of(stated.paints[0]), (color::ViewingCondition{"D50", 2}));
+  EXPECT_THAT(stated.warnings, Not(Contains(HasSubstr("is not stated: taken as D65/10"))));
+  const auto both = good(palette(set("p", d50) + set("q", "")), options);
+  ASSERT_EQ(both.paints.size(), 2u);
+  EXPECT_EQ(paint::condition_of(both.paints[0]), (color::ViewingCondition{"D50", 2}));
+  EXPECT_EQ(paint::condition_of(both.paints[1]), (color::ViewingCondition{"D65", 10}));
+  EXPECT_THAT(both.warnings, Contains(HasSubstr("is not stated: taken as D65/10")));
+}
+
+// A part of a color that is not there was 0.
+TEST_F(Cxf, ColorsAreWhole) {
+  const std::string at_15 = specification("a", angles({{15, ""}}));
+  EXPECT_THAT(refusal(cxf(object("p", lab("a", "<L>50</L><A>1</A>")), at_15)),
+              HasSubstr("a Lab lacks one of L, A and B: write all three"));
+  for (const auto& [kind, value, told] : {std::array<const char*, 3>{"CIEXYZ", "<X>20</X><Y>20</Y>", "X, Y and Z"},
+                                          {"CIELCh", "<L>50</L><C>10</C>", "L, C and H"}})
+    EXPECT_THAT(
+        refusal(cxf(object("p", fmt::format("<Color{0} ColorSpecification=\"a\">{1}</Color{0}>", kind, value)), at_15)),
+        HasSubstr(told));
 }
 
 TEST_F(Cxf, RefusalsNameTheLine) {

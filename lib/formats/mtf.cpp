@@ -92,12 +92,15 @@ class MtfParser {
     return trimmed(text.substr(colon + 1));
   }
 
-  // `CM3700d/Reflexion/Black-White calibration/SCI/...`: the instrument, and the viewing of all spectra.
+  // `CM3700d/Reflexion/Black-White calibration/SCI/...`: the instrument, and the viewing of all spectra, which may be
+  // of light that went through.
   void take_status(std::string_view status) {
     const auto words = split(status, '/');
     if (!words.front().starts_with("---")) instrument_ = trimmed(words.front());
-    for (const std::string_view word : words)
+    for (const std::string_view word : words) {
       if (trimmed(word) == "SCI" || trimmed(word) == "SCE") viewing_ = trimmed(word);
+      if (lower(trimmed(word)).starts_with("transm")) unlike_reflectance_ = trimmed(word);
+    }
   }
 
   // `1/1   ID   NAME ... 88.43 90.02 -0.17 5.02 5.02 0.01`: the name is what is left between the number and the last
@@ -130,17 +133,17 @@ class MtfParser {
     return {};
   }
 
-  // The first value of a row stands under the head of its wavelength, and the others follow.
+  // Each value of a row stands under the head of its wavelength, and none is missing between two others.
   Result<void> take_row(std::string_view line) {
     const std::size_t from = line.find_first_not_of(" \t");
     const auto hundreds = static_cast<int>(*parse_integer(line.substr(from, 3)));
     GONIO_ASSIGN(const MtfRow row, mtf_values(line, from + 3));
     if (row.values.empty()) return {};
-    const auto distance = [&](std::size_t column) {
-      return std::abs(static_cast<double>(column) - static_cast<double>(row.at.front()));
+    const auto head_of = [&](std::size_t at) {
+      const auto distance = [&](std::size_t column) { return column > at ? column - at : at - column; };
+      return static_cast<int>(std::ranges::min_element(columns_, {}, distance) - columns_.begin());
     };
-    const auto nearest = std::ranges::min_element(columns_, {}, distance);
-    const auto first = static_cast<int>(nearest - columns_.begin());
+    const int first = head_of(row.at.front());
     const int nm = hundreds + first * kMtfStep_nm;
     const double next_nm = first_nm_ + kMtfStep_nm * static_cast<double>(values_.size());
     if (values_.empty()) first_nm_ = nm;
@@ -148,6 +151,10 @@ class MtfParser {
       return input_error(
           "the row of {} nm has {} values from {} nm on, where that of {} nm comes next: the file is damaged", hundreds,
           row.values.size(), nm, shortest(next_nm));
+    for (std::size_t i = 0; i < row.values.size(); ++i)
+      if (head_of(row.at[i]) != first + static_cast<int>(i))
+        return input_error("no value stands at {} nm, and {} nm has one: the file is damaged",
+                           nm + static_cast<int>(i) * kMtfStep_nm, hundreds + head_of(row.at[i]) * kMtfStep_nm);
     values_.insert(values_.end(), row.values.begin(), row.values.end());
     return {};
   }
@@ -167,7 +174,11 @@ class MtfParser {
     record.first_nm = first_nm_ + kMtfStep_nm * static_cast<double>(begin), record.step_nm = kMtfStep_nm;
     values_.clear();
     record.scale = Scale::kPercent, record.viewing = viewing_, record.instrument = instrument_;
-    if (record.values.size() >= 2)
+    if (!unlike_reflectance_.empty())
+      import_.remarks().note(
+          fmt::format("values of {} are of no reflected light and were left out", shown(unlike_reflectance_)),
+          shown(record.name));
+    else if (record.values.size() >= 2)
       import_.add(std::move(record));
     else
       import_.remarks().note("tables without values were left out", shown(record.name));
@@ -178,7 +189,7 @@ class MtfParser {
   RecordImport import_;
   SpectralRecord record_;
   bool has_reference_ = false, any_table_ = false;
-  std::string viewing_, instrument_;
+  std::string viewing_, instrument_, unlike_reflectance_;
   std::vector<std::size_t> columns_;  // where the heads of the open table begin
   std::vector<double> values_;
   double first_nm_ = 0;

@@ -51,6 +51,14 @@ TEST_F(Mtf, ValuesThatTouchAreThoseOfTheText) {
   EXPECT_THAT(good(kHead + kTable).paints, IsEmpty());
 }
 
+TEST_F(Mtf, LightThatWentThroughIsLeftOut) {
+  std::string head = kHead;
+  head.replace(head.find("Reflexion"), 9, "Transmission");
+  const auto paints = good(head + kTable, as_45());
+  EXPECT_THAT(paints.paints, IsEmpty());
+  EXPECT_THAT(paints.warnings, Contains(HasSubstr("values of Transmission are of no reflected light")));
+}
+
 TEST_F(Mtf, RefusalsNameTheLine) {
   EXPECT_THAT(refusal(kHead), HasSubstr("has no table of wavelengths: the file was cut off"));
   const std::string text = kHead + kTable;
@@ -58,6 +66,10 @@ TEST_F(Mtf, RefusalsNameTheLine) {
   std::string missing = text;
   missing.erase(missing.find("    500"), missing.find("    600") - missing.find("    500"));
   EXPECT_THAT(refusal(missing), HasSubstr(":9: the row of 600 nm has 10 values from 600 nm on, where that of 500 nm"));
+  // In the last row, the values behind a gap moved one wavelength down.
+  std::string gap = text;
+  gap.replace(gap.find("0.000  0.000  0.000 0.000\r\n", gap.find("    700")), 5, "     ");
+  EXPECT_THAT(refusal(gap), HasSubstr(":11: no value stands at 710 nm, and 720 nm has one"));
   EXPECT_THAT(refusal(kHead + "    nm     0     10\r\n"),
               HasSubstr("the heads of a table of wavelengths are nm, 0, 10"));
 }

@@ -116,7 +116,10 @@ Result<void> PaintHandler::element(const XmlTag& tag) {
   if (tag.space != kPaintNamespace && parent != Node::kDocument) return foreign_element(tag);
   const auto* rule =
       std::ranges::find_if(kRules, [&](const ElementRule& r) { return r.parent == parent && r.name == tag.name; });
-  if (parent == Node::kDocument && (rule == kRules.end() || tag.space != kPaintNamespace))
+  if (parent == Node::kDocument && rule != kRules.end() && tag.space != kPaintNamespace)
+    return input_error("{}:{}: this <{}> is of the namespace \"{}\": the first element must be {}", file_, tag.line,
+                       tag.name, shown(tag.space), kRoot);
+  if (parent == Node::kDocument && rule == kRules.end())
     return input_error("{}:{}: this begins with <{}>, not with paints: the first element must be {}", file_, tag.line,
                        tag.name, kRoot);
   if (rule == kRules.end())

@@ -362,6 +362,8 @@ TEST(PaintXml, MessagesStayOnOneLine) {
 
 TEST(PaintXml, OtherDocumentsAreRefusedByName) {
   EXPECT_THAT(only_error("<CxF xmlns=\"urn:x\"/>"), HasSubstr("p.xml:1: this begins with <CxF>, not with paints"));
+  EXPECT_THAT(only_error("<paints xmlns=\"urn:goniochrome:paint:2\" version=\"1\"/>"),
+              HasSubstr("p.xml:1: this <paints> is of the namespace \"urn:goniochrome:paint:2\": the first element"));
   EXPECT_THAT(only_error("<paints version=\"1\"/>"), HasSubstr("xmlns=\"urn:goniochrome:paint:1\""));
   EXPECT_EQ(only_error("<paints xmlns=\"urn:goniochrome:paint:1\" version=\"2\"/>"),
             "p.xml:1: version is \"2\": this program reads version 1: convert the file with the program that wrote it");

@@ -55,6 +55,11 @@ std::optional<Space> named_space(std::string name) {
   return std::nullopt;
 }
 
+// True where a name says that the values are logarithms.
+bool is_logarithmic(const std::string& name) {
+  return lower(name).find("log") != std::string::npos || lower(name).find("acescc") != std::string::npos;
+}
+
 Result<Space> space_of(const ImagePart& part, const std::string& file) {
   const auto text = [&](const char* name) { return attribute_or<std::string>(part.attributes, name, ""); };
   const auto unknown = [&](const char* attribute, const std::string& value) {
@@ -75,11 +80,10 @@ Result<Space> space_of(const ImagePart& part, const std::string& file) {
                                                                 : named_space(name);
   const auto* xy = find_attribute<std::vector<float>>(part.attributes, "chromaticities");
   const bool stated = xy && xy->size() == 8;
-  if (!named && (whole_numbers || !stated)) return unknown("its color space", name);
+  if (!named && (whole_numbers || !stated || is_logarithmic(name))) return unknown("its color space", name);
   if (!stated) return *named;
-  // Chromaticities tell the primaries of floats, which are linear unless a gamma is named, and nothing of their curve.
-  Space space;
-  if (named && (whole_numbers || named->curve == Curve::kGamma)) space = *named;
+  // Chromaticities tell the primaries and nothing of the curve, which is linear for floats unless their space has one.
+  Space space = named.value_or(Space{});
   std::copy(xy->begin(), xy->end(), space.primaries.begin());
   return space;
 }

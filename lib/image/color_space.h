@@ -8,7 +8,7 @@ namespace goniochrome::image {
 
 // Turns the first three channels of `part` (one channel is gray) into linear working-space RGB. The color space is the
 // one that the attribute colorInteropID names, or else that of an ICC profile, or else that of the chromaticities, with
-// the curve of oiio:ColorSpace for whole numbers, or else oiio:ColorSpace; an image without any of them is linear
+// the curve of oiio:ColorSpace, or else oiio:ColorSpace; an image without any of them is linear
 // Rec.709. A color space Rec709 is sRGB for whole numbers, and linear for floats. Whites are adapted to D65 by
 // Bradford's method. Error: a color space that is not known, and the remedy.
 Result<Image> working_space_rgb(ImagePart part, const std::string& name);

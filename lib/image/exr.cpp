@@ -22,6 +22,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <span>
 #include <stdexcept>
 
 #include "base/file.h"
@@ -427,9 +428,11 @@ Result<std::string> encoded(const std::vector<ImagePart>& given, ExrStorage stor
   }
   const std::vector<ImagePart>& parts = name_all ? unnamed : given;
 
-  // The format wants one display window for all parts.
+  // The format wants one display window for all parts. A picture is shown as large as it is, whatever follows it.
   Imath::Box2i display(Imath::V2i(0, 0), Imath::V2i(0, 0));
-  for (const ImagePart& part : parts) display.extendBy(Imath::V2i(part.image.width - 1, part.image.height - 1));
+  const bool is_picture = !parts.empty() && parts.front().name == "picture";
+  for (const ImagePart& part : std::span(parts).first(is_picture ? 1 : parts.size()))
+    display.extendBy(Imath::V2i(part.image.width - 1, part.image.height - 1));
   std::vector<PixelType> types;
   std::vector<std::vector<std::string>> names;
   std::vector<Imf::Header> headers;

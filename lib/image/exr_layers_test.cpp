@@ -6,6 +6,7 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 
 #include "base/scratch_for_test.h"
@@ -123,6 +124,23 @@ TEST_F(ExrPicture, OfACropIsBlackAroundIt) {
               HasSubstr("none of its pixels lies in its display window"));
   EXPECT_THAT(read_image(written({"R", "G", "B"}, {{0, 0}, {99999, 99999}}, whole_)).error().message,
               HasSubstr("is too large for its 4 x 2 pixels"));
+}
+
+// Numbers of a transport, in a part wider than its picture, made the picture wide in every other program.
+TEST_F(ExrPicture, IsShownAsLargeAsItIsWhateverFollows) {
+  const auto part = [](const char* name, int width, int height) {
+    return ImagePart{name,
+                     {width, height, 1, std::vector<float>(static_cast<std::size_t>(width * height), 1.0F), {"Y"}},
+                     {},
+                     PixelType::kFloat};
+  };
+  const std::string path = folder_.path("wide.exr");
+  ASSERT_TRUE(write_exr(path, {part("picture", 4, 2), part("numbers", 9, 5)}).ok());
+  EXPECT_EQ(Imf::MultiPartInputFile(path.c_str()).header(0).displayWindow(), whole_);
+  const auto read = read_exr(path);
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->at(1).image.width, 9);
+  EXPECT_EQ(read->at(1).image.height, 5);
 }
 
 }  // namespace

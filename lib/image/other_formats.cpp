@@ -127,7 +127,10 @@ Result<ImagePart> decoded_by_oiiotool(const std::string& content, const std::str
   GONIO_ASSIGN(auto parts, decoded_exr(file_content(out).value(), name));
   ImagePart part = std::move(parts.front());
   part.name.clear(), part.attributes.clear();
-  const std::string space = listed(said.value(), "oiio:ColorSpace");
+  std::string space = listed(said.value(), "oiio:ColorSpace");
+  // OpenImageIO names no color space for the densities of film, which are logarithms as KodakLog is.
+  const std::string transfer = listed(said.value(), "dpx:Transfer");
+  if (transfer == "Printing density" || transfer == "ADX") space = transfer;
   if (!space.empty()) part.attributes["oiio:ColorSpace"] = space;
   part.attributes["goniochrome:integer"] = said->find(" channel, float ") == std::string::npos ? 1 : 0;
   return part;

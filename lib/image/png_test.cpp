@@ -105,12 +105,22 @@ TEST_F(PngFile, PnmIsReadInEveryKind) {
            {"P6 2 1 255\n\xff\0\0\0\xff\x33"s, rgb},
            {"Pf 2 2 -1\n" + none + one + one + none, gray},
            {"PF 1 1 -2\n" + one + none + one, {2, 0, 2}},
-           {"Pf 1 1 1\n\x3f\x80\0\0"s, {1}}}) {
+           {"Pf 1 1 1\n\x3f\x80\0\0"s, {1}},
+           // Lines that end as Windows ends them moved the bytes by one, so that red was green.
+           {"P6\r\n2 1\r\n255\r\n\xff\0\0\0\xff\x33"s, rgb},
+           {"Pf\r\n2 2\r\n-1\r\n" + none + one + one + none, gray},
+           {"P5\r2 1\r255\r\n\xff"s, {10 / 255.0F, 1}}}) {
     const auto part = read_image(folder_.file("x.pnm", content));
     ASSERT_TRUE(part.ok()) << part.error().message;
     EXPECT_THAT(part->image.data, Pointwise(FloatNear(1e-6F), wanted)) << content;
     const bool floats = content[1] == 'f' || content[1] == 'F';
     EXPECT_EQ(text_attribute(*part, "oiio:ColorSpace"), floats ? "linear" : "Rec709");
+  }
+  // Values above white, which the order of bytes may cause, were taken as white.
+  for (const std::string& above : {"P5 2 1 1000\n\xe8\x03\0\0"s, "P5 2 1 100\n\x65\0"s}) {
+    const auto part = read_image(folder_.file("x.pnm", above));
+    ASSERT_FALSE(part.ok());
+    EXPECT_THAT(part.error().message, HasSubstr("the white of its header: export it again"));
   }
   for (const char* wrong : {"P1 2 2 01 1", "P2 2 2 9 9 0 0 10", "P2 2 2 0 0 0 0 0", "P5 2 2 70000 ", "P6 0 1 255 ",
                             "P5 2 2 255 xxx", "P3 x", "Pf 1 1 0 xxxx"})

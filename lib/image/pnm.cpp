@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -38,8 +39,12 @@ class Words {
     skip();
     return taken(rest_.empty() ? 0 : 1);
   }
-  // The bytes behind the one white space that ends the header.
-  std::string_view bytes() const { return rest_.empty() ? rest_ : rest_.substr(1); }
+  // The bytes behind the one white space that ends the header, or behind the two of a line as Windows ends it, where
+  // `size` are left.
+  std::string_view bytes(std::size_t size) const {
+    const bool ends_twice = rest_.starts_with("\r\n") && rest_.size() - 2 >= size;
+    return rest_.empty() ? rest_ : rest_.substr(ends_twice ? 2 : 1);
+  }
 
  private:
   std::string_view taken(std::size_t size) {
@@ -109,9 +114,9 @@ void read_row(const Header& header, const unsigned char* from, float* to) {
     else if (header.is_bitmap())
       to[i] = static_cast<float>(1 - (from[i / 8] >> (7 - i % 8) & 1));
     else if (header.most > 255)
-      to[i] = static_cast<float>(std::min((from[2 * i] << 8 | from[2 * i + 1]) / header.most, 1.0));
+      to[i] = static_cast<float>((from[2 * i] << 8 | from[2 * i + 1]) / header.most);
     else
-      to[i] = static_cast<float>(std::min(from[i] / header.most, 1.0));
+      to[i] = static_cast<float>(from[i] / header.most);
   }
 }
 
@@ -128,7 +133,7 @@ Result<ImagePart> decoded_pnm(const std::string& content, const std::string& nam
   if (header->width * header->height > kMostSamples / header->channels)
     return input_error("{}: cannot be read as an image: its header says more pixels than fit into 8 GB: is it damaged?",
                        name);
-  const std::string_view bytes = words.bytes();
+  const std::string_view bytes = words.bytes(header->row_bytes() * header->height);
   if (bytes.size() / header->row_bytes() < header->height)
     return input_error(
         "{}: cannot be read as an image: its header says more pixels than a file of its size can hold: is it damaged?",
@@ -154,6 +159,11 @@ Result<ImagePart> decoded_pnm(const std::string& content, const std::string& nam
     read_row(*header, reinterpret_cast<const unsigned char*>(bytes.data()) + y * header->row_bytes(),
              &data[row * header->row_samples()]);
   }
+  if (!header->is_float() && std::ranges::any_of(data, [](float value) { return value > 1; }))
+    return input_error(
+        "{}: cannot be read as an image: a value is above {}, the white of its header: export it again, and if it has "
+        "two bytes a value, with the larger one first",
+        name, header->most);
   return part;
 }
 

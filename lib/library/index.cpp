@@ -298,8 +298,11 @@ class Unpacker {
   std::string_view bytes_;
 };
 
-// Why the mapped index does not belong to this state of the library; empty if it does.
-Result<std::string> staleness(const Json& directory, const Guard& guard, const std::string& library_path) {
+// Why the mapped index does not belong to this state of the library and this program; empty if it does.
+Result<std::string> staleness(const Json& directory, const Guard& guard, const std::string& library_path,
+                              const std::string& version) {
+  // Another version may have read the library otherwise.
+  if (directory.value("program", "") != version) return std::string("another version of this program made it");
   if (directory.value("library_bytes", std::uint64_t{0}) != guard.bytes) return std::string("the library has changed");
   if (directory.value("library_modified_ns", std::int64_t{0}) == guard.modified_ns) return std::string();
   GONIO_ASSIGN(const std::uint64_t sum, checksum(library_path));
@@ -394,7 +397,7 @@ Result<LibraryIndex> LibraryIndex::view_of(std::unique_ptr<Bytes> bytes) try {
 }
 
 Result<LibraryIndex> LibraryIndex::open(const std::string& library_path,
-                                        const std::function<void(std::size_t)>& progress) {
+                                        const std::function<void(std::size_t)>& progress, const std::string& version) {
   const Stopwatch mapping;
   if (formats::paint_reference(library_path).name) {
     GONIO_ASSIGN(auto reader, formats::PaintReader::open(library_path));
@@ -408,7 +411,7 @@ Result<LibraryIndex> LibraryIndex::open(const std::string& library_path,
   if (auto bytes = Bytes::mapped(path)) {
     const std::string_view view = bytes->view();
     if (auto mapped = view_of(std::move(bytes)); mapped.ok()) {
-      GONIO_ASSIGN(why, staleness(Unpacker(view).directory(), guard, library_path));
+      GONIO_ASSIGN(why, staleness(Unpacker(view).directory(), guard, library_path, version));
       if (why.empty()) {
         mapped->origin_ = Origin::kMapped;
         mapped->build_s_ = mapping.elapsed_s();
@@ -423,11 +426,12 @@ Result<LibraryIndex> LibraryIndex::open(const std::string& library_path,
   const Stopwatch summing;
   GONIO_ASSIGN(const std::uint64_t sum, checksum(library_path));
   const double summing_s = summing.elapsed_s();
-  GONIO_ASSIGN(
-      Built built,
-      build([&] { return reader.next(); },
-            {{"library_bytes", guard.bytes}, {"library_modified_ns", guard.modified_ns}, {"library_checksum", sum}},
-            progress));
+  GONIO_ASSIGN(Built built, build([&] { return reader.next(); },
+                                  {{"program", version},
+                                   {"library_bytes", guard.bytes},
+                                   {"library_modified_ns", guard.modified_ns},
+                                   {"library_checksum", sum}},
+                                  progress));
   const Stopwatch writing;
   const auto written = write_file(path, built.bytes);
   GONIO_ASSIGN(LibraryIndex index, view_of(std::make_unique<Bytes>(std::move(built.bytes))));

@@ -39,12 +39,13 @@ class LibraryIndex {
   enum class Origin { kMapped, kBuilt, kInMemory };
 
   // The index of the paint file `library_path`. The file `<library_path>.snapindex` is mapped if it belongs to this
-  // state of the library: size and time of modification agree, or size and checksum. Otherwise the library is read, and
-  // the index is written there, whole or not at all. If that cannot be done, it stays in memory and note() says why; so
-  // does that of FILE#NAMES, some paints of a file.
+  // state of the library: size and time of modification agree, or size and checksum, and a program of the same
+  // `version` made it. Otherwise the library is read, and the index is written there, whole or not at all. If that
+  // cannot be done, it stays in memory and note() says why; so does that of FILE#NAMES, some paints of a file.
   // `progress` is told the number of paints read so far. Error: the library cannot be read, or it is a stream.
   static Result<LibraryIndex> open(const std::string& library_path,
-                                   const std::function<void(std::size_t)>& progress = {});
+                                   const std::function<void(std::size_t)>& progress = {},
+                                   const std::string& version = "");
 
   // An index in memory over the paints that `next` gives until it gives none.
   static Result<LibraryIndex> from_paints(const std::function<Result<std::optional<paint::Paint>>()>& next);

@@ -64,6 +64,19 @@ TEST_F(LibraryIndexFile, IsBuiltOnceAndThenMapped) {
   EXPECT_EQ(mapped.bytes(), fs::file_size(index_path(path_)));
 }
 
+// An index of an earlier version was taken as long as the library stayed the same.
+TEST_F(LibraryIndexFile, AnotherVersionMakesItAnew) {
+  for (const auto& [version, wanted] : {std::pair{"1", LibraryIndex::Origin::kBuilt},
+                                        {"1", LibraryIndex::Origin::kMapped},
+                                        {"2", LibraryIndex::Origin::kBuilt}}) {
+    const auto index = LibraryIndex::open(path_, {}, version);
+    ASSERT_TRUE(index.ok()) << index.error().message;
+    EXPECT_EQ(index->origin(), wanted);
+    const bool is_other = version[0] == '2';
+    EXPECT_EQ(index->note() == "another version of this program made it", is_other);
+  }
+}
+
 TEST_F(LibraryIndexFile, ChangedLibraryMakesItStale) {
   opened();
   write_library(101);

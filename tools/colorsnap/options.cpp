@@ -189,7 +189,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "left out with a warning. A query that has no geometry in common with the library is an error.",
       "The library is read once and indexed in FILE.snapindex beside it. Later runs map that file and start in "
       "milliseconds. The index is used only while the size and the time of modification of the library agree with it, "
-      "or its size and checksum; otherwise it is made anew, whole or not at all. Where the folder cannot be written, "
+      "or its size and checksum, and if this version of the program made it; otherwise it is made anew, whole or not "
+      "at all. Where the folder cannot be written, "
       "the index stays in memory, and a message says so.",
       "The table has one line for each match: query, rank, name, code and class of the paint; distance, and the mean "
       "difference per unit of weight; what the query has more of than the match in lightness (dL), chroma (dC) and hue "

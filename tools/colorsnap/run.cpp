@@ -281,9 +281,11 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.cloud.empty() && !options.cloud.ends_with(".svg"))
     return usage_error("--cloud is \"{}\": give a name that ends in .svg", options.cloud);
   if (!options.illuminants.empty()) return run_under_lights(options, search, session);
-  GONIO_ASSIGN(const library::LibraryIndex index, library::LibraryIndex::open(options.library, [&](std::size_t paints) {
-                 session.progress(fmt::format("{}: indexing {}: {} paints", session.tool(), options.library, paints));
-               }));
+  const auto progress = [&](std::size_t paints) {
+    session.progress(fmt::format("{}: indexing {}: {} paints", session.tool(), options.library, paints));
+  };
+  GONIO_ASSIGN(const library::LibraryIndex index,
+               library::LibraryIndex::open(options.library, progress, cli::Session::version()));
   if (index.origin() == library::LibraryIndex::Origin::kBuilt && index.note() != "there was none")
     session.say(
         fmt::format("{}: {}: made anew, {}", session.tool(), library::index_path(options.library), index.note()));

@@ -39,6 +39,7 @@ Result<std::vector<fit::BasisTarget>> read_targets(const Options& options, cli::
     GONIO_ASSIGN(FitInput input, FitInput::open(path));
     if (input.measured) {
       GONIO_ASSIGN(const fit::BrdfTarget brdf, fit::read_brdf_target(*input.measured));
+      for (const std::string& remark : brdf.remarks) session.warn(fmt::format("{}: {}", input.name, remark));
       GONIO_ASSIGN(fit::BasisTarget target, fit::basis_target(brdf, target_options));
       targets.push_back(std::move(target));
       continue;

@@ -227,6 +227,16 @@ cornell() {
   [ "$(grep -c albedo_error r.json)" -eq 0 ]
 }
 
+@test "reasons to doubt a measured BRDF are told" {
+  cornell metal.brdf
+  awk 'NR > 3 { for (i = 5; i <= 7; ++i) $i *= 30 } { print }' metal.brdf >bright.brdf
+  for tool in fit-paint "fit-basis --lobes 1 --starts 2"; do
+    run --separate-stderr $tool bright.brdf -o out.xml
+    [ "$status" -eq 0 ]
+    [[ "$stderr" == *": warning: bright.brdf: reflects "*" of the light at 45 deg: more than there is"* ]]
+  done
+}
+
 @test "measured BRDFs and libraries pass in one run, and their names must differ" {
   cornell one.brdf
   echo "$head${one/\"one\"/\"two\"}</paints>" >two.xml

@@ -60,7 +60,7 @@ class Run {
  public:
   // The colors are those under `illuminant`, or under that of the readings if it is "".
   Run(const fit::PaintFitter& fitter, const std::string& illuminant, std::vector<FitInput>& inputs,
-      formats::PaintWriter& writer, Tally& tally, ColorMaps& maps, Tilts& tilts, const cli::Session& session)
+      formats::PaintWriter& writer, Tally& tally, ColorMaps& maps, Tilts& tilts, cli::Session& session)
       : fitter_(fitter),
         illuminant_(illuminant),
         inputs_(inputs),
@@ -141,6 +141,7 @@ class Run {
                          illuminant_);
     GONIO_ASSIGN(fit::BrdfTarget target, fit::read_brdf_target(*input.measured));
     input.measured.reset();
+    for (const std::string& remark : target.remarks) session_.warn(fmt::format("{}: {}", input.name, remark));
     GONIO_TRY(names_.note(target.paint, k, 1));
     const Stopwatch clock;
     Result<fit::PaintFit> fit = fitter_.fit(target);
@@ -167,7 +168,7 @@ class Run {
   Tally& tally_;
   ColorMaps& maps_;
   Tilts& tilts_;
-  const cli::Session& session_;
+  cli::Session& session_;
   NamesOfAll names_;
 };
 

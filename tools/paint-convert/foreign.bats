@@ -157,6 +157,17 @@ brdf() {
   [ "$status" -eq 2 ]
 }
 
+@test "a measured BRDF without a value at any geometry is refused" {
+  # A MERL table whose bins are negative, which marks what was not measured, but for one.
+  { printf '\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0' && head -c 34991992 /dev/zero | LC_ALL=C tr '\0' '\277' &&
+    head -c 8 /dev/zero; } >none.binary
+  run --separate-stderr paint-convert none.binary -o none.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"none.binary: has no value at any geometry that is asked for: give others by --geometry"* ]]
+  [ ! -e none.xml ]
+  rm none.binary
+}
+
 @test "the cayman metallic reads as the published table says" {
   real_data
   run --separate-stderr paint-convert "$GONIOCHROME_DATA/brdf/cornell/cayman.brdf" --to csv --observer 2 \

@@ -92,6 +92,8 @@ class MeasuredSource : public formats::PaintSource {
       for (const paint::LabReading& row : paint::rows_of({})) options.geometries.push_back(row.geometry);
     const auto color = brdf::measured_color(*brdf, options);
     if (!color.ok()) return input_error("{}: {}", name_, color.error().message);
+    if (color->readings.empty())
+      return input_error("{}: has no value at any geometry that is asked for: give others by --geometry", name_);
 
     for (const std::string& warning : told.warnings) tell(warning);
     for (const std::string& caution : cautions(*color)) tell(caution);

@@ -208,6 +208,18 @@ board_error() { # TEXT LINE...
   done
 }
 
+@test "densities of film in a DPX are no signals of a display" {
+  awk 'BEGIN { print "P3\n4 4\n255"; for (i = 0; i < 16; ++i) print "149 90 121" }' >film.ppm
+  oiiotool film.ppm -d uint10 -o film.dpx
+  # The byte 801 of the header names the curve: 1 is printing density, 3 a logarithm, 6 that of ITU-R 709.
+  for curve in 1 3 6; do
+    printf "\\x0$curve" | dd of=film.dpx bs=1 seek=801 conv=notrunc 2>dd.txt
+    run paint-pick --face film.dpx@2,2,1 -o none.xml
+    [ "$status" -eq $((curve == 6 ? 0 : 3)) ]
+    case $curve in 1) [[ $output == *'film.dpx: its color space is "Printing density", which is not known'* ]] ;; esac
+  done
+}
+
 @test "clipped spots are told" {
   oiiotool --create 20x20 3 --fill:color=1,1,1 20x20 -o white.png
   run paint-pick --face white.png@10,10 -o out.xml

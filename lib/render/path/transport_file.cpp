@@ -183,8 +183,8 @@ class Reader {
     try {
       const int version = header.at("version").get<int>();
       if (version != kVersion && version != kVersionWithoutCoats)
-        return wrong(fmt::format("its version is {}, and this program reads {} and {}", version, kVersionWithoutCoats,
-                                 kVersion));
+        return input_error("{}: its transport is of version {}, and this program reads {} and {}: {}", file_.path,
+                           version, kVersionWithoutCoats, kVersion, kRemedy);
       t_.columns.exponents = header.at("exponents").get<std::vector<double>>();
       t_.bounces = header.at("bounces").get<int>();
       t_.samples = header.value("samples", 1);
