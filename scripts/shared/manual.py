@@ -86,10 +86,11 @@ def split_actions(parser):
 
 def value_of(action):
     """The name of the values that an option or input takes, and whether there may be several; empty if it takes none."""
-    if action.nargs == 0:
+    nargs = getattr(action, "save_nargs", action.nargs)  # parse_intermixed_args() puts it aside, up to Python 3.12
+    if nargs == 0:
         return ""
     name = action.metavar or action.dest.upper()
-    return {"*": f"[{name}...]", "+": f"{name}...", "?": f"[{name}]"}.get(action.nargs, name)
+    return {"*": f"[{name}...]", "+": f"{name}...", "?": f"[{name}]"}.get(nargs, name)
 
 
 def paragraph(action):
