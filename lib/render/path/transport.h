@@ -131,9 +131,6 @@ class Transport {
   const BrightPlaces* bright_places() const { return places_.get(); }
   // About what part of even light a point gets past the mesh.
   double open_share(const rays::Spot& spot) const;
-  // The parts whose paint sends back more light than it gets, by number: paths between such walls gain light for ever
-  // and are ended by chance alone.
-  std::vector<int> gaining_parts() const;
 
  private:
   friend class PointTransport;
