@@ -1,4 +1,4 @@
-// The words of --effects. goniochrome-theory(7), PLAN.
+// The words of --effects, and the effects of a plan that each of them switches. goniochrome-theory(7), PLAN.
 #pragma once
 
 #include <optional>
@@ -10,23 +10,27 @@
 
 namespace goniochrome::render {
 
-// The words of --effects: what is on to begin with, and the effects that are forced on or off.
 enum class Start { kAuto, kAll, kNone };
+// What is on to begin with, and the effects of the plan, or groups of them, that are forced on or off.
 struct EffectWords {
   Start start = Start::kAuto;
-  std::vector<std::pair<std::string, bool>> forced;  // name, on
+  std::vector<std::pair<std::string, bool>> forced = {};  // name, on
+  bool operator==(const EffectWords&) const = default;
+
+  // Returns true where the effect is forced on, false where off, and nothing where neither it nor its group is named.
+  std::optional<bool> forced_on(const std::string& name, const std::string& group = "") const;
+  // Returns true where no effect of rays is left on. Rays are then not traced.
+  bool leave_out_rays() const;
 };
 
-// Error (usage): a word that is none, or that names no effect, with the names that there are.
+// Reads auto, all or none and then +WORD and -WORD, separated by commas. Error (usage): a word that is none, with those
+// that there are or with what to write in its place.
 Result<EffectWords> words_of(const std::string& text);
 
-// Error (usage): a word of --effects that names no effect, with the names that there are.
-Result<void> check_effects(const std::string& effects);
+// The words as a list for the man page, an item each.
+std::string effect_items();
 
-// Returns true where these words leave no effect of rays on. Rays are then not traced. The words are checked.
-bool leave_out_rays(const std::string& effects);
-// Each returns true where the words force the effect on, false where off, and nothing where they do not name it.
-std::optional<bool> floor_forced(const std::string& effects);
-std::optional<bool> sums_forced(const std::string& effects);
+// The word that switches an effect of the plan, as satin does stretch.
+std::string word_of_effect(const std::string& effect);
 
 }  // namespace goniochrome::render

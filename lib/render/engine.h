@@ -122,9 +122,6 @@ class Engine {
   // Completes the picture after its last sample.
   virtual void finish(image::Image&) {}
 
-  // The radiance of single points. Error: an engine that shades whole pictures only.
-  virtual Result<std::vector<color::Rgb>> shade(const std::vector<VisiblePoint>& points) const;
-
   // Whether shade() includes textures and color maps. Otherwise the renderer adds them, see SurfaceLayer.
   virtual bool shades_layer() const { return false; }
 };

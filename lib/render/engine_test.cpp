@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "render/exact.h"
+#include "render/cpu/cpu_engine.h"
 #include "render/picture_error.h"
 #include "render/renderer.h"
 #include "render/scene_effects.h"
@@ -71,8 +71,8 @@ TEST(Engines, DrawTheSceneThatTheReferenceIntegrates) {
   }
 }
 
-// An engine that shades single points gives them the colors of their pixels; the others say that they cannot.
-TEST(Engines, ShadePointsAsPixels) {
+// Engines that need no mesh shade a G-buffer alone. The processor gives single points the colors of their pixels.
+TEST(Engines, ShadeBuffersAndPointsAlike) {
   struct Nowhere : Sight {
     std::shared_ptr<const Gbuffer> seen;
     std::vector<TexturePlace> none;
@@ -93,13 +93,12 @@ TEST(Engines, ShadePointsAsPixels) {
     image::Image picture;
     ASSERT_TRUE(engine->shade(sight, 0, 1, false, picture).ok());
     engine->finish(picture);
-    const auto colors = engine->shade({sight.seen->point(20, 20)});
-    if (!colors.ok()) {
-      EXPECT_THAT(colors.error().message, HasSubstr(info->name));
-      continue;
-    }
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(colors->front()[c], picture.pixel(20, 20)[c], 1e-6) << info->name;
+    EXPECT_GT(picture.pixel(20, 20)[0], 0) << info->name;
     ++able;
+    const auto* cpu = dynamic_cast<const CpuEngine*>(engine.get());
+    if (cpu == nullptr) continue;
+    const color::Rgb color = cpu->colors({sight.seen->point(20, 20)}).front();
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(color[c], picture.pixel(20, 20)[c], 1e-6);
   }
   EXPECT_GE(able, 2);
 }

@@ -33,8 +33,4 @@ Result<const EngineInfo*> engine_named(const std::string& name) {
   return usage_error("there is no engine \"{}\": there are {}", name, known);
 }
 
-Result<std::vector<color::Rgb>> Engine::shade(const std::vector<VisiblePoint>&) const {
-  return usage_error("the engine {} shades whole pictures, and no single points: take another engine", info().name);
-}
-
 }  // namespace goniochrome::render

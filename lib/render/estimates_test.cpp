@@ -142,7 +142,7 @@ TEST_P(Estimates, AreTheErrorsOfTheCheck) {
   ASSERT_TRUE(renderer.ok());
   const auto seen = renderer->look(room.mesh, room.view);
   PlanRequest request;
-  request.effects = std::string("all,-") + matter.effect;
+  request.effects = {Start::kAll, {{matter.effect, false}}};
   request.white_luminance = white;
   const auto plan = renderer->load(scene, {*seen}, request);
   ASSERT_TRUE(plan.ok()) << plan.error().message;

@@ -45,7 +45,7 @@ Measured measured(const World& world, const std::string& effects) {
   EXPECT_TRUE(renderer.ok()) << renderer.error().message;
   result.seen = *renderer->look(world.mesh, world.view);
   PlanRequest request;
-  request.effects = effects, request.engine = "cpu";
+  request.effects = *words_of(effects), request.engine = "cpu";
   const auto plan = renderer->load(world.scene, {result.seen}, request);
   EXPECT_TRUE(plan.ok());
   const auto left = left_out(*renderer, world.scene, *plan, world.view, 1);

@@ -187,7 +187,7 @@ TEST(Panes, ShowTheShadowsBehindThem) {
     renderer->set_rays(setup);
     const auto seen = renderer->look(shop.mesh, shop.view);
     PlanRequest request;
-    request.effects = with_rays ? "all" : "all,-rays", request.engine = "cpu";
+    request.effects = *words_of(with_rays ? "all" : "all,-rays"), request.engine = "cpu";
     const auto plan = renderer->load(shop.scene, {*seen}, request);
     EXPECT_TRUE(plan.ok()) << plan.error().message;
     const auto& item = *std::ranges::find(plan->items, "panes", &PlanItem::effect);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "render/effect_words.h"
 #include "render/effects.h"
 
 namespace goniochrome::render {
@@ -25,7 +26,7 @@ struct RayContext {
 struct PlanRequest {
   double tolerance_de00 = 0.5;        // what leaving effects out may change, p95 over visible pixels, all together
   bool quick = false;                 // the noise of rays that nobody named may be the whole tolerance
-  std::string effects = "auto";       // auto, all or none, then +NAME and -NAME, separated by commas
+  EffectWords effects = {};           // that are asked for
   std::optional<std::string> engine;  // by name; none: the first that draws by prefiltered maps
   double white_luminance = 1;         // what color differences are relative to
   int samples = 1;

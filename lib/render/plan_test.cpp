@@ -77,7 +77,7 @@ const PlanItem& item(const Plan& plan, const std::string& effect) {
 
 PlanRequest with_effects_of(const std::string& effects) {
   PlanRequest request;
-  request.effects = effects;
+  request.effects = *words_of(effects);
   return request;
 }
 
@@ -117,7 +117,9 @@ TEST(Plan, EstimatesAreTheChangesOfThePicture) {
   int seen = 0;
   for (const PlanItem& i : all.plan.items) {
     if (!i.needed) continue;
-    const Planned without = planned(world, with_effects_of("all,-" + i.effect));
+    PlanRequest request;
+    request.effects = {Start::kAll, {{i.effect, false}}};
+    const Planned without = planned(world, request);
     EXPECT_EQ(item(without.plan, i.effect).decision, Decision::kForcedOff);
     EXPECT_NEAR(p95(all.colors, without.colors), i.de00_p95, 0.2 * i.de00_p95 + 0.02) << i.effect;
     seen += i.de00_p95 > 0.1 ? 1 : 0;
@@ -208,10 +210,13 @@ TEST(Plan, LobesNobodySeesAreNotLoaded) {
 }
 
 TEST(Plan, WordsAreCheckedAndForced) {
-  EXPECT_TRUE(check_effects("auto").ok());
-  EXPECT_TRUE(check_effects("none,+diffuse,+lobe-20").ok());
-  EXPECT_THAT(check_effects("fast").error().message, HasSubstr("auto, all or none"));
-  EXPECT_THAT(check_effects("all,-shine").error().message, HasSubstr("there are diffuse, lobes, gloss"));
+  EXPECT_EQ(*words_of("auto"), EffectWords());
+  EXPECT_EQ(*words_of("none, +diffuse,-travel-2,+satin"),
+            (EffectWords{Start::kNone, {{"diffuse", true}, {"tilts-2", false}, {"satin", true}, {"stretch", true}}}));
+  EXPECT_THAT(words_of("fast").error().message, HasSubstr("auto, all or none"));
+  for (const char* text : {"all,-shine", "auto,+tilt", "all,-lobe-x"})
+    EXPECT_THAT(words_of(text).error().message, HasSubstr("there are diffuse, lobes, gloss")) << text;
+  EXPECT_THAT(words_of("auto,-tilts-2").error().message, HasSubstr("\"tilts-2\", which is gone: write travel"));
   World world(flake_paint());
   const Plan plan = planned(world, with_effects_of("none,+lobe-40")).plan;
   for (const PlanItem& i : plan.items) EXPECT_EQ(i.on, i.effect == "lobe-40") << i.effect;

@@ -8,7 +8,6 @@
 #include "base/clock.h"
 #include "base/text.h"
 #include "render/cpu/cpu_engine.h"
-#include "render/effect_words.h"
 #include "render/exact.h"
 #include "render/internal/seen.h"
 #include "render/internal/tilt_table.h"
@@ -252,7 +251,7 @@ Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbu
 Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
                        const PlanRequest& request, const std::vector<const Engine*>& engines, const RayContext& rays,
                        CpuEngine& tried) {
-  GONIO_ASSIGN(const EffectWords words, words_of(request.effects));
+  const EffectWords& words = request.effects;
   Effects all = effects_of(scene);
   all.tolerance_de00 = request.tolerance_de00;
   const std::vector<VisiblePoint> probe = probe_points(gbuffers, kProbe, scene, request.samples);

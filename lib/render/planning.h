@@ -36,8 +36,7 @@ Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbu
 
 // Plans the drawing of `scene`, as seen_scene() has it, by one of these engines, of which there is at least one. The
 // engine that is asked for must be among them. The effects are tried out by `tried`, whose maps may serve the picture.
-// Error: as for loading it with all effects of the scene, and as check_effects(). Sums and the effects of rays come
-// last in the plan.
+// Error: as for loading it with all effects of the scene. Sums and the effects of rays come last in the plan.
 Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
                        const PlanRequest& request, const std::vector<const Engine*>& engines, const RayContext& rays,
                        CpuEngine& tried);

@@ -43,7 +43,7 @@ struct Drawn {
   Frame frame;
 };
 
-Drawn drawn(const World& world, const std::string& effects, bool rays, int samples = 1,
+Drawn drawn(const World& world, const EffectWords& effects, bool rays, int samples = 1,
             double tolerance_de00 = PlanRequest{}.tolerance_de00, bool quick = false) {
   auto renderer = Renderer::create();
   EXPECT_TRUE(renderer.ok());
@@ -83,7 +83,7 @@ const PlanItem& item(const Plan& plan, const std::string& effect) {
 
 TEST(RayEffects, ABallIsDrawnAsBefore) {
   const World world(sphere_mesh(48));
-  const Drawn before = drawn(world, "auto", false), after = drawn(world, "auto", true);
+  const Drawn before = drawn(world, {}, false), after = drawn(world, {}, true);
   EXPECT_EQ(before.frame.picture.data, after.frame.picture.data);
   for (const std::string name : {"shadow", "self", "bounce"}) {
     EXPECT_FALSE(item(after.plan, name).needed);
@@ -94,8 +94,8 @@ TEST(RayEffects, ABallIsDrawnAsBefore) {
 // In even light prefiltered maps are exact but for the horizon, so that what a picture errs by is what the mesh does.
 TEST(RayEffects, APictureWithThemIsTheTruth) {
   const World world(ball_in_a_cup());
-  const Drawn planned = drawn(world, "auto", true), with = drawn(world, "all", true),
-              without = drawn(world, "all,-shadow", true);
+  const Drawn planned = drawn(world, {}, true), with = drawn(world, {Start::kAll}, true),
+              without = drawn(world, {Start::kAll, {{"shadow", false}}}, true);
   for (const std::string name : {"shadow", "self", "bounce"}) {
     EXPECT_EQ(item(planned.plan, name).decision, Decision::kDrawn) << name;
     EXPECT_GT(item(planned.plan, name).de00_p95, 1) << name;
@@ -125,14 +125,14 @@ TEST(RayEffects, APictureWithThemIsTheTruth) {
 TEST(RayEffects, WhatTheFirstPassShowsToBeUnseenStops) {
   World dark(ball_in_a_cup());
   dark.scene.paints.assign(dark.mesh.parts.size(), matt({0.006, 0.006, 0.006}));
-  const Drawn stopped = drawn(dark, "auto", true);
+  const Drawn stopped = drawn(dark, {}, true);
   EXPECT_EQ(item(stopped.plan, "shadow").decision, Decision::kDrawn);
   EXPECT_EQ(item(stopped.plan, "bounce").decision, Decision::kFirstPass);
   EXPECT_EQ(item(stopped.plan, "self").decision, Decision::kFirstPass) << "there are no lobes";
   EXPECT_LT(item(stopped.plan, "bounce").de00_p95, 0.25 * PlanRequest{}.tolerance_de00);
   const TruthError error = against_truth(dark, stopped);
   EXPECT_LT(error.total.de00_p95, 2 * PlanRequest{}.tolerance_de00);
-  const Drawn control = drawn(World(ball_in_a_cup()), "auto", true);
+  const Drawn control = drawn(World(ball_in_a_cup()), {}, true);
   EXPECT_EQ(item(control.plan, "bounce").decision, Decision::kDrawn);
 }
 
@@ -140,7 +140,7 @@ TEST(RayEffects, WhatTheFirstPassShowsToBeUnseenStops) {
 // batches for all. Both agree within three times what they say of themselves.
 TEST(RayEffects, NoisyPointsOfTheTruthAreTracedOn) {
   const World world(ball_in_a_cup());
-  const Drawn picture = drawn(world, "all", true);
+  const Drawn picture = drawn(world, {Start::kAll}, true);
   TruthRequest request;
   request.environment = &world.sky;
   request.seed = 5;
@@ -159,9 +159,9 @@ TEST(RayEffects, NoisyPointsOfTheTruthAreTracedOn) {
 TEST(RayEffects, AQuickPictureMayErrByTheWholeTolerance) {
   constexpr double kTolerance_de00 = 0.4;
   const World world(ball_in_a_cup());
-  const Drawn whole = drawn(world, "auto", true, 1, kTolerance_de00),
-              quick = drawn(world, "auto", true, 1, kTolerance_de00, true),
-              named = drawn(world, "auto,+rays", true, 1, kTolerance_de00, true);
+  const Drawn whole = drawn(world, {}, true, 1, kTolerance_de00),
+              quick = drawn(world, {}, true, 1, kTolerance_de00, true),
+              named = drawn(world, {Start::kAuto, {{"rays", true}}}, true, 1, kTolerance_de00, true);
   for (const Drawn* picture : {&whole, &quick, &named}) {
     const double allowed = (picture == &quick ? 1 : 0.7) * kTolerance_de00;
     EXPECT_DOUBLE_EQ(picture->plan.effects.ray_noise_de00, allowed);
@@ -173,7 +173,7 @@ TEST(RayEffects, AQuickPictureMayErrByTheWholeTolerance) {
 // The mean over the samples of a pixel is that of one sample, apart from edges and noise.
 TEST(RayEffects, SeveralSamplesAreCorrectedEach) {
   const World world(ball_in_a_cup());
-  const Drawn one = drawn(world, "all", true, 1), four = drawn(world, "all", true, 4);
+  const Drawn one = drawn(world, {Start::kAll}, true, 1), four = drawn(world, {Start::kAll}, true, 4);
   double sum_one = 0, sum_four = 0, least = 1;
   for (std::size_t i = 0; i < one.frame.picture.data.size(); i += 4) {
     sum_one += one.frame.picture.data[i], sum_four += four.frame.picture.data[i];
@@ -185,7 +185,7 @@ TEST(RayEffects, SeveralSamplesAreCorrectedEach) {
 
 TEST(RayEffects, SelfAndBounceNeedShadow) {
   const World world(ball_in_a_cup());
-  const Plan forced = drawn(world, "none,+bounce", true).plan;
+  const Plan forced = drawn(world, {Start::kNone, {{"bounce", true}}}, true).plan;
   EXPECT_EQ(item(forced, "shadow").decision, Decision::kForcedOn);
   EXPECT_EQ(item(forced, "bounce").decision, Decision::kForcedOn);
   EXPECT_EQ(item(forced, "self").decision, Decision::kDropped);
@@ -214,7 +214,7 @@ TEST(RayEffects, AFloorIsDrawnAndShadedByEnginesWithMaps) {
       ASSERT_TRUE(seen.ok());
       PlanRequest request;
       request.engine = engine, request.samples = samples, request.tolerance_de00 = 1;
-      request.effects = "auto,+rays";
+      request.effects = {Start::kAuto, {{"rays", true}}};
       const auto plan = renderer->load(world.scene, {*seen}, request);
       ASSERT_TRUE(plan.ok()) << plan.error().message;
       EXPECT_TRUE(plan->effects.rays.floor);
@@ -269,12 +269,12 @@ TEST(RayEffects, AFloorNeedsShadow) {
   const auto seen = renderer->look(world.mesh, world.view);
   ASSERT_TRUE(seen.ok());
   PlanRequest request;
-  request.effects = "auto,-shadow";
+  request.effects = {Start::kAuto, {{"shadow", false}}};
   const auto plan = renderer->load(world.scene, {*seen}, request);
   ASSERT_TRUE(plan.ok());
   EXPECT_FALSE(plan->effects.rays.floor);
   EXPECT_FALSE(plan->effects.rays.any());
-  request.effects = "auto";
+  request.effects = {};
   const auto with = renderer->load(world.scene, {*seen}, request);
   ASSERT_TRUE(with.ok());
   EXPECT_TRUE(with->effects.rays.floor);

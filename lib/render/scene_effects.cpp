@@ -298,6 +298,32 @@ WeightTable weight_table(const Scene& scene, const Effects& effects, const std::
   return table;
 }
 
+std::vector<int> gaining_parts(const Scene& scene) {
+  constexpr double kMost = 1.01, kSteepCosine = 0.04;  // at grazing views every smooth surface is a mirror
+  Effects effects = effects_of(scene);
+  effects.tilt_level = 0, effects.horizon = !effects.lobes.empty();
+  const WeightTable table = weight_table(scene, effects);
+  const int first = static_cast<int>(std::sqrt(kSteepCosine) * table.segments);
+  const auto gains = [&](int part, int segment, int channel) {
+    double share = 0;  // of even light, at the end of the segment; the slots from light_slot() on are those of lamps
+    for (int slot = 0; slot < table.light_slot(); ++slot) {
+      const float* w = table.at(part, segment, slot);
+      share += w[channel] + w[4 + channel];
+    }
+    return share > kMost;
+  };
+  std::vector<int> parts;
+  for (int part = 0; part < table.parts; ++part) {
+    const PartSurface* surface = scene.layer != nullptr ? &scene.layer->surface(part) : nullptr;
+    if (surface != nullptr && (surface->hides_paint() || surface->color_map != nullptr)) continue;
+    bool any = false;
+    for (int segment = first; segment < table.segments; ++segment)
+      for (int channel = 0; channel < 3; ++channel) any = any || gains(part, segment, channel);
+    if (any) parts.push_back(part);
+  }
+  return parts;
+}
+
 Result<void> draws_placed_lamps(const Scene& scene, const char* engine) {
   const bool any = std::ranges::any_of(
       scene.lights, [](const Light& light) { return light.place.has_value() && light.radius_rad > 0; });

@@ -31,4 +31,9 @@ Result<void> draws_placed_lamps(const Scene& scene, const char* engine);
 // `stretched` tells of each part whether other lobes stand for the gloss of its rough coat; empty: of none.
 WeightTable weight_table(const Scene& scene, const Effects& effects, const std::vector<bool>& stretched = {});
 
+// The parts whose paint sends more than 1.01 times even light to some viewer, in some channel. Paths between such walls
+// gain light for ever and are ended by chance alone. Parts where a texture or a color map shows in the place of the
+// paint are left out.
+std::vector<int> gaining_parts(const Scene& scene);
+
 }  // namespace goniochrome::render

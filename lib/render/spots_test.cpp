@@ -151,7 +151,7 @@ TEST(Spots, PicturesOfKeptMapsAreThoseOfMadeMaps) {
 
 TEST(Spots, APlanLeavesThemOutWhereTheyAreNotSeen) {
   Hall hall;
-  const auto planned = [&](const std::string& effects) {
+  const auto planned = [&](const EffectWords& effects) {
     auto renderer = Renderer::create();
     EXPECT_TRUE(renderer.ok());
     const auto seen = renderer->look(hall.mesh, hall.view);
@@ -162,21 +162,21 @@ TEST(Spots, APlanLeavesThemOutWhereTheyAreNotSeen) {
     return *std::move(plan);
   };
   const auto item = [](const Plan& plan) { return *std::ranges::find(plan.items, "spots", &PlanItem::effect); };
-  Plan plan = planned("auto");
+  Plan plan = planned({});
   EXPECT_EQ(item(plan).decision, Decision::kDrawn);
   EXPECT_GT(item(plan).de00_p95, 1);
   EXPECT_EQ(plan.effects.spots, hall.env.spots.size());
-  plan = planned("auto,-spots");
+  plan = planned({Start::kAuto, {{"spots", false}}});
   EXPECT_EQ(item(plan).decision, Decision::kForcedOff);
   EXPECT_EQ(plan.effects.spots, 0U);
-  plan = planned("auto,-horizon");
+  plan = planned({Start::kAuto, {{"horizon", false}}});
   EXPECT_EQ(plan.effects.spots, 0U) << "they need it";
   hall.scene.paints = {matt({0.5, 0.5, 0.5})};
-  plan = planned("auto");
+  plan = planned({});
   EXPECT_EQ(item(plan).decision, Decision::kNotInScene) << "the diffuse map is exact";
   hall.scene.paints = {metallic(false)};
   hall.env.spots.clear();
-  EXPECT_EQ(item(planned("auto")).reason, "no small part of the environment is bright");
+  EXPECT_EQ(item(planned({})).reason, "no small part of the environment is bright");
 }
 
 // Rays that ask for the sun by itself find the same light in the mean, with less noise where all of the sun is hidden.

@@ -18,7 +18,6 @@
 #include "prefilter/filtered_image.h"
 #include "prefilter/lobe_tree.h"
 #include "prefilter/prefilter.h"
-#include "render/effect_words.h"
 #include "stream.h"
 
 namespace goniochrome::tool {
@@ -37,8 +36,8 @@ std::function<bool(double)> looked_up_maps(const Options& options, const Request
   std::vector<paint::LobeFit> paints;
   for (const DressedMesh& dress : stage.dresses) paints.insert(paints.end(), dress.paints.begin(), dress.paints.end());
   if (std::ranges::any_of(paints, [](const paint::LobeFit& paint) { return !paint.tilts.empty(); })) return {};
-  const bool rays = options.gbuffer.empty() && !render::leave_out_rays(options.effects);
-  const bool mirror = rays || render::sums_forced(options.effects).value_or(false) || render::has_mirror(paints) ||
+  const bool rays = options.gbuffer.empty() && !options.effects.leave_out_rays();
+  const bool mirror = rays || options.effects.forced_on("sums").value_or(false) || render::has_mirror(paints) ||
                       options.background == "env";
   return [mirror, exponents = render::lobe_exponents(paints)](double exponent) {
     return paint::is_mirror(exponent) ? mirror : has_exponent(exponents, exponent);

@@ -186,7 +186,7 @@ bool has_open_views(const Options& options, const Request& request, const Stage&
   return stage.scene.env != nullptr && stage.env.mirror.map.size > 0 && stage.env.diffuse.map.size > 0 &&
          stage.scene.lights.empty() && stage.scene.layer == nullptr && !render::has_panes(stage.scene) && !brushed &&
          !tilted && samples <= kMostSamples && stage.scene.background != render::Background::kEnvironment &&
-         options.effects == kStreamEffects && (options.engine == "auto" || options.engine == "cpu");
+         options.effects == stream_effects() && (options.engine == "auto" || options.engine == "cpu");
 }
 
 std::unique_ptr<PaintViews> open_views(const Options& options, const Request& request, Stage& stage,

@@ -1,5 +1,4 @@
 #include "color/spectrum.h"
-#include "effect_words.h"
 #include "render/engine.h"
 #include "settled.h"
 #include "tool.h"
@@ -135,10 +134,11 @@ void add_camera(cli::ToolSpec& spec, Options& o) {
 
 void add_effects(cli::ToolSpec& spec, Options& o) {
   spec.heading = "effects";
-  spec.option("effects", "WORDS", "auto,-fresnel", &o.effects,
+  spec.option("effects", "WORDS", "auto,-fresnel", &o.effects_text,
               "effects to draw: auto, all or none, and then +NAME and -NAME")
-      .more("auto draws what the scene calls for, but what changes too little. The names are:" + effect_items() +
-            "\nRays that are not named take at most 1024 samples of a point. auto,-rays is faster.");
+      .more(
+          "auto draws what the scene calls for, but what changes too little. The names are:" + render::effect_items() +
+          "\nRays that are not named take at most 1024 samples of a point. auto,-rays is faster.");
   o.common.tolerance = 1;
   cli::add_tolerance(spec, o.common, "DE00", "what the finished picture may miss of the truth, at 95 of 100 pixels")
       .more(

@@ -133,7 +133,7 @@ class EngineViews : public PaintViews {
     const bool is_first = plan_ == nullptr;
     if (is_first) tell(plan);
     // Every paint of the environment's basis is drawn without loading again.
-    const bool all_lobes = is_first && stage_.scene.env != nullptr && options_.effects == kStreamEffects;
+    const bool all_lobes = is_first && stage_.scene.env != nullptr && options_.effects == stream_effects();
     covered_ = is_first ? wanted : render::united(covered_, wanted);
     if (!is_first) plan.effects = render::united(plan_->effects, plan.effects);
     if (all_lobes) {

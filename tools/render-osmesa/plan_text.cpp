@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "effect_words.h"
-
 namespace goniochrome::tool {
 
 namespace {
@@ -15,7 +13,7 @@ std::string known(double value) {
 
 // An effect, and the word of --effects that switches it where that is another.
 std::string label_of(const std::string& effect) {
-  const std::string word = word_of_effect(effect);
+  const std::string word = render::word_of_effect(effect);
   return word == effect ? effect : fmt::format("{} ({})", effect, word);
 }
 

@@ -6,7 +6,6 @@
 
 #include "base/text.h"
 #include "render/aov.h"
-#include "render/effect_words.h"
 
 namespace goniochrome::tool {
 
@@ -55,7 +54,6 @@ Result<Request> request_of(const Options& options) {
     return usage_error("--samples is {}: give 1, 4 or 16", options.samples);
   }
   GONIO_ASSIGN(request.reflection, color::chosen_operator(options.reflection));
-  GONIO_TRY(render::check_effects(options.effects));
   request.plan.effects = options.effects;
   request.samples = options.samples > 0 ? options.samples : options.gbuffer.empty() ? 4 : 1;
   request.plan.samples = request.samples;
@@ -66,7 +64,7 @@ Result<Request> request_of(const Options& options) {
   // also draws the extent of lamps at a place on every paint.
   const bool spectral = options.spectral == "on";
   const bool wants_rays = !request.emissions.empty() || spectral || named.kind == FloorRequest::Kind::kPaint ||
-                          (has_floor && render::leave_out_rays(options.effects));
+                          (has_floor && options.effects.leave_out_rays());
   const char* of_rays = !request.emissions.empty() ? "emit"
                         : spectral                 ? "spectral on"
                         : places && !wants_rays    ? "light place:..."

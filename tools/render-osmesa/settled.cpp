@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/text.h"
-#include "effect_words.h"
 #include "render/engine.h"
 
 namespace goniochrome::tool {
@@ -57,7 +56,7 @@ Result<Options> settled(const Options& asked) {
   Options options = asked;
   GONIO_TRY(take_camera(options));
   GONIO_TRY(take_check(options));
-  GONIO_ASSIGN(options.effects, effects_of_words(asked.effects));
+  GONIO_ASSIGN(options.effects, render::words_of(asked.effects_text));
   if (asked.engine == kGpu) {
     const auto able = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->needs_opengl; });
     options.gpu = true, options.engine = (*able)->name;

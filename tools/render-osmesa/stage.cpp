@@ -10,7 +10,6 @@
 #include "image/image.h"
 #include "mesh/unit.h"
 #include "render/aov.h"
-#include "render/effect_words.h"
 #include "render/panes.h"
 #include "render/trim.h"
 #include "spectra.h"
@@ -187,7 +186,7 @@ Result<void> set_rays(const Options& options, const Request& request, Stage& sta
   if (request.engine != nullptr && request.engine->traces_rays) return {};
   render::RaySetup& rays = stage.rays.emplace();
   const bool mirrored = !options.env.empty() && stage.env.mirror.map.size > 0;
-  if (render::leave_out_rays(options.effects)) {
+  if (options.effects.leave_out_rays()) {
     rays.absent = "left out by --effects: what it is worth was not measured";
     rays.refused = true;
   } else if (!options.gbuffer.empty()) {
@@ -197,7 +196,7 @@ Result<void> set_rays(const Options& options, const Request& request, Stage& sta
         "the environment has no mirror part, which rays would meet: make it without --no-mirror. What the mesh does "
         "to light is not known, nor what that is worth";
   }
-  if (mirrored && (rays.absent.empty() || render::sums_forced(options.effects).value_or(false))) {
+  if (mirrored && (rays.absent.empty() || options.effects.forced_on("sums").value_or(false))) {
     stage.sky.emplace(envmap::Environment::from_cube(stage.env.mirror.map, options.env));
     rays.environment = &*stage.sky;
   }

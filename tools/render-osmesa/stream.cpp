@@ -8,7 +8,6 @@
 #include "base/parallel.h"
 #include "base/pipeline.h"
 #include "base/text.h"
-#include "render/effect_words.h"
 #include "render/engine.h"
 #include "render/plan.h"
 #include "stream_sink.h"
@@ -193,17 +192,16 @@ Result<Options> stream_options(const Options& options) {
   if (!options.sheet.empty() && !options.to.empty()) return usage_error("--sheet and --to exclude each other");
   Options adjusted = options;
   adjusted.spectral = "off";
-  adjusted.rays_are_refused = render::leave_out_rays(options.effects);
-  if (options.effects == "auto" || options.effects == "auto,-rays") {
-    adjusted.effects = kStreamEffects;
-  } else if (options.effects.starts_with("auto,")) {
-    adjusted.effects = kStreamEffects + options.effects.substr(4);
+  adjusted.rays_are_refused = options.effects.leave_out_rays();
+  if (options.effects.start == render::Start::kAuto) {
+    render::EffectWords& words = adjusted.effects = stream_effects();
+    if (options.effects.forced != words.forced)
+      words.forced.insert(words.forced.end(), options.effects.forced.begin(), options.effects.forced.end());
   }
-  GONIO_TRY(render::check_effects(adjusted.effects));
   const auto engine =
       options.engine == "auto" ? Result<const render::EngineInfo*>(nullptr) : render::engine_named(options.engine);
   const bool by_rays = engine.ok() && *engine != nullptr && (*engine)->traces_rays;
-  if (options.gbuffer.empty() && (by_rays || !render::leave_out_rays(adjusted.effects)))
+  if (options.gbuffer.empty() && (by_rays || !adjusted.effects.leave_out_rays()))
     return usage_error(
         "rays are not traced for each paint of a stream: trace the light once, by --aov transport -o view.exr, and "
         "give "

@@ -11,7 +11,9 @@
 namespace goniochrome::tool {
 
 // What --effects is in a stream where it says "auto": nothing is left out for a paint, and no rays are traced.
-constexpr const char* kStreamEffects = "all,-rays";
+inline render::EffectWords stream_effects() {
+  return {render::Start::kAll, {{"rays", false}}};
+}
 
 // Whether a picture of each paint is asked for: braces in --output, --sheet, or --to.
 bool is_stream(const Options& options);

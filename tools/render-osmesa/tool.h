@@ -6,6 +6,7 @@
 
 #include "cli/tool.h"
 #include "color/reflection_file.h"
+#include "render/effect_words.h"
 #include "render/engine.h"
 
 namespace goniochrome::tool {
@@ -25,7 +26,7 @@ struct Options {
   std::string view;
   std::string background = "none";
   std::vector<std::string> aovs;
-  std::string effects = "auto", engine = "auto";
+  std::string effects_text = "auto", engine = "auto";
   bool rays_are_refused = false;  // whether --effects says so, in a stream, whose effects are others
   std::string reflection = color::kDefaultOperator;
   std::string spectral = "auto";
@@ -39,11 +40,12 @@ struct Options {
   bool no_cache = false;
   std::string check_source;
 
-  // Values that settled() takes out of --camera, --check and --engine.
+  // Values that settled() takes out of --camera, --check, --effects and --engine.
   std::vector<double> orbit;
   double fov_deg = 30;
   int check = 0;
   std::string check_against = "auto";
+  render::EffectWords effects;
   bool gpu = false;
 };
 

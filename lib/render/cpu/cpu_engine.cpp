@@ -371,10 +371,6 @@ Result<void> CpuEngine::shade(Sight& sight, int sample, float gain, bool add, im
   return {};
 }
 
-Result<std::vector<color::Rgb>> CpuEngine::shade(const std::vector<VisiblePoint>& points) const {
-  return colors(points);
-}
-
 std::vector<color::Rgb> CpuEngine::colors(const std::vector<VisiblePoint>& points) const {
   std::vector<color::Rgb> colors(points.size());
   parallel_for(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {

@@ -35,13 +35,13 @@ class CpuEngine : public Engine {
   void keep_maps() { keeps_maps_ = true; }
   void load_paints(const Scene& scene) override { load_paints(scene, effects_); }
   Result<void> shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) override;
-  Result<std::vector<color::Rgb>> shade(const std::vector<VisiblePoint>& points) const override;
 
   // Takes other paints and some of the effects that were loaded: lobes and effects whose weights are 0 cost time, but
   // are not drawn.
   void load_paints(const Scene& scene, const Effects& effects);
   // Shades all pixels of a G-buffer, as shade() above. Bit-identical for any number of threads.
   void shade(const Gbuffer& gbuffer, float gain, bool add, image::Image& rgba) const;
+  // The radiance of single points, each of which gets the color of its pixel.
   std::vector<color::Rgb> colors(const std::vector<VisiblePoint>& points) const;
 
  private:

@@ -53,10 +53,6 @@ void IntegralEngine::load_paints(const Scene& scene) {
   behind_.load_paints(scene);
 }
 
-Result<std::vector<color::Rgb>> IntegralEngine::shade(const std::vector<VisiblePoint>& points) const {
-  return integrals(points, scene_, effects_);
-}
-
 Result<void> IntegralEngine::shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) {
   const std::shared_ptr<const Gbuffer> seen = sight.gbuffer(sample);
   behind_.shade(*seen, gain, add, rgba);

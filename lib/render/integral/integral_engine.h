@@ -25,7 +25,6 @@ class IntegralEngine : public Engine {
   void load_paints(const Scene& scene) override;
   // Bit-identical for any number of threads.
   Result<void> shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) override;
-  Result<std::vector<color::Rgb>> shade(const std::vector<VisiblePoint>& points) const override;
   bool shades_layer() const override { return true; }
 
  private:

@@ -1,8 +1,6 @@
 #include "render/internal/coat_stretch.h"
 
 #include <algorithm>
-#include <list>
-#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -12,6 +10,7 @@
 #include "brdf/gloss.h"
 #include "brdf/lobe_model.h"
 #include "math/elementary.h"
+#include "render/internal/kept_values.h"
 #include "render/internal/wear.h"
 #include "render/internal/worn_lobes.h"
 
@@ -52,38 +51,14 @@ Set made(const paint::LobeFit& paint, double gloss_deg) {
   return std::make_shared<const paint::TiltedLobes>(brdf::coat_tilts(*coat, index, exponents, mirrored));
 }
 
-// The sets that were asked for last.
-class KeptSets {
- public:
-  Set of(const paint::LobeFit& paint, double gloss_deg) {
-    constexpr std::size_t kMost = 64;
-    const std::vector<double> gloss = gloss_of(paint, gloss_deg);
-    const std::lock_guard lock(mutex_);
-    const auto found = std::ranges::find(kept_, gloss, &Kept::gloss);
-    if (found != kept_.end()) {
-      kept_.splice(kept_.begin(), kept_, found);
-    } else {
-      kept_.push_front({gloss, made(paint, gloss_deg)});
-      if (kept_.size() > kMost) kept_.pop_back();
-    }
-    return kept_.front().set;
-  }
-
- private:
-  struct Kept {
-    std::vector<double> gloss;
-    Set set;
-  };
-  std::mutex mutex_;
-  std::list<Kept> kept_;
-};
-
 }  // namespace
 
 std::shared_ptr<const paint::TiltedLobes> drawn_stretch(const Scene& scene, const Effects& effects, std::size_t part) {
-  static KeptSets kept;
+  static KeptValues<std::vector<double>, Set> kept;
   if (!effects.stretch || !effects.environment || effects.lights > 0 || !wears_rough_coat(scene, part)) return nullptr;
-  return kept.of(scene.paints[part], part < scene.gloss_deg.size() ? scene.gloss_deg[part] : 45);
+  const paint::LobeFit& paint = scene.paints[part];
+  const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : 45;
+  return *kept.get(gloss_of(paint, gloss_deg), [&] { return made(paint, gloss_deg); });
 }
 
 std::vector<bool> stretched_parts(const Scene& scene, const Effects& effects) {

@@ -74,7 +74,7 @@ TEST(BadShapes, DuplicateCoplanarAndInsideOutWallsShowTheSameLight) {
   EXPECT_GT(control, 5);  // another paint
 }
 
-// In a closed box of factor 1.2 light grows without end. Paths end by chance all the same, and the part is told.
+// In a closed box of factor 1.2 light grows without end. Paths end by chance all the same.
 TEST(BadShapes, PathsEndBetweenMapsThatGainLight) {
   brdf::ColorMap map = brdf::color_map_of_size(4, 1.5);
   std::ranges::fill(map.factors, 1.2F);
@@ -82,7 +82,7 @@ TEST(BadShapes, PathsEndBetweenMapsThatGainLight) {
   const SurfaceLayer layer(stage.scene, std::vector<PartSurface>(6, {nullptr, 1, &map}), brdf::CriticalAngle::kSlide);
   stage.scene.layer = &layer;
   stage.emission.assign(6, {1, 1, 1});
-  EXPECT_EQ(stage.build().gaining_parts().size(), 6U);
+  stage.build();
   PathOptions options;
   options.bounces = 1 << 20;
   const PathEstimate estimate = stage.seen(options, {0.1, 0.2, 0}, {0, -1, 0}, 2);

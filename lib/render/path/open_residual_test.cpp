@@ -221,7 +221,7 @@ class Draws {
   }
   Drawn planned(const Scene& scene, const std::string& effects) {
     PlanRequest request;
-    request.effects = effects;
+    request.effects = *words_of(effects);
     request.white_luminance = diffuse_white(&world_.sky.maps, {}).luminance;
     auto plan = renderer_.load(scene, {*renderer_.look(world_.mesh, world_.view)}, request);
     EXPECT_TRUE(plan.ok()) << plan.error().message;

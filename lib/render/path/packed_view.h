@@ -39,10 +39,6 @@ struct UnpackedView {
 // Error: the bytes are not those of packed_view().
 Result<UnpackedView> unpacked_view(std::string_view bytes);
 
-// The transport of some of its points, which are given in ascending order. Without `with_probes` it has none; with
-// them, those stay whose points are among these.
-LobeTransport of_points(const LobeTransport& transport, const std::vector<std::uint32_t>& points, bool with_probes);
-
 // What packing changes in pictures: the largest mean and the largest 95th percentile over all points, CIEDE2000 before
 // the white of the scene, in any of these paints. `reflection` as bounce_scale() takes it.
 struct PackingError {

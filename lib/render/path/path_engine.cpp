@@ -11,6 +11,7 @@
 #include "render/panes.h"
 #include "render/path/path_tracer.h"
 #include "render/path/visible_white.h"
+#include "render/scene_effects.h"
 
 namespace goniochrome::render {
 
@@ -73,7 +74,7 @@ std::vector<std::string> PathEngine::remarks() const {
   constexpr int kMostNames = 6;
   std::string gaining;
   int named = 0;
-  for (const int part : transport_->gaining_parts()) {
+  for (const int part : gaining_parts(scene_)) {
     const auto at = static_cast<std::size_t>(part);
     if (++named > kMostNames) continue;
     const bool floor = at >= scene_.mesh->parts.size();

@@ -229,6 +229,16 @@ TEST(PathEngine, StopsAtItsTimeLimitWithThePictureSoFar) {
     }
 }
 
+TEST(PathEngine, TellsWhichPartsGainLight) {
+  Scene scene;
+  paint::LobeFit lobe, both;
+  lobe.lobes = {{20, 0.9 * 21 / (2 * kPi) * color::Rgb{1, 1, 1}, {}}};
+  both = lobe;
+  both.diffuse = 0.2 / kPi * color::Rgb{1, 1, 1};
+  scene.paints = {matt({1, 1, 1}), matt({0.5, 1.02, 0.5}), lobe, both};
+  EXPECT_EQ(gaining_parts(scene), (std::vector<int>{1, 3}));
+}
+
 TEST(PathEngine, TellsWhatIsOddAboutTheScene) {
   World world(even_environment(), matt({1.2, 0.5, 0.5}));
   world.lay_ground(-0.5, 2);

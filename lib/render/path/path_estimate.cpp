@@ -7,7 +7,8 @@ PathEstimate path_estimate(const Transport& transport, const PathOptions& option
   const PointTransport at(transport, options, spot, rays::float3(to_viewer));
   if (at.certain()) return {at.deterministic(), {}};
   Estimates sums;
-  for (int k = 0; k < batches; ++k) sums.add(at.batch(mixed(mixed(seed, 0), static_cast<std::uint64_t>(k))));
+  for (int k = 0; k < batches; ++k)
+    sums.add(at.batch_shares(mixed(mixed(seed, 0), static_cast<std::uint64_t>(k))).sum());
   Covariance covariance = sums.covariance();
   for (double& element : covariance) element /= batches;
   return {at.deterministic() + sums.mean(), covariance};

@@ -98,8 +98,7 @@ class Picture {
     picture.noise_p95_de00 = std::hypot(noise, found_.stopped_de00);
     const double count = std::max<double>(1, static_cast<double>(points_.size()));
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      PathPoint& point = points_[i];
-      point.needed_samples = kOfFour * states_[i].needed;
+      const PathPoint& point = points_[i];
       picture.noise_mean_de00 += point.noise_de00;
       picture.samples_mean += point.samples;
       picture.free_share += states_[i].certain && point.samples == 0 ? 1 : 0;

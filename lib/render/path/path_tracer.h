@@ -44,8 +44,6 @@ struct PathPoint {
   Covariance covariance;  // of the error of `radiance`; smoothed with that of its neighbors while samples are few
   double noise_de00 = 0;  // of one standard deviation
   int samples = 0;        // 0 where none were needed
-  // Samples that would bring the noise to the tolerance, told from the noise of the neighborhood so far.
-  double needed_samples = 0;
 };
 
 struct PathPicture {

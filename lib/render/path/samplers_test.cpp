@@ -301,16 +301,5 @@ TEST(TracedPaint, IsTheModelOfTheReference) {
   }
 }
 
-TEST(TracedPaint, TellsWhetherItGainsLight) {
-  const auto gains = [](const paint::LobeFit& paint) { return TracedPaint::create(paint, 45, {})->gains_light(); };
-  EXPECT_FALSE(gains(matt({1, 1, 1})));
-  EXPECT_TRUE(gains(matt({1.0000001, 0.5, 0.5})));
-  paint::LobeFit lobe;
-  lobe.lobes = {{20, 0.9 * 21 / (2 * kPi) * color::Rgb{1, 1, 1}, {}}};
-  EXPECT_FALSE(gains(lobe));
-  lobe.diffuse = 0.2 / kPi * color::Rgb{1, 1, 1};
-  EXPECT_TRUE(gains(lobe));
-}
-
 }  // namespace
 }  // namespace goniochrome::render::samplers_test

@@ -42,14 +42,9 @@ class TracedPaint {
 
   // Whether all that it shows are its lobes, its diffuse part and its mirror, which is not so with a texture or a map.
   bool is_lobe_model() const { return map_ == nullptr && layer_ == nullptr && !coat_; }
-  // Whether it sends back more light than it gets, in some channel to some viewer. Its diffuse part is known exactly,
-  // that of its lobes by quadrature to 1 %: a paint is told whose sum is beyond 1 by more than that. Of a texture those
-  // texels are asked whose lobes could be the brightest, some twenty.
-  bool gains_light() const;
 
  private:
   friend class PaintedPoint;
-  bool gains_light(const SurfaceLayer::Place* place) const;
   struct Lobe {
     float exponent = 1, normalization = 0;  // (E + 1)/(2 pi)
     rays::Float3 directional_diffuse, gloss;

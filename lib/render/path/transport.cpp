@@ -195,13 +195,6 @@ LightShares Transport::met_ground(const Hit& hit, const Float3& origin, const Fl
   return spot.inside ? LightShares{} : shown_ground(spot, shaded_->met(spot.position, number));
 }
 
-std::vector<int> Transport::gaining_parts() const {
-  std::vector<int> parts;
-  for (std::size_t part = 0; part < paints_.size(); ++part)
-    if (paints_[part].gains_light()) parts.push_back(static_cast<int>(part));
-  return parts;
-}
-
 bool Transport::is_projected(const Spot& spot) const {
   return ground_ && spot.triangle == rays::kFloor;
 }

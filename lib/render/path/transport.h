@@ -131,9 +131,6 @@ class Transport {
   const BrightPlaces* bright_places() const { return places_.get(); }
   // About what part of even light a point gets past the mesh.
   double open_share(const rays::Spot& spot) const;
-  // The parts whose paint sends back more light than it gets, by number: paths between such walls gain light for ever
-  // and are ended by chance alone.
-  std::vector<int> gaining_parts() const;
 
  private:
   friend class PointTransport;
@@ -258,20 +255,16 @@ class PointTransport {
   // What needs no samples: directional lights, the point's own emission, and what the mirror lobe sees without
   // bounces.
   const color::Rgb& deterministic() const { return deterministic_; }
-  // Whether that is all: then every batch() is 0.
+  // Whether that is all: then the shares below are 0.
   bool certain() const { return certain_; }
-  // The mean of kBatch samples of the rest, drawn from a sequence of this seed. Its expectation is the rest, exactly.
-  color::Rgb batch(std::uint64_t seed) const { return part_of_batch(seed, 0, kBatch); }
-  // The mean of the samples first, first + 1, ... of the same; `first` and `count` are multiples of kHalfFan.
-  color::Rgb part_of_batch(std::uint64_t seed, std::uint32_t first, std::uint32_t count) const {
-    return batch_shares(seed, first, count).sum();
-  }
-  // The same by shares. `any_occluded`, unless null, is told whether any ray of the samples was occluded.
+  // The mean by shares of the samples first, first + 1, ... of the rest, drawn from a sequence of this seed; `first`
+  // and `count` are multiples of kHalfFan. Its expectation is the rest, exactly. `any_occluded`, unless null, is told
+  // whether any ray of the samples was occluded.
   LightShares batch_shares(std::uint64_t seed, std::uint32_t first = 0, std::uint32_t count = kBatch,
                            bool* any_occluded = nullptr) const {
     return shares_of(Sequence(seed, kBatch), first, count, any_occluded);
   }
-  // The same of any sequence.
+  // This draws from any sequence.
   LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count,
                         bool* any_occluded = nullptr) const;
 

@@ -182,29 +182,9 @@ void add_texture_lobes(const Scene& scene, const Effects& all, std::vector<Effec
 
 }  // namespace
 
-// An empty scene calls for nothing, so that its list has each group once.
 const std::vector<std::string>& ray_effect_names() {
   static const std::vector<std::string> names = {"shadow", "self", "bounce", "floor"};
   return names;
-}
-
-const std::vector<std::string>& effect_groups() {
-  static const std::vector<std::string> groups = [] {
-    std::vector<std::string> names;
-    for (const EffectSwitch& effect : effect_switches({}, {}, {})) names.push_back(effect.group);
-    names.emplace_back(kSumsName);
-    names.emplace_back("rays");  // all of the following together
-    names.insert(names.end(), ray_effect_names().begin(), ray_effect_names().end());
-    return names;
-  }();
-  return groups;
-}
-
-bool is_effect_name(const std::string& name) {
-  if (std::ranges::find(effect_groups(), name) != effect_groups().end()) return true;
-  const bool lobe = name.starts_with("lobe-") || name.starts_with("gloss-") || name.starts_with("texture-") ||
-                    name.starts_with("tilts-");
-  return lobe && parse_number(name.substr(name.find('-') + 1)).has_value();
 }
 
 std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all,

@@ -28,12 +28,6 @@ constexpr const char* kSumsName = "sums";
 // The names of the effects of rays, in the order in which plans list them.
 const std::vector<std::string>& ray_effect_names();
 
-// The groups, in the order of the list.
-const std::vector<std::string>& effect_groups();
-
-// Whether --effects may name it: a group, or a single lobe such as lobe-20, gloss-900 or texture-0.
-bool is_effect_name(const std::string& name);
-
 // One switch for each lobe with flake weight, each with gloss weight, and for each other effect. `seen` are visible
 // points of the scene.
 std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all,

@@ -26,13 +26,6 @@ const char* const kReasons[] = {"rays tell where the mesh is in the way of light
                                 "light that the body passes on reaches its diffuse parts",
                                 "the mesh stands on the ground of the environment, which lights it from below"};
 
-std::optional<bool> forced_by(const EffectWords& words, const std::string& name, bool is_ray) {
-  std::optional<bool> forced;
-  for (const auto& [word, on] : words.forced)
-    if (word == name || (is_ray && word == "rays")) forced = on;
-  return forced;
-}
-
 Decision decision_of(bool on, bool forced) {
   if (forced) return on ? Decision::kForcedOn : Decision::kForcedOff;
   return on ? Decision::kDrawn : Decision::kDropped;
@@ -64,7 +57,7 @@ std::vector<PlanItem> ray_items(const EffectWords& words, const RayContext& rays
   constexpr std::size_t kEffects = std::size(kFlags);
   const std::vector<std::string>& names = ray_effect_names();
   std::array<std::optional<bool>, kEffects> forced;
-  for (std::size_t i = 0; i < kEffects; ++i) forced[i] = forced_by(words, names[i], i != kFloor);
+  for (std::size_t i = 0; i < kEffects; ++i) forced[i] = words.forced_on(names[i], i != kFloor ? "rays" : "");
   const bool named =
       std::any_of(forced.begin(), forced.begin() + kFloor, [](const auto& one) { return one.value_or(false); });
   if (rays.floor_forced) forced[kFloor] = true;
@@ -91,7 +84,7 @@ std::vector<PlanItem> ray_items(const EffectWords& words, const RayContext& rays
 
 PlanItem sums_item(const EffectWords& words, const RayContext& rays, bool by_maps, Effects& effects) {
   if (!effects.environment) return unmeasured(kSumsName, "no image light");
-  const std::optional<bool> forced = forced_by(words, kSumsName, false);
+  const std::optional<bool> forced = words.forced_on(kSumsName);
   PlanItem item = unmeasured(kSumsName, "sums over the environment correct the diffuse part and wide lobes");
   if (!rays.has_environment || !by_maps) {
     item.reason = by_maps ? "drawn where rays are traced, or where sums are named with a plus"

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "render/effect_words.h"
 #include "render/plan.h"
 #include "render/plan/effect_list.h"
 

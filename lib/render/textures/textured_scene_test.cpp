@@ -218,12 +218,12 @@ TEST_F(TexturedScene, ThePlanTriesOutTextureAndLobes) {
   dress();
   Frame all, without;
   PlanRequest request;
-  request.effects = "all";
+  request.effects = {Start::kAll};
   const Plan plan = planned(request, all);
   for (const char* name : {"texture", "texture-0", "texture-1", "texture-2"})
     EXPECT_TRUE(item(plan, name).needed) << name;
   for (const char* name : {"texture", "texture-0", "texture-1"}) {
-    request.effects = std::string("all,-") + name;
+    request.effects = {Start::kAll, {{name, false}}};
     const Plan left = planned(request, without);
     EXPECT_EQ(item(left, name).decision, Decision::kForcedOff);
     const double real = difference(all, without), estimate = item(plan, name).de00_p95;
@@ -231,7 +231,7 @@ TEST_F(TexturedScene, ThePlanTriesOutTextureAndLobes) {
     EXPECT_NEAR(std::log2(estimate / real), 0, 0.5) << name << ": " << estimate << " for " << real;
   }
   // Nobody sees the third lobe.
-  request.effects = "auto";
+  request.effects = {};
   const Plan chosen = planned(request, without);
   EXPECT_EQ(item(chosen, "texture-2").decision, Decision::kDropped);
   EXPECT_EQ(item(chosen, "texture-1").decision, Decision::kDrawn);
@@ -255,7 +255,7 @@ TEST_F(TexturedScene, TruthStandsBesideTheEstimate) {
   dress();
   Frame frame;
   PlanRequest request;
-  request.effects = "all";
+  request.effects = {Start::kAll};
   Plan plan = planned(request, frame);
   const envmap::Environment source = sloping_source();
   const PixelSample sample = sampled_pixels(*frame.gbuffer, scene, 60, 3);

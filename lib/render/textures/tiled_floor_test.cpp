@@ -138,15 +138,15 @@ TEST_F(TiledFloor, ThePlanKnowsWhatTheFilterIsWorth) {
   Frame with, without;
   view.samples = 1;
   PlanRequest request;
-  request.effects = "all";
+  request.effects = {Start::kAll};
   const Plan plan = planned(request, with);
-  request.effects = "all,-texture-filter";
+  request.effects = {Start::kAll, {{"texture-filter", false}}};
   const Plan bare = planned(request, without);
   EXPECT_TRUE(item(plan, "texture-filter").needed);
   EXPECT_EQ(item(bare, "texture-filter").decision, Decision::kForcedOff);
   const double real = difference(with, without), estimate = item(plan, "texture-filter").de00_p95;
   EXPECT_NEAR(std::log2(estimate / real), 0, 0.5) << estimate << " for " << real;
-  request.effects = "auto";
+  request.effects = {};
   EXPECT_EQ(item(planned(request, with), "texture-filter").decision, Decision::kDrawn);
   lay(0.2);
   EXPECT_FALSE(item(planned(request, with), "texture-filter").needed) << "texels are larger than pixels";
