@@ -1,10 +1,19 @@
 #!/usr/bin/env bats
 # scripts/make-testdata: the files of testdata/ can be made again.
 
-@test "every file is made again, byte for byte" {
+# described FILE: the header of a picture, without its name.
+described() { oiiotool --info -v "$1" | sed 1,2d; }
+
+@test "every file is made again, byte for byte, or an EXR as another library packs it" {
   "$BATS_TEST_DIRNAME/../make-testdata" --out "$BATS_TEST_TMPDIR/made"
   while read -r made; do
-    cmp "$BATS_TEST_TMPDIR/made/$made" "$TESTDATA/$made"
+    local new="$BATS_TEST_TMPDIR/made/$made" kept="$TESTDATA/$made"
+    if [[ $made != *.exr ]]; then
+      cmp "$new" "$kept"
+    elif ! cmp -s "$new" "$kept"; then
+      oiiotool "$new" "$kept" --diff
+      diff <(described "$new") <(described "$kept")
+    fi
   done < <(cd "$BATS_TEST_TMPDIR/made" && find . -type f)
   [ "$(ls "$BATS_TEST_TMPDIR/made/capture")" = "$(ls "$TESTDATA/capture")" ]
   # Only what PROVENANCE.md says is not among them, and indices that colorsnap keeps beside libraries.
