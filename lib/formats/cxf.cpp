@@ -148,10 +148,12 @@ class CxfHandler final : public XmlHandler {
     text_.clear();
     const bool of_object = inside("Object") && object_;
     if (in("FileInformation", "CreationDate")) file_date_ = content;
-    const auto result = of_object && pass_ == Pass::kSpecifications ? survey(content)
-                        : of_object                                 ? end_in_object(content)
-                        : specification_                            ? end_in_specification(content)
-                                                                    : Result<void>();
+    // The first fault of an object is told.
+    const auto result = of_object && object_->bad                     ? Result<void>()
+                        : of_object && pass_ == Pass::kSpecifications ? survey(content)
+                        : of_object                                   ? end_in_object(content)
+                        : specification_                              ? end_in_specification(content)
+                                                                      : Result<void>();
     if (!result.ok() && keep_going_ && of_object) {
       skipped_.push_back(result.error().message);
       object_->bad = true;
@@ -254,7 +256,7 @@ class CxfHandler final : public XmlHandler {
 
   // The first pass reads values to judge their scale. What is wrong with an object is told by the second.
   Result<void> survey(const std::string& content) {
-    if (!object_->bad && !end_in_object(content).ok()) object_->bad = true;
+    if (!end_in_object(content).ok()) object_->bad = true;
     return {};
   }
 
