@@ -220,6 +220,15 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
     to += shift_floats;
   }
   shading_.weights = weights_.data();
+  lit_lobes_.assign(static_cast<std::size_t>(table.parts), 0);
+  for (int row = 0; light_slots > 0 && row < table.parts * table.segments; ++row)
+    for (std::size_t j = 0; j < effects.lobes.size(); ++j)
+      for (const int slot : {table.directional_diffuse_slot(j), table.gloss_slot(j)}) {
+        const float* ends = table.at(row / table.segments, row % table.segments, slot);
+        if (std::any_of(ends, ends + 8, [](float weight) { return weight != 0; }))
+          lit_lobes_[static_cast<std::size_t>(row / table.segments)] |= std::uint64_t{1} << j;
+      }
+  shading_.lit_lobes = lit_lobes_.data();
   bare_.clear();
   for (const paint::LobeFit& paint : scene.paints) {
     bare_.push_back(paint.diffuse == color::Rgb{} && paint.lobes.empty() && paint.views.empty() && paint.tilts.empty());

@@ -68,6 +68,7 @@ class CpuEngine : public Engine {
   ProductForms forms_;
   std::vector<float> weights_, lights_, products_, exponents_, tilts_, colors_of_forms_;
   std::vector<int> first_tilt_;
+  std::vector<std::uint64_t> lit_lobes_;
   std::vector<bool> bare_;  // parts whose paint shows nothing, as it lies under a texture
   CpuShading shading_;
   TiltStore tilt_store_;

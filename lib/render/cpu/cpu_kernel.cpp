@@ -1,6 +1,7 @@
 #include "render/cpu/cpu_kernel.h"
 
 #include <algorithm>
+#include <bit>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/cpu/cpu_kernel.cpp"
@@ -275,12 +276,18 @@ HWY_INLINE float let_in(float c, float index2) {
 // point. A lamp then costs what its lobes gather, and the weights are fetched once.
 class Lit {
  public:
-  HWY_INLINE explicit Lit(const CpuShading& s) { std::fill_n(light_, 3 * slots(s) * kPointsAtOnce, 0.0F); }
+  // `lobes`: bits, of those that any of the points shows.
+  HWY_INLINE Lit(const CpuShading& s, std::uint64_t lobes) : lobes_(lobes) {
+    add_slot(0);
+    for (std::uint64_t left = lobes; left != 0; left &= left - 1)
+      add_slot(flake(std::countr_zero(left))), add_slot(gloss(std::countr_zero(left)));
+    add_slot(mirror(s));
+  }
 
-  static int slots(const CpuShading& s) { return 2 * s.lobes + 2; }
   static int flake(int lobe) { return 1 + 2 * lobe; }
   static int gloss(int lobe) { return 2 + 2 * lobe; }
   static int mirror(const CpuShading& s) { return 1 + 2 * s.lobes; }
+  std::uint64_t lobes() const { return lobes_; }
 
   // `share` of the light of a lamp, for points from i on.
   HWY_INLINE void add(int slot, std::size_t i, V share, const float* white) {
@@ -295,11 +302,11 @@ class Lit {
   HWY_INLINE void show(const CpuShading& s, const PointArrays& points, const Frame& frame, int count,
                        float* rgba) const {
     for (int i = 0; i < count; ++i) {
-      const float* weight = frame.weights(s, points, i) + s.light_offset;
+      const float* weights = frame.weights(s, points, i) + s.light_offset;
       const Quad t = Quad::filled(frame.t[i]);
       Quad sums[3] = {Quad::filled(0), Quad::filled(0), Quad::filled(0)};
-      const float* light = light_ + i;
-      for (int slot = 0; slot < slots(s); ++slot, weight += 8, light += 3 * kPointsAtOnce) {
+      for (int k = 0; k < slots_; ++k) {
+        const float *weight = weights + 8 * slot_[k], *light = light_ + 3 * slot_[k] * kPointsAtOnce + i;
         const Quad shown = mul_add(t, Quad::load(weight + 4), Quad::load(weight));
         for (int c = 0; c < 3; ++c) sums[c] = mul_add(Quad::filled(light[c * kPointsAtOnce]), shown, sums[c]);
       }
@@ -316,7 +323,15 @@ class Lit {
   }
 
  private:
-  HWY_ALIGN float light_[3 * (2 * kMostLobes + 2) * kPointsAtOnce];
+  static constexpr int kMostSlots = 2 * kMostLobes + 2;
+  HWY_INLINE void add_slot(int slot) {
+    slot_[slots_++] = slot;
+    std::fill_n(light_ + 3 * slot * kPointsAtOnce, 3 * kPointsAtOnce, 0.0F);
+  }
+
+  std::uint64_t lobes_;
+  int slots_ = 0, slot_[kMostSlots];  // that are met
+  HWY_ALIGN float light_[3 * kMostSlots * kPointsAtOnce];
 };
 
 // The square of the index of each point's coat.
@@ -357,7 +372,8 @@ HWY_INLINE void add_light(const CpuShading& s, int number, const PointArrays& po
       const V versine = hn::Mul(hn::Set(f, 0.5F), dot(apart, apart)), log_cos = log_cos_of(versine);
       const auto reached = hn::And(hn::Lt(versine, hn::Set(f, 1.0F)), hn::Gt(hn::Load(f, base + i), hn::Zero(f)));
       const V share = s.tilts != nullptr ? hn::Load(f, tilted.share + i) : hn::Set(f, 1.0F);
-      for (int j = 0; j < s.lobes; ++j) {
+      for (std::uint64_t left = lit.lobes(); left != 0; left &= left - 1) {
+        const int j = std::countr_zero(left);
         const V x = hn::Mul(hn::Set(f, s.exponents[j]), log_cos);
         const auto seen = hn::And(reached, hn::Gt(x, hn::Set(f, -80.0F)));
         if (hn::AllFalse(f, seen)) continue;
@@ -383,6 +399,8 @@ HWY_INLINE float elevation_of(float sine, const CpuShading::Disc& disc) {
 HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& points, const Frame& frame, int count,
                          const float* index2, Lit& lit) {
   const D f;
+  const hn::RebindToSigned<D> whole;
+  constexpr std::size_t kMostLanes = hn::MaxLanes(D());
   const float* light = s.light + 8 * number;
   const CpuShading::Disc& disc = s.discs[number];
   LampSeen lamp;
@@ -421,6 +439,7 @@ HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& poi
   }
   Tilted tilted;
   HWY_ALIGN float chord[kPointsAtOnce], cos_r[kPointsAtOnce], coat_r[kPointsAtOnce];
+  HWY_ALIGN float by_node[kNodeFloats * kPointsAtOnce];
   for (int which = 0; which < s.most_tilts; ++which) {
     if (s.tilts != nullptr) tilt(s, points, which, tilted);
     for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
@@ -431,8 +450,13 @@ HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& poi
       const V cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), r), half);
       hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero))) : one, f, coat_r + i);
     }
-    for (int i = 0; s.coat && i < count; ++i) cos_r[i] *= let_in(cos_r[i], index2[i]);
-    for (int j = 0; j < s.lobes; ++j) {
+    for (int i = 0; i < kPointsAtOnce; ++i) {
+      if (s.coat && i < count) cos_r[i] *= let_in(cos_r[i], index2[i]);
+      float* of_node = by_node + kNodeFloats * i;
+      of_node[0] = irradiance[i], of_node[1] = cos_r[i], of_node[2] = above[i], of_node[3] = coat_r[i];
+    }
+    for (std::uint64_t left = lit.lobes(); left != 0; left &= left - 1) {
+      const int j = std::countr_zero(left);
       const brdf::DiscLobeTable& table = *s.disc_lobes[number * s.lobes + j];
       const V first = hn::Set(f, static_cast<float>(table.first_chord)),
               scale = hn::Set(f, static_cast<float>(table.nodes_per_chord)),
@@ -442,22 +466,25 @@ HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& poi
         const V x = hn::Max(hn::Mul(hn::Sub(hn::Load(f, chord + i), first), scale), zero);
         const auto meets = hn::Lt(x, last);
         if (hn::AllFalse(f, meets)) continue;
+        // Point by point: processors gather slowly, and a node is four floats side by side.
         const V from = hn::IfThenElseZero(meets, x);
-        const auto node = hn::ConvertTo(hn::RebindToSigned<D>(), from);
-        const auto index = hn::ShiftLeft<2>(node);
-        const V t = hn::Sub(from, hn::ConvertTo(f, node));
-        const auto value = [&](int k) HWY_ATTR {
-          const V here = hn::GatherIndex(f, nodes + k, index),
-                  next = hn::GatherIndex(f, nodes + kNodeFloats + k, index);
-          return hn::MulAdd(t, hn::Sub(next, here), here);
-        };
+        const auto node = hn::ConvertTo(whole, from);
+        HWY_ALIGN std::int32_t at[kMostLanes];
+        HWY_ALIGN float part[kMostLanes], by_cosine[kMostLanes], by_coat[kMostLanes];
+        hn::Store(node, whole, at);
+        hn::Store(hn::Sub(from, hn::ConvertTo(f, node)), f, part);
+        for (std::size_t k = 0; k < hn::Lanes(f); ++k) {
+          const float* here = nodes + kNodeFloats * at[k];
+          const Quad zero4 = Quad::filled(0), by = Quad::load(by_node + kNodeFloats * (i + k)),
+                     low = mul_add(Quad::filled(1 - part[k]), Quad::load(here), zero4);
+          float sent[kNodeFloats];
+          mul_add(by, mul_add(Quad::filled(part[k]), Quad::load(here + kNodeFloats), low), zero4).store(sent);
+          by_cosine[k] = sent[0] + sent[1], by_coat[k] = sent[2] + sent[3];
+        }
         const V strength = hn::IfThenElseZero(meets, hn::Load(f, seen + i));
         const V share = s.tilts != nullptr ? hn::Mul(strength, hn::Load(f, tilted.share + i)) : strength;
-        const V by_cosine =
-            hn::MulAdd(value(0), hn::Load(f, irradiance + i), hn::Mul(value(1), hn::Load(f, cos_r + i)));
-        const V by_coat = hn::MulAdd(value(2), hn::Load(f, above + i), hn::Mul(value(3), hn::Load(f, coat_r + i)));
-        lit.add(Lit::flake(j), i, hn::Mul(share, by_cosine), light + 4);
-        lit.add(Lit::gloss(j), i, hn::Mul(share, by_coat), light + 4);
+        lit.add(Lit::flake(j), i, hn::Mul(share, hn::Load(f, by_cosine)), light + 4);
+        lit.add(Lit::gloss(j), i, hn::Mul(share, hn::Load(f, by_coat)), light + 4);
       }
     }
   }
@@ -471,7 +498,9 @@ void ShadePoints(const CpuShading& s, PointArrays& points, int count, float* rgb
   if (s.lights == 0) return;
   HWY_ALIGN float index2[kPointsAtOnce];
   coat_indices(s, points, frame, count, index2);
-  Lit lit(s);
+  std::uint64_t lobes = 0;
+  for (int i = 0; i < count; ++i) lobes |= s.lit_lobes[points.part[i]];
+  Lit lit(s, lobes);
   for (int i = 0; i < s.lights; ++i) {
     if (s.discs != nullptr) {
       add_disc(s, i, points, frame, count, index2, lit);

@@ -17,6 +17,7 @@ enum class MapUse { kNormal, kMirror, kTilted };
 constexpr int kMostClasses = 16;
 constexpr int kMostBlocks = 32;  // of all maps met by the mirror direction together
 constexpr int kMostLobes = 2 * kMostBlocks;
+static_assert(kMostLobes <= 64, "CpuShading::lit_lobes has a bit for each");
 
 // What the kernel shades with. Weights of a part and segment: for each class of maps in order, for each block, 8 floats
 // a and 8 floats b (W = a + b t), in the forms of the maps. Then, for each light slot, 4 floats a and 4 floats b. Then,
@@ -46,6 +47,7 @@ struct CpuShading {
   const PlacedLamp* placed = nullptr;  // of each light; null: all are far away
   int lobes = 0;
   const float* exponents = nullptr;
+  const std::uint64_t* lit_lobes = nullptr;  // of each part, bits: the lobes with any weight in the light of lamps
   bool lit_diffuse = false, fresnel = false, coat = false;
 
   // Where lamps are drawn as discs: for each light its disc, and for each light and lobe what the lobe gathers of it.
