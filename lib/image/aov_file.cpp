@@ -40,6 +40,19 @@ Result<void> take_rays(const std::string& text, AovFile& file) {
   return {};
 }
 
+// A camera looks at the middle of its picture. Where a picture was cut or scaled, its rays go another way.
+Result<void> check_rays(const AovFile& file) {
+  constexpr double kMost_px = 0.25;
+  const Vec3 middle = file.corner + 0.5 * file.image.width * file.right + 0.5 * file.image.height * file.down;
+  for (const Vec3& step : {file.right, file.down})
+    if (file.has_rays && std::abs(dot(middle, step)) > kMost_px * dot(step, step))
+      return input_error(
+          "{}: its rays are those of another size than {} x {}: it was cut or scaled; render buffers of that view, by "
+          "--camera and --size",
+          file.path, file.image.width, file.image.height);
+  return {};
+}
+
 Result<void> take_lights(const std::string& text, AovFile& file) {
   if (text.empty()) return {};
   for (const std::string_view piece : split(text, ';')) {
@@ -163,6 +176,7 @@ Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::st
   take_plan(text("goniochrome:plan"), file);
   file.transport = text("goniochrome:transport");
   file.image = std::move(read.front().image);
+  GONIO_TRY(check_rays(file));
   if (!file.transport.empty())
     file.layers.assign(std::make_move_iterator(read.begin() + 1), std::make_move_iterator(read.end()));
   return file;

@@ -128,9 +128,10 @@ Result<ImagePart> decoded_by_oiiotool(const std::string& content, const std::str
   ImagePart part = std::move(parts.front());
   part.name.clear(), part.attributes.clear();
   std::string space = listed(said.value(), "oiio:ColorSpace");
-  // OpenImageIO names no color space for the densities of film, which are logarithms as KodakLog is.
+  // OpenImageIO names no color space for the densities of film, which are logarithms as KodakLog is, and for depths.
   const std::string transfer = listed(said.value(), "dpx:Transfer");
-  if (transfer == "Printing density" || transfer == "ADX") space = transfer;
+  for (const std::string_view other : {"Printing density", "ADX", "Z depth linear", "Z depth homogeneous"})
+    if (transfer == other) space = transfer;
   if (!space.empty()) part.attributes["oiio:ColorSpace"] = space;
   part.attributes["goniochrome:integer"] = said->find(" channel, float ") == std::string::npos ? 1 : 0;
   return part;

@@ -184,6 +184,11 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
   render-osmesa -q $scene --effects auto,-rays --aov normal,part -o view.exr
   render-osmesa -q --gbuffer view.exr -p fitted.xml#signal_white --env small.env.exr -o out.exr --report r.json
   [[ $(of reason shadow) == *"without their mesh"* ]]
+  # A part of a picture has the rays of the whole in its header, by which it would be lit from elsewhere.
+  oiiotool view.exr --cut 24x18+12+9 -o cut.exr
+  run render-osmesa --gbuffer cut.exr -p fitted.xml#signal_white --env small.env.exr -o none.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" == *"its rays are those of another size than 24 x 18"* ]]
 }
 
 @test "a name that is no effect of rays is refused" {
