@@ -342,7 +342,7 @@ std::shared_ptr<const DiscHorizonTable> disc_horizon_table(double radius_rad) {
   return kept<DiscHorizonTable>(radius_rad, [&] {
     const auto table = std::make_shared<DiscHorizonTable>();
     for (int i = 0; i <= DiscHorizonTable::kNodes; ++i) {
-      const double sine = std::sin(radius_rad * std::min(1.0, 2.0 * i / (DiscHorizonTable::kNodes - 1) - 1));
+      const double sine = math::sin(radius_rad * std::min(1.0, 2.0 * i / (DiscHorizonTable::kNodes - 1) - 1));
       table->nodes.push_back(
           {static_cast<float>(disc_irradiance(sine, radius_rad)), static_cast<float>(disc_above(sine, radius_rad))});
     }
