@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <mutex>
 #include <utility>
 
 #include "base/angles.h"
+#include "base/kept_values.h"
 #include "base/parallel.h"
 #include "math/cosine_power.h"
 #include "math/elementary.h"
@@ -281,31 +280,31 @@ class CoarseNodes {
   std::array<double, 2> largest_{};
 };
 
-std::shared_ptr<const DiscLobeTable> made_table(double exponent, double radius) {
-  auto table = std::make_shared<DiscLobeTable>();
+DiscLobeTable made_table(double exponent, double radius) {
+  DiscLobeTable table;
   // Nine standard deviations of the lobe to both sides of the rim.
   const double reach = 9 / std::sqrt(exponent + 0.5);
   const double first = std::max(0.0, radius - reach), last = std::min({kPi, radius + reach, radius + kPi / 2});
   const double last_chord = 2 * math::sin(0.5 * last);
-  table->first_chord = 2 * math::sin(0.5 * first);
-  table->nodes_per_chord = (DiscLobeTable::kNodes - 1) / (last_chord - table->first_chord);
-  table->nodes.resize(DiscLobeTable::kNodes + 1);
+  table.first_chord = 2 * math::sin(0.5 * first);
+  table.nodes_per_chord = (DiscLobeTable::kNodes - 1) / (last_chord - table.first_chord);
+  table.nodes.resize(DiscLobeTable::kNodes + 1);
   const auto compute = [&](std::size_t i) {
-    table->nodes[i] =
-        disc_lobe_node(exponent, radius, table->first_chord + static_cast<double>(i) / table->nodes_per_chord);
+    table.nodes[i] =
+        disc_lobe_node(exponent, radius, table.first_chord + static_cast<double>(i) / table.nodes_per_chord);
   };
   constexpr std::size_t kComputed = DiscLobeTable::kNodes - 1;
   parallel_for((kComputed + kStride - 1) / kStride, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) compute(i * kStride);
   });
-  const CoarseNodes coarse(table->nodes);
+  const CoarseNodes coarse(table.nodes);
   parallel_for(coarse.intervals() + 1, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t interval = begin; interval < end; ++interval) {
       const bool smooth = coarse.is_smooth(interval);
       for (std::size_t j = 1; j < kStride; ++j) {
         const std::size_t i = interval * kStride + j;
         if (smooth) {
-          table->nodes[i] = coarse.between(interval, j);
+          table.nodes[i] = coarse.between(interval, j);
         } else if (i < kComputed) {
           compute(i);
         }
@@ -315,38 +314,23 @@ std::shared_ptr<const DiscLobeTable> made_table(double exponent, double radius) 
   return table;
 }
 
-// The table of a key, made once by any number of threads, and forgotten where there are too many.
-template <class Table, class Key, class Make>
-std::shared_ptr<const Table> kept(const Key& key, const Make& make) {
-  constexpr std::size_t kMost = 4096;
-  static std::mutex mutex;
-  static std::map<Key, std::shared_ptr<const Table>> tables;
-  {
-    const std::scoped_lock lock(mutex);
-    const auto found = tables.find(key);
-    if (found != tables.end()) return found->second;
-  }
-  std::shared_ptr<const Table> made = make();
-  const std::scoped_lock lock(mutex);
-  if (tables.size() >= kMost) tables.clear();
-  return tables.emplace(key, std::move(made)).first->second;
-}
-
 }  // namespace
 
 std::shared_ptr<const DiscLobeTable> disc_lobe_table(double exponent, double radius_rad) {
-  return kept<DiscLobeTable>(std::pair{exponent, radius_rad}, [&] { return made_table(exponent, radius_rad); });
+  static KeptValues<std::pair<double, double>, DiscLobeTable> kept;
+  return kept.get({exponent, radius_rad}, [&] { return made_table(exponent, radius_rad); });
 }
 
 std::shared_ptr<const DiscHorizonTable> disc_horizon_table(double radius_rad) {
-  return kept<DiscHorizonTable>(radius_rad, [&] {
-    const auto table = std::make_shared<DiscHorizonTable>();
+  static KeptValues<double, DiscHorizonTable> kept;
+  return kept.get(radius_rad, [&] {
+    DiscHorizonTable table;
     for (int i = 0; i <= DiscHorizonTable::kNodes; ++i) {
       const double sine = math::sin(radius_rad * std::min(1.0, 2.0 * i / (DiscHorizonTable::kNodes - 1) - 1));
-      table->nodes.push_back(
+      table.nodes.push_back(
           {static_cast<float>(disc_irradiance(sine, radius_rad)), static_cast<float>(disc_above(sine, radius_rad))});
     }
-    return std::shared_ptr<const DiscHorizonTable>(table);
+    return table;
   });
 }
 

@@ -77,7 +77,7 @@ void BlockTree::build(Sheet& sheet, const SolidAngles& solid_angles) const {
   }
 }
 
-// Of a cube's face, no point of a rectangle is farther than one of its corners.
+// A corner is the farthest point of a rectangle on a cube's face.
 double BlockTree::radius_of_texels(const Vec3& axis, int left, int right, int top, int bottom) const {
   const SphereGrid& grid = env_->grid();
   double radius = 0;

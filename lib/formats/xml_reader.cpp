@@ -140,7 +140,7 @@ Result<void> PaintHandler::element(const XmlTag& tag) {
   return begin(rule->node, values);
 }
 
-// What stands in a fixed order inside `rule`'s parent must not go back in it.
+// Returns an error where the parent of `rule` orders its elements and this one comes after a later one.
 Result<void> PaintHandler::in_order(const ElementRule& rule, const XmlValues& values) {
   last_child_.resize(open_.size() + 1);
   const Node last = std::exchange(last_child_.back(), rule.node);

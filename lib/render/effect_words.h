@@ -11,7 +11,7 @@
 namespace goniochrome::render {
 
 enum class Start { kAuto, kAll, kNone };
-// What is on to begin with, and the effects of the plan, or groups of them, that are forced on or off.
+// The words of --effects say where a plan starts, and which of its effects or groups are forced on or off.
 struct EffectWords {
   Start start = Start::kAuto;
   std::vector<std::pair<std::string, bool>> forced = {};  // name, on

@@ -122,7 +122,7 @@ class Engine {
   // Completes the picture after its last sample.
   virtual void finish(image::Image&) {}
 
-  // Whether shade() includes textures and color maps. Otherwise the renderer adds them, see SurfaceLayer.
+  // Returns whether shade() includes textures and color maps. Otherwise the renderer adds them, see SurfaceLayer.
   virtual bool shades_layer() const { return false; }
 };
 

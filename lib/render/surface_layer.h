@@ -73,8 +73,8 @@ class SurfaceLayer {
   // The most lobes of a texture.
   int lobes() const;
 
-  // What a point shows of one of its textures: the number, its place there (as it is, and with the
-  // repetition) and the probes of it, and the part of what is seen.
+  // One texture that a point shows: its number, the place in it (as it is, and with the repetition), its probes, and
+  // its part of what is seen.
   struct Shown {
     std::size_t number = 0;
     const TexturePlace* place = nullptr;

@@ -51,7 +51,7 @@ class CxfResolver {
               const ImportOptions& options)
       : specifications_(specifications), options_(options), remarks_(remarks) {}
 
-  // What makes factors of the values of spectra, and whether the file has any.
+  // `unit` makes factors of the values of spectra. `has_spectra` says whether the file has any.
   void set_unit(double unit, bool has_spectra) {
     unit_ = unit;
     xyz_scale_.set(options_.scale, has_spectra);

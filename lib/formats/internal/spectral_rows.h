@@ -86,7 +86,7 @@ class ScaleJudge {
   double as_factor_ = 0, as_percent_ = 0;  // how far the values lie from the L* beside them
 };
 
-// What makes XYZ from 0 to 1 of a file's values, which formats define from 0 to 100. Where a file has no spectra that
+// Scales the XYZ of a file to 0 to 1; formats define it from 0 to 100. Where a file has no spectra that
 // --scale could speak of, it speaks of XYZ. It remarks at the end where no Y is so large that its scale shows.
 class XyzScale {
  public:

@@ -388,12 +388,12 @@ HWY_INLINE void add_light(const CpuShading& s, int number, const PointArrays& po
 constexpr int kNodeFloats = 4;  // cosine, cosine, plain, plain
 static_assert(sizeof(brdf::DiscLobeTable::Node) == kNodeFloats * sizeof(float));
 
-// Of the middle of a disc with that sine, relative to its radius, -1 or more.
+// Returns the elevation of a disc's middle, whose sine is given, relative to the disc's radius: -1 or more.
 HWY_INLINE float elevation_of(float sine, const CpuShading::Disc& disc) {
   return std::max(-1.0F, static_cast<float>(math::asin(std::max(-1.0F, sine))) / disc.radius_rad);
 }
 
-// The same of a disc, with its mirror image. Each lobe is looked up by the chord between the mirror direction and the
+// Adds the light of a disc and of its mirror image. Each lobe is looked up by the chord between the mirror direction and the
 // middle of the disc. Of what it gathers, one part counts with cosine and coat at the disc and the other with those at
 // the mirror direction.
 HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& points, const Frame& frame, int count,

@@ -18,7 +18,7 @@ std::string shading_vertex_shader();
 // for no ground. goniochrome-theory(7), PATHS, Ground.
 std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
                                     const std::vector<double>& tilted, bool projected_ground = false);
-// That of a scene, with its tilted lobes. Textures are added by the processor.
+// Returns the program of a scene, with its tilted lobes. Textures are added by the processor.
 std::string shading_fragment_shader(const Scene& scene, const Effects& effects);
 
 // One of these programs for OpenGL ES 3, which is what WebGL 2 draws with: it differs in its head alone. That of the

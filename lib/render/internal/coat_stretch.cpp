@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "base/angles.h"
+#include "base/kept_values.h"
 #include "brdf/coat_facets.h"
 #include "brdf/coat_tilts.h"
 #include "brdf/gloss.h"
 #include "brdf/lobe_model.h"
 #include "math/elementary.h"
-#include "render/internal/kept_values.h"
 #include "render/internal/wear.h"
 #include "render/internal/worn_lobes.h"
 

@@ -6,10 +6,10 @@
 #include <tuple>
 
 #include "base/angles.h"
+#include "base/kept_values.h"
 #include "brdf/lobe_model.h"
 #include "math/elementary.h"
 #include "math/quadrature.h"
-#include "render/internal/kept_values.h"
 
 namespace goniochrome::render {
 

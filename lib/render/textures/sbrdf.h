@@ -96,7 +96,7 @@ class SbrdfShader {
   // called for, and that may be on many threads.
   FilterProbes probes(std::size_t texture, const TexturePlace& place, double scale) const;
 
-  // As the kernel reads it. Levels have these lobes of the texture alone, since theirs stand for several.
+  // Returns a texture as the kernel reads it. Levels have these lobes of the texture alone, since theirs stand for several.
   const PackedTexture& packed(std::size_t texture, int level = 0, std::uint32_t lobes = ~0U) const;
 
   // Shades up to kPointsAtOnce points that were put.
