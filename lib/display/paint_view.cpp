@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "math/elementary.h"
 
 namespace goniochrome::display {
@@ -62,8 +63,19 @@ double srgb_signal(double light) {
   return v <= 0.0031308 ? 12.92 * v : 1.055 * math::pow(v, 1 / 2.4) - 0.055;
 }
 
+double screen_chroma(double lightness, double hue_deg, const color::Xyz& white) {
+  const double a = math::cos(hue_deg * kDegree), b = math::sin(hue_deg * kDegree);
+  double inside = 0, outside = 200;
+  for (int step = 0; step < 24; ++step) {
+    const double chroma = 0.5 * (inside + outside);
+    const color::Rgb rgb = color::rgb_from_lab({lightness, chroma * a, chroma * b}, white);
+    (least_channel(color::rec709_from_rec2020(rgb)) >= 0 ? inside : outside) = chroma;
+  }
+  return inside;
+}
+
 std::array<int, 3> screen_color(const color::Lab& lab, const color::Xyz& white) {
-  const color::Rgb shown = color::rec709_from_rec2020(in_display_gamut(color::rgb_from_lab(lab, white)));
+  const color::Rgb shown = paint_view(color::rec709_from_rec2020(color::rgb_from_lab(lab, white)));
   std::array<int, 3> codes{};
   for (int c = 0; c < 3; ++c)
     codes[static_cast<std::size_t>(c)] = static_cast<int>(std::lround(255 * srgb_signal(shown[c])));

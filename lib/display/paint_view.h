@@ -31,7 +31,11 @@ color::Rgb in_display_gamut(const color::Rgb& rgb);
 // The sRGB signal (IEC 61966-2-1), 0..1, of one channel or of a luminance; light below 0 counts as 0 and above 1 as 1.
 double srgb_signal(double light);
 
-// A color under its white as an sRGB display shows it: its codes, 0..255, and "#rrggbb".
+// The largest chroma that an sRGB display shows at a lightness and a hue without gray mixed in.
+double screen_chroma(double lightness, double hue_deg, const color::Xyz& white);
+
+// A color under its white as the view "Paint" shows it on an sRGB display, like a matt surface of it in a picture: its
+// codes, 0..255, and "#rrggbb".
 std::array<int, 3> screen_color(const color::Lab& lab, const color::Xyz& white);
 std::string css_color(const color::Lab& lab, const color::Xyz& white);
 

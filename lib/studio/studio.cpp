@@ -249,7 +249,7 @@ Result<Json> Studio::State::write(JsonReader& request) const {
 Result<Json> Studio::State::color(JsonReader& request) const {
   const color::Lab lab = request.lab("lab");
   GONIO_TRY(request.status());
-  return Json{{"css", css_color(lab, {})}};
+  return Json{{"css", css_color(lab, {})}, {"rgb", rgb_json(color::rgb_from_lab(lab, screen_white({})))}};
 }
 
 // The color of the curve at an aspecular angle.

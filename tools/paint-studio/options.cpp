@@ -9,14 +9,21 @@ cli::ToolSpec tool_spec(Options& o) {
       "page opens from a file in any browser that has WebGL 2, and needs no network. A designer starts from a paint "
       "of the library, changes its face, flop, travel and gloss, and sees it on the mesh at once, beside its "
       "curves, its nine variations and the paints of the library that are nearest to it. All of it works by mouse, "
-      "by touch and by keyboard.",
+      "by touch and by keyboard. The picture stays in the window, and the panels scroll beside it or below it.",
       "On the picture, dragging goes around the mesh, turns the light, moves a lamp by its highlight, ends the "
       "travel, or sets the gloss by the width of the highlight. The page tells the aspecular angle under the pointer "
       "and the color that the paint has at this angle, and marks both in the curves. A cross has buttons that change "
       "the lightness, chroma or hue of exactly the color below it, as paint-edit --at does. Rings show where the mesh "
       "is seen at 15 and at 45 degrees and at the travel, and a checker shows the highlight. Angles are those to the "
       "lamp, or without it to the brightest light of the environment. A border divides the picture between the paint "
-      "and another one, of the library, the palette or the history.",
+      "and another one, of the library, the palette or the history. The wheel comes closer where the picture has the "
+      "focus, and with Ctrl; so do two fingers. Two fingers and the right button move what the camera goes around, and "
+      "a double click puts it where the pointer is.",
+      "Swatches show what a matt surface of their color shows in the picture. The wheel shows which colors a screen "
+      "has "
+      "at the lightness of the face, and the page tells how far it shows a face or a flop off, with the nearest that "
+      "it "
+      "shows. A paint that is edited becomes a copy with a name that can be changed.",
       "Pictures can be added, dropped or pasted, and stand on boards with a zoom of their own. Droppers take the face, "
       "the flop and the gloss from them as "
       "paint-pick(1) does, and the page shows the command. The library is a list with a search by name and code and "
@@ -27,7 +34,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "those of paint-edit(1), the lobes are fitted as fit-paint(1) does by default, distances are those of "
       "colorsnap(1), and the picture is drawn by the programs of the engine gl of render-osmesa(1). The page shows "
       "the command line that makes the same paint from the same library. It hands the paint over as paint XML, as "
-      "CSV, and as CxF with the code of the nearest paint. It opens paint XML files, and saves sessions.",
+      "CSV, and as CxF with the code of the nearest paint. It opens paint XML files, saves sessions and the picture, "
+      "and copies a link that holds the design and how it is seen. A browser keeps the sessions of its last eight "
+      "tabs.",
       "All parts of the mesh wear the design, but for those that nobody paints, such as glass and tires: these are "
       "told by their names, as in render-osmesa. Beside the traced views of --transport, the page shows no shadows and "
       "no light from one part to another, and the ground of the environment lies below the mesh as render-osmesa lays "

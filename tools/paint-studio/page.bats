@@ -220,6 +220,13 @@ needs_browser() {
   [ "$status" -eq 0 ]
 }
 
+@test "the stage, the picture and the design stay" {
+  needs_browser
+  run node "$code/stay.js" page.html .
+  echo "$output"
+  [ "$status" -eq 0 ]
+}
+
 @test "droppers take from a picture what paint-pick takes" {
   needs_browser
   run node "$code/droppers.js" page.html .

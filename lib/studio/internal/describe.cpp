@@ -2,8 +2,10 @@
 
 #include <cmath>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "display/paint_view.h"
+#include "math/elementary.h"
 #include "paint/curve.h"
 #include "paint/edit.h"
 #include "paint/metrics.h"
@@ -31,6 +33,26 @@ Json rows_json(const paint::Paint& paint, const color::ViewingCondition& conditi
                     {"css", css_color(row.lab, condition)}});
   }
   return rows;
+}
+
+// How far from an end the screen shows it, and the nearest of its lightness and hue that it shows as it is.
+Json screen_json(const color::Lab& lab, const color::Xyz& white) {
+  const double chroma = color::chroma(lab), most = display::screen_chroma(lab.L, color::hue_deg(lab), white);
+  const double share = chroma > most ? most / chroma : 1;
+  const color::Lab shown = color::lab_from_rgb(display::in_display_gamut(color::rgb_from_lab(lab, white)), white);
+  return {{"de00", color::delta_e_2000(lab, shown)}, {"nearest", lab_json({lab.L, share * lab.a, share * lab.b})}};
+}
+
+// The border of what the screen shows at a lightness, in the plane of a* and b*.
+Json border_json(double lightness, const color::Xyz& white) {
+  constexpr int kStep_deg = 5;
+  Json border = Json::array();
+  for (int hue_deg = 0; hue_deg < 360; hue_deg += kStep_deg) {
+    const double chroma = display::screen_chroma(lightness, hue_deg, white), h = hue_deg * kDegree;
+    const color::Lab lab{lightness, chroma * math::cos(h), chroma * math::sin(h)};
+    border.push_back({{"a", lab.a}, {"b", lab.b}, {"css", display::css_color(lab, white)}});
+  }
+  return border;
 }
 
 Json metrics_json(const paint::PaintMetrics& metrics) {
@@ -77,6 +99,10 @@ Result<Json> description(const paint::Paint& paint) {
                         {"fitted", !paint.appearance},
                         {"face_css", css_color(appearance.face, condition)},
                         {"flop_css", css_color(appearance.flop, condition)}};
+  const color::Xyz white = screen_white(condition);
+  json["screen"] = {{"face", screen_json(appearance.face, white)},
+                    {"flop", screen_json(appearance.flop, white)},
+                    {"border", border_json(appearance.face.L, white)}};
   json["average"] = {{"L", average.L}, {"chroma", average.chroma}, {"hue", average.hue_deg}};
   json["gloss"] = Json::array();
   for (const paint::GlossReading& reading : paint.gloss)

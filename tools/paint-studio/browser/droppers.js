@@ -8,7 +8,7 @@ const path = require("node:path");
 const { check, drive } = require("./drive.js");
 const { png } = require("./png.js");
 
-drive("the droppers take what they are on", { width: 1000, height: 1000 }, async ({ browser, folder, value, shot, quiet, give }) => {
+drive("the droppers take what they are on", { width: 1700, height: 1000 }, async ({ browser, folder, value, shot, quiet, give }) => {
   const picture = path.join(path.resolve(folder), "two colors.png");
   // Light orange on the left, dark blue on the right, with a texture, and a highlight below.
   fs.writeFileSync(picture, png(320, 200, (x, y) => {

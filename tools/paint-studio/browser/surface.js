@@ -6,7 +6,7 @@
 "use strict";
 const { check, drive } = require("./drive.js");
 
-drive("the picture answers", { width: 1000, height: 1000 }, async ({ browser, value, shot, quiet, choose, fill, checkNames }) => {
+drive("the picture answers", { width: 1400, height: 720 }, async ({ browser, value, shot, quiet, choose, fill, checkNames }) => {
   const kind = (name) => browser.click(`#drag-kinds input[value=${name}]`);
   // A place of the window where the mesh is painted and the light is seen at about this angle.
   const place = (degrees) => value(`(() => {

@@ -22,19 +22,20 @@ const rounded = (value, digits = 2) => Number(value.toFixed(digits));
 const clamped = (value, low, high) => Math.min(high, Math.max(low, value));
 
 // What is dragged, by mouse, pen or touch: begin() and move() get the event, end() comes when it is let go.
-function draggable(element, { begin, move, end }) {
+function draggable(element, { begin, move, end }, button = 0) {
   element.addEventListener("pointerdown", (event) => {
-    if (event.button !== 0) return;
+    if (event.button !== button) return;
     event.preventDefault();
     if (element.focus) element.focus({ preventScroll: true });
     element.setPointerCapture(event.pointerId);
     if (begin) begin(event);
     const drag = new AbortController(), signal = drag.signal;
-    const done = () => {
+    const done = (next) => {
+      if (next.pointerId !== event.pointerId) return;
       drag.abort();
       if (end) end();
     };
-    element.addEventListener("pointermove", move, { signal });
+    element.addEventListener("pointermove", (next) => next.pointerId === event.pointerId && move(next), { signal });
     element.addEventListener("pointerup", done, { signal });
     element.addEventListener("pointercancel", done, { signal });
   });
@@ -59,10 +60,11 @@ class NumberControls {
         grid.append(made("label", {}, [channel + "*", field]));
       });
     }
+    this.loss = made("div", { role: "status", id: "screen-loss" });
     const keep = made("input", { type: "checkbox", id: "keep-residual" });
     this.fields.keep = keep;
     document.getElementById("numbers").append(
-      grid, this.slider("travel", 15.5, 180, 0.5, "°"), this.slider("gloss", 0, 100, 0.5, "GU"),
+      grid, this.loss, this.slider("travel", 15.5, 180, 0.5, "°"), this.slider("gloss", 0, 100, 0.5, "GU"),
       made("label", {}, [keep, "keep what the readings have beside the curve"]), this.brushed());
     const averages = document.getElementById("averages");
     averages.append(this.slider("lightness", 0, 120, 0.5, ""), this.slider("chroma", 0, 140, 0.5, ""),
@@ -72,7 +74,7 @@ class NumberControls {
   slider(name, low, high, step, unit) {
     const range = made("input", { type: "range", min: low, max: high, step, "aria-label": name,
                                   oninput: () => this.app.preview(this.edit(name, Number(range.value))),
-                                  onchange: () => this.app.commit(this.edit(name, Number(range.value))) });
+                                  onchange: () => this.app.commit(this.edit(name, Number(range.value)), true) });
     const field = made("input", { type: "number", min: low, max: high, step, "aria-label": name,
                                   onchange: () => this.commitNumber(name, low, high) });
     this.fields[name + "-range"] = range;
@@ -124,6 +126,13 @@ class NumberControls {
     }
   }
 
+  // What the screen does not show of an end, and a button that takes the nearest that it shows.
+  lossOf(end, { de00, nearest }) {
+    const [, a, b] = nearest.map((value) => value.toFixed(1));
+    const take = () => this.app.commit({ [end]: nearest.map((value) => rounded(value)), ...this.residual() });
+    return made("p", { class: "loss" }, [`The screen shows the ${end} ${de00.toFixed(1)} (CIEDE2000) off. `, made("button", { type: "button", text: `take a* ${a}, b* ${b}`, onclick: take })]);
+  }
+
   show(description) {
     const { appearance, average, gloss } = description;
     const set = (field, value) => {
@@ -133,6 +142,7 @@ class NumberControls {
       ["L", "a", "b"].forEach((channel, i) => set(this.fields[end + channel], rounded(appearance[end][i])));
       this.fields[end + "-swatch"].style.background = appearance[end + "_css"];
     }
+    this.loss.replaceChildren(...["face", "flop"].filter((end) => description.screen[end].de00 > 1).map((end) => this.lossOf(end, description.screen[end])));
     const numbers = { travel: appearance.travel, gloss: gloss.length > 0 ? gloss[0].units : 0,
                       lightness: average.L, chroma: average.chroma, hue: average.hue };
     for (const [name, value] of Object.entries(numbers)) {

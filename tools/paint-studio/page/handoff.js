@@ -30,25 +30,38 @@ function editsOf(library, state, lines) {
     });
     lines.push(`paint-edit ${from} ${to} --gradient ${gradient.count} -o ${quoted(file)}`);
   }
-  if (state.steps.length === 0) return [source];
-  return state.steps.map((edit, i) => `paint-edit ${i === 0 ? source + " " : ""}${optionsOf(edit).join(" ")}`);
+  const label = [...(state.name !== undefined && state.name !== paint.name ? [quoted(`--rename=${state.name}`)] : []), ...(state.code !== undefined ? [quoted(`--code=${state.code}`)] : [])];
+  const edits = state.steps.map(optionsOf);
+  if (label.length > 0) edits.push([...(edits.pop() ?? []), ...label]);
+  if (edits.length === 0) return [source];
+  return edits.map((options, i) => `paint-edit ${i === 0 ? source + " " : ""}${options.join(" ")}`);
 }
 
 // The commands that make the paint of a state from its library, and fit it to the basis of the page.
 function commandOf(data, library, state, output = "design.paints.xml") {
   const lines = [], edits = editsOf(library, state, lines);
   const fit = data.basis_file ? `fit-paint --basis ${quoted(data.basis_file)}` : "fit-paint";
-  if (state.steps.length === 0) lines.push(`${fit} ${edits[0]} -o ${quoted(output)}`);
+  if (!edits[0].startsWith("paint-edit")) lines.push(`${fit} ${edits[0]} -o ${quoted(output)}`);
   else lines.push([...edits, `${fit} -o ${quoted(output)}`].join(" |\n  "));
   return lines.join("\n");
 }
 
-function save(name, text, type) {
-  const link = made("a", { download: name, href: URL.createObjectURL(new Blob([text], { type })) });
+function save(name, content, type) {
+  const link = made("a", { download: name, href: URL.createObjectURL(new Blob([content], { type })) });
   document.body.append(link);
   link.click();
   link.remove();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+// A text as an address holds it, compressed, and back.
+async function piped(bytes, through) { return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(through)).arrayBuffer()); }
+async function packedText(text) {
+  const bytes = await piped(new TextEncoder().encode(text), new CompressionStream("deflate-raw"));
+  return btoa(String.fromCharCode(...bytes)).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+}
+async function unpackedText(packed) {
+  return new TextDecoder().decode(await piped(bytesOf(packed.replaceAll("-", "+").replaceAll("_", "/")), new DecompressionStream("deflate-raw")));
 }
 
 // A name that every file system takes.
@@ -97,7 +110,8 @@ class Handoff {
     press("save-csv", () => this.write("csv", false, ".csv", "text/csv"));
     press("save-cxf", () => this.writeCxf());
     press("save-session", () => save(fileName(app.paint.name) + ".session.json", app.savedSession(), "application/json"));
-    press("copy", () => this.copy());
+    press("copy", () => this.copy(document.getElementById("command").textContent, "The commands"));
+    press("copy-link", () => packedText(app.linked()).then((text) => this.copy(`${location.href.split("#")[0]}#p=${text}`, "The link")));
     const open = document.getElementById("open-session");
     open.addEventListener("change", () => {
       const file = open.files[0];
@@ -128,17 +142,18 @@ class Handoff {
     save(fileName(this.app.paint.name) + ending, text, type);
   }
 
-  copy() {
-    const text = document.getElementById("command").textContent;
+  // `what` is copied: a plural or singular with its article.
+  copy(text, what) {
     const fallback = () => {
-      const range = document.createRange();
-      range.selectNodeContents(document.getElementById("command"));
-      getSelection().removeAllRanges();
-      getSelection().addRange(range);
-      this.app.say(document.execCommand("copy") ? "The commands are copied." : "The commands are selected: copy them by Ctrl+C.");
+      const field = made("textarea", { "aria-label": what });
+      field.value = text;
+      document.body.append(field);
+      field.select();
+      const copied = document.execCommand("copy");
+      field.remove();
+      this.app.say(copied ? `${what}: copied.` : `This browser refuses to copy. ${what}: ${text}`);
     };
-    if (navigator.clipboard)
-      navigator.clipboard.writeText(text).then(() => this.app.say("The commands are copied."), fallback);
+    if (navigator.clipboard) navigator.clipboard.writeText(text).then(() => this.app.say(`${what}: copied.`), fallback);
     else fallback();
   }
 

@@ -1,7 +1,10 @@
 // What the designer did. A state holds the paint that it began with, the edits since then, and the paint that they made.
 // The first is the number `start` of a paint of the library, or `own`, {file, paint}, of a file that was opened. Undo and redo go from state to state, without limit.
 
-const saidState = ({ start, own, steps }) => (own ? { own, steps } : { start, steps });
+const saidState = ({ start, own, steps, name, code }) => ({ ...(own ? { own } : { start }), steps, ...(name !== undefined && { name }), ...(code !== undefined && { code }) });
+
+// The members of a state whose paint has a name, and a code if there is one, of its own.
+const labeled = (paint, name, code) => ({ name, ...(code !== undefined && { code }), paint: { ...paint, name, ...(code !== undefined && { code }) } });
 
 class EditHistory {
   constructor(states = [], at = states.length - 1) {
@@ -21,6 +24,6 @@ class EditHistory {
   redo() { if (this.canRedo) ++this.at; }
   // As it is saved: a state that goes on from the one before it is its last edit alone.
   saved() {
-    return { at: this.at, states: this.states.map((state) => (state.goesOn ? { edit: state.steps.at(-1) } : saidState(state))) };
+    return { at: this.at, states: this.states.map((state) => (state.goesOn ? { edit: state.steps.at(-1), name: state.name, code: state.code } : saidState(state))) };
   }
 }

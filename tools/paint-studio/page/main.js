@@ -25,18 +25,26 @@ class App {
     this.panel = new LibraryPanel(this);
     this.cloud = new Cloud(this);
     this.makeHeader();
-    this.history = new EditHistory([this.fresh(0)]);
+    this.history = new EditHistory([this.fresh(this.firstPaint())]);
     this.reopen();
     this.show();
+    document.getElementById("loading").remove();
     this.follow();
     window.addEventListener("hashchange", () => this.follow());
   }
-  // An address that ends with #paint=NAME starts from the paint of that name, and one with #design={file, paint, board} from
-  // that paint, which paint-pick made of a mood board. Links of other pages ask for them.
+  // The paint of a small library that shows most: one of interference, else a pearl, else a metallic.
+  firstPaint() {
+    const kinds = ["interference", "pearl", "metallic"], all = this.library.count <= mostListed ? [...Array(this.library.count).keys()] : [];
+    const rank = (i) => (kinds.indexOf(this.library.paint(i).class) + 4) % 4;
+    return all.reduce((best, i) => (rank(i) < rank(best) ? i : best), 0);
+  }
+  // An address that ends with #paint=NAME starts from the paint of that name, one with #design={file, paint, board} from
+  // that paint, which paint-pick made of a mood board, and one with #p=... is a link that this page made.
   follow() {
-    const words = new URLSearchParams(location.hash.slice(1)), name = words.get("paint"), design = words.get("design");
-    if (name === null && design === null) return;
+    const words = new URLSearchParams(location.hash.slice(1)), name = words.get("paint"), design = words.get("design"), link = words.get("p");
+    if (name === null && design === null && link === null) return;
     location.hash = "";
+    if (link !== null) unpackedText(link).then((text) => this.attempt(() => this.openLink(text)), () => this.say("The address of this page is cut: copy the whole link."));
     if (design !== null) this.attempt(() => this.restore(this.picked(design)));
     if (name === null) return;
     this.attempt(() => {
@@ -94,6 +102,9 @@ class App {
     byId("undo").addEventListener("click", () => this.turn("undo"));
     byId("redo").addEventListener("click", () => this.turn("redo"));
     byId("metric").addEventListener("change", () => this.tiles.nearest());
+    for (const what of ["name", "code"])
+      byId("paint-" + what).addEventListener("change", () => this.label(byId("paint-name").value.trim(), byId("paint-code").value.trim()));
+    document.addEventListener("focusout", () => { this.history.now.by_key = ""; });
     document.addEventListener("keydown", (event) => {
       if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
       const key = event.key.toLowerCase();
@@ -109,6 +120,17 @@ class App {
     this.surface?.again();
   }
 
+  // After the graphics were lost and came back: what they held is made anew.
+  graphicsCame() {
+    ({ stage: this.stage } = this.stageView);
+    this.weights = this.comparedWeights = this.tiles.weights = null;
+    this.traced.sides = [null, null];
+    this.traced.tileTexture = null;
+    this.compare(this.compared.choice);
+    this.show();
+    this.say("The graphics are back.");
+  }
+
   // The paint that an edit would make, shown while it is being made.
   preview(edit) {
     this.wanted = edit;
@@ -121,20 +143,34 @@ class App {
       if (this.stageView.full_ms > 0 && this.stageView.full_ms < 16) this.tiles.variations();
     });
   }
+  // Shows the paint of the history in the place of a preview that is given up.
+  abandon() {
+    if (!this.wanted) return;
+    this.wanted = null;
+    this.show();
+  }
   edited(edit) { return this.engine.ask({ do: "edit", paint: this.history.now.paint, edit }); }
 
-  // Makes an edit, which becomes a step of the history.
-  commit(edit) {
+  // Makes an edit, which becomes a step of the history. Edits by keys that state the same thing one after the other are one
+  // step, until the control loses the focus.
+  commit(edit, by_key = false) {
     this.wanted = null;
-    this.attempt(() => {
+    const what = by_key ? Object.keys(edit).join() : "", again = what && this.history.now.by_key === what;
+    if (again) this.history.undo();
+    const made = this.attempt(() => {
       const done = this.edited(edit), now = this.history.now;
       if (done.skipped.length > 0) {
         this.say("This cannot be done: " + done.skipped.join("; "));
-      } else if (JSON.stringify(done.paint) !== JSON.stringify(now.paint)) {
-        this.history.push({ start: now.start, own: now.own, steps: [...now.steps, edit], paint: done.paint, goesOn: true });
+        return false;
+      }
+      if (JSON.stringify(done.paint) !== JSON.stringify(now.paint)) {
+        const name = now.name ?? this.copyName(now.paint.name);
+        this.history.push({ start: now.start, own: now.own, steps: [...now.steps, edit], ...labeled(done.paint, name, now.code), goesOn: true, by_key: what });
         this.say(done.clipped.length > 0 ? "Clipped: " + done.clipped.join("; ") : "");
       }
+      return true;
     });
+    if (again && !made) this.history.redo();
     this.show();
   }
   start(number) { this.restore(this.fresh(number)); }
@@ -146,6 +182,21 @@ class App {
     this.history[way]();
     this.show();
   }
+  // A name that no paint of the palette has.
+  copyName(name) {
+    const taken = new Set(this.palette.map((state) => state.paint.name)), copy = name + " copy";
+    for (let number = 2;; ++number) {
+      const next = number === 2 ? copy : `${copy} ${number - 1}`;
+      if (!taken.has(next)) return next;
+    }
+  }
+  // Gives the design a name and a code.
+  label(name, code) {
+    const { now } = this.history;
+    if (!name || (name === now.paint.name && code === (now.paint.code ?? ""))) return this.show();
+    this.history.push({ ...now, ...labeled(now.paint, name, code || undefined), goesOn: false, by_key: "" });
+    return this.show();
+  }
   // The paint that the design began with, in the list of the header.
   showStart({ start, own }) {
     const list = document.getElementById("library");
@@ -153,6 +204,14 @@ class App {
     if (own) list.append(made("option", { value: "own", text: `${own.paint.name} of ${own.file}`, "data-more": "" }));
     else if (start >= list.options.length) list.append(made("option", { value: start, text: this.library.paint(start).name, "data-more": "" }));
     list.value = own ? "own" : String(start);
+  }
+  // Moves a paint of the palette to another place of it, or, where `to` is -1, takes it away.
+  arrange(from, to) {
+    const [state] = this.palette.splice(from, 1);
+    if (to >= 0) this.palette.splice(to, 0, state);
+    this.tiles.palette();
+    this.showChoices();
+    this.store();
   }
   keep() {
     this.palette.push(this.history.now);
@@ -170,6 +229,7 @@ class App {
     this.showStart(now);
     this.showChoices();
     this.handoff.show();
+    for (const what of ["name", "code"]) document.getElementById("paint-" + what).value = now.paint[what] ?? "";
     this.attempt(() => this.tiles.again());
     this.store();
   }
@@ -276,19 +336,33 @@ class App {
       ...rows.flatMap(([name, value]) => [made("dt", { text: name }), made("dd", { text: value })]));
   }
 
+  // What a link holds: the design, by the library's paint and the edits, and how it is seen.
+  linked() {
+    const { start, steps, own, name, code } = saidState(this.history.now), { view, environment, stops, lamp, stage } = this.stageView;
+    return JSON.stringify({ start, of: own ? undefined : this.library.paint(start).name, own, steps, name, code, view, environment, stops, lamp, turn: stage.turn });
+  }
+  openLink(text) {
+    const link = JSON.parse(text), { view, environment, stops, lamp, turn } = link, state = this.replayed(link);
+    if (!link.own && this.library.paint(link.start).name !== link.of)
+      throw new Error(`This link was made by a page with another library: it starts from "${link.of}".`);
+    this.restore(state);
+    this.stageView.see({ view, environment, stops, lamp, turn });
+  }
+
   // The session: the library paints and edits of all states, and the palette. Paints are made again when it is opened.
   savedSession() {
     return JSON.stringify({ kind: "paint-studio session", version: 1, title: this.data.title,
                             history: this.history.saved(), palette: this.palette.map(saidState) });
   }
   // The state that these edits of a library paint lead to. Throws what a request refuses.
-  replayed({ start, own, steps }) {
+  replayed({ start, own, steps, name, code }) {
     const known = own ? typeof own.file === "string" : Number.isInteger(start) && start >= 0 && start < this.library.count;
     if (!known || !Array.isArray(steps)) throw new Error("This file is no session of a page with this library.");
     let { paint } = this.origin({ start, own });
     if (own) this.engine.ask({ do: "describe", paint });  // refuses what is no paint
     for (const edit of steps) ({ paint } = this.engine.ask({ do: "edit", paint, edit }));
-    return { start, own, steps, paint };
+    if (name !== undefined && typeof name !== "string") throw new Error("This file is no session of a page with this library.");
+    return { start, own, steps, ...(name === undefined ? { paint } : labeled(paint, name, code)) };
   }
   openSession(text) {
     const session = JSON.parse(text), saved = session.history?.states, at = session.history?.at, states = [];
@@ -298,28 +372,37 @@ class App {
       const last = states.at(-1);
       if (one.edit === undefined || !last) states.push(this.replayed(one));
       else states.push({ start: last.start, own: last.own, steps: [...last.steps, one.edit], goesOn: true,
-                         paint: this.engine.ask({ do: "edit", paint: last.paint, edit: one.edit }).paint });
+                         ...labeled(this.engine.ask({ do: "edit", paint: last.paint, edit: one.edit }).paint, one.name ?? last.paint.name, one.code) });
     }
     const palette = (session.palette ?? []).map((one) => this.replayed(one));
     this.history = new EditHistory(states, at);
     this.palette = palette;
     this.show();
   }
-  // Browsers may refuse to store anything; the page then works without.
+  // Each tab keeps a session of its own, and a new tab begins with the last one. The newest eight stay. Browsers may refuse
+  // to store anything; the page then works without.
   store() {
     try {
-      localStorage.setItem(this.key, this.savedSession());
+      if (!this.tab) sessionStorage.setItem("paint-studio tab", (this.tab = sessionStorage.getItem("paint-studio tab") ?? crypto.randomUUID()));
+      localStorage.setItem(`${this.key} ${this.tab}`, JSON.stringify({ time: Date.now(), session: this.savedSession() }));
+      for (const { place } of this.kept().slice(8)) localStorage.removeItem(place);
     } catch {
       if (!this.storeRefused) this.say("The browser does not keep this session: save it as a file.");
       this.storeRefused = true;
     }
   }
+  // The sessions of all tabs, the newest first.
+  kept() {
+    const places = Object.keys(localStorage).filter((place) => place.startsWith(this.key + " "));
+    return places.map((place) => ({ place, ...JSON.parse(localStorage.getItem(place)) })).sort((a, b) => b.time - a.time);
+  }
   reopen() {
     try {
-      const text = localStorage.getItem(this.key);
-      if (text) this.openSession(text);
+      const kept = this.kept(), own = kept.find(({ place }) => place === `${this.key} ${sessionStorage.getItem("paint-studio tab")}`);
+      const { session } = own ?? kept[0] ?? {};
+      if (session) this.openSession(session);
     } catch {
-      this.history = new EditHistory([this.fresh(0)]);
+      this.history = new EditHistory([this.fresh(this.firstPaint())]);
       this.palette = [];
     }
   }
@@ -331,8 +414,10 @@ async function begin() {
     const data = JSON.parse(taken("data")), engine = await makeEngine(await inflated("compiled"));
     await inflated("index", (size) => engine.attach(size));
     pageNumbers = await inflated("binary");
-    window.studio = new App(engine, data, new PaintStore(taken("paints"), data.layouts));
+    const app = new App(engine, data, new PaintStore(taken("paints"), data.layouts));
+    window.studio = app;
     window.studioOpened_ms = performance.now();
+    app.stageView.turnAround();
   } catch (error) {
     document.getElementById("status").textContent = "The page cannot start: " + error.message;
     throw error;

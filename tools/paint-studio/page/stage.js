@@ -385,7 +385,7 @@ class Stage {
   }
 
   // What is seen at a place of the picture, 0..1 from its upper left corner: the normal and the direction to the viewer,
-  // as the environment sees them; null beside the mesh. The buffer that tells it is kept while the view stays.
+  // as the environment sees them, and whether it wears the paint; null beside the mesh. The buffer that tells it is kept while the view stays.
   surfaceAt(camera, aspect, x, y) {
     const gl = this.gl, width = 640, height = Math.round(width / aspect), known = this.surface;
     const gbuffer = this.gbuffer("surface", camera, width, height, [0, 0]);
@@ -400,7 +400,22 @@ class Stage {
     if (values[at + 3] === 0) return null;
     const { corner, right, down } = gbuffer.view;
     const ray = added(added(corner, right, column + 0.5), down, row + 0.5);
-    return { normal: [...values.subarray(at, at + 3)], wo: scaled(unit(ray), -1) };
+    return { normal: [...values.subarray(at, at + 3)], wo: scaled(unit(ray), -1), painted: Math.abs(values[at + 3]) === 1 };
+  }
+
+  // The point of the mesh that is seen at a place of the picture, as surfaceAt() has it; null beside the mesh.
+  pointUnder(camera, aspect, x, y) {
+    const height = 720, width = Math.round(height * aspect), { corner, right, down } = projected(camera, width, height, this.mesh, [0, 0]);
+    const { positions, corners } = this.mesh, ray = added(added(corner, right, x * width), down, y * height), at = (i) => positions.subarray(3 * corners[i], 3 * corners[i] + 3);
+    let nearest = Infinity;
+    for (let i = 0; i < corners.length; i += 3) {  // [MollerTrumbore1997]
+      const a = at(i), ab = added([...at(i + 1)], a, -1), ac = added([...at(i + 2)], a, -1), p = crossed(ray, ac), determinant = dotted(ab, p);
+      const from = added(camera.eye, a, -1), u = dotted(from, p) / determinant, q = crossed(from, ab), v = dotted(ray, q) / determinant;
+      if (!(u >= 0 && v >= 0 && u + v <= 1)) continue;
+      const distance = dotted(ac, q) / determinant;
+      if (distance > 0 && distance < nearest) nearest = distance;
+    }
+    return nearest < Infinity ? added(camera.eye, ray, nearest) : null;
   }
 
   // Shows nothing.

@@ -39,6 +39,7 @@ class Surface {
   makePointer() {
     const view = this.app.stageView;
     let from = null, last = null;
+    this.makeFingers(() => { last = null; });
     draggable(this.canvas, {
       begin: (event) => {
         from = { x: event.clientX, y: event.clientY, view: { ...view.view }, turn: view.stage.turn };
@@ -68,10 +69,48 @@ class Surface {
     });
   }
 
+  // Two fingers come closer and move the target, as the right button does; a double click goes around what is under it.
+  makeFingers(stop) {
+    const view = this.app.stageView;
+    let pair = null;  // {span, x, y, view} at the last move
+    this.fingers = new Map();
+    const now = () => {
+      const [a, b] = [...this.fingers.values()];
+      return { span: Math.max(1, Math.hypot(a.x - b.x, a.y - b.y)), x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 };
+    };
+    this.canvas.addEventListener("pointerdown", (event) => {
+      if (event.pointerType === "touch") this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+      if (this.fingers.size !== 2) return;
+      stop();
+      this.app.abandon();
+      pair = now();
+    }, { capture: true });
+    this.canvas.addEventListener("pointermove", (event) => {
+      if (!this.fingers.has(event.pointerId)) return;
+      this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+      if (this.fingers.size !== 2) return;
+      const next = now();
+      view.pan(view.view, next.x - pair.x, next.y - pair.y);
+      view.closer(pair.span / next.span, true);
+      pair = next;
+    });
+    for (const kind of ["pointerup", "pointercancel"])
+      this.canvas.addEventListener(kind, (event) => {
+        if (this.fingers.delete(event.pointerId) && this.fingers.size === 1) view.settle();
+      });
+    this.canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    draggable(this.canvas, {
+      begin: (event) => { pair = { x: event.clientX, y: event.clientY, view: view.view }; },
+      move: (event) => view.pan(pair.view, event.clientX - pair.x, event.clientY - pair.y),
+      end: () => view.settle(),
+    }, 2);
+    this.canvas.addEventListener("dblclick", (event) => { if (this.kind === "view") view.retarget(event.clientX, event.clientY); });
+  }
+
   // One move of a drag; the edit that it stands for, if it is one.
   dragged(event, from) {
     const view = this.app.stageView, dx = event.clientX - from.x, dy = event.clientY - from.y;
-    if (this.fixed) return null;
+    if (this.fixed || this.fingers.size > 1) return null;
     if (this.kind === "view") {
       view.look({ ...from.view, azimuth: from.view.azimuth - 0.4 * dx, elevation: clamped(from.view.elevation + 0.3 * dy, -85, 85) }, true);
     } else if (this.kind === "light") {
@@ -125,10 +164,10 @@ class Surface {
     } else if (this.kind === "color") {
       this.placeCross([clamped(this.cross[0] + 0.01 * size * x, 0, 1), clamped(this.cross[1] - 0.015 * size * y, 0, 1)]);
     } else if (this.kind === "travel") {
-      app.commit(app.controls.edit("travel", clamped(rounded(app.description.appearance.travel + size * step, 1), 15.5, 180)));
+      app.commit(app.controls.edit("travel", clamped(rounded(app.description.appearance.travel + size * step, 1), 15.5, 180)), true);
     } else {
       const now = app.paint.gloss && app.paint.gloss.length > 0 ? app.paint.gloss[0][1] : 0;
-      app.commit(app.controls.edit("gloss", clamped(rounded(now + size * step, 1), 0, 100)));
+      app.commit(app.controls.edit("gloss", clamped(rounded(now + size * step, 1), 0, 100)), true);
     }
   }
 
@@ -182,7 +221,7 @@ class Surface {
       button.disabled = !this.seenColor || (chroma && this.seenColor.chroma < 0.5);
     });
     if (!this.seenColor) {
-      this.text.textContent = seen ? `This place is turned away from ${lightName}.` : "Point at the mesh to read its color.";
+      this.text.textContent = !seen ? "Point at the mesh to read its color." : seen.painted ? `This place is turned away from ${lightName}.` : "This part does not wear the paint.";
       this.swatch.style.background = "none";
       document.getElementById("tweak-angle").textContent = "-";
       this.app.curves.point(null);

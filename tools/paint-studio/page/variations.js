@@ -65,8 +65,19 @@ class Tiles {
 
   palette() {
     const app = this.app, place = document.getElementById("palette");
-    this.put(place, app.palette.map((state, number) =>
-      this.tile(state.paint, `${number + 1}: ${state.paint.name}`, "", () => app.restore(state))));
+    this.put(place, app.palette.map((state, number) => {
+      const { name } = state.paint, tile = this.tile(state.paint, `${number + 1}: ${name}`, "", () => app.restore(state));
+      const remove = made("button", { type: "button", class: "remove", "aria-label": `Remove ${name} from the palette`, title: "Remove", text: "×", onclick: () => app.arrange(number, -1) });
+      return made("div", { class: "kept", draggable: "true", ondragstart: (event) => event.dataTransfer.setData("application/x-kept", String(number)),
+                           ondragover: (event) => { if (event.dataTransfer.types.includes("application/x-kept")) event.preventDefault(); },
+                           ondrop: (event) => {
+                             const from = event.dataTransfer.getData("application/x-kept");
+                             if (from === "") return;
+                             event.preventDefault();
+                             event.stopPropagation();
+                             app.arrange(Number(from), number);
+                           } }, [tile, remove]);
+    }));
   }
 
   // All of them again, after the view or the light changed.
@@ -86,6 +97,7 @@ class Tiles {
   }
   drawNext() {
     this.timer = undefined;
+    if (this.app.stageView.lost) return;
     while (this.waiting.length > 0 && !this.waiting[0].canvas.isConnected) this.waiting.shift();
     const next = this.waiting.shift(), app = this.app, { view } = app.stageView;
     if (!next) return;

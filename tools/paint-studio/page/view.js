@@ -13,6 +13,7 @@ class StageView {
   constructor(app) {
     this.app = app;
     this.canvas = document.getElementById("stage");
+    this.lost = false;  // whether the graphics are away
     this.stage = new Stage(this.canvas, app.data);
     this.view = { ...app.data.mesh.view };
     this.environment = 0;
@@ -27,7 +28,15 @@ class StageView {
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
   }
 
-  get camera() { return this.traced !== null ? this.app.data.views[this.traced].camera : cameraOf(this.view); }
+  get camera() { return this.traced !== null ? this.app.data.views[this.traced].camera : widened(cameraOf(this.view), this.canvas.clientWidth / this.canvas.clientHeight); }
+  // Draws by graphics that are new, after they were lost.
+  begin() {
+    const { turn, lamp, ground } = this.stage;
+    this.stage = Object.assign(new Stage(this.canvas, this.app.data), { lamp, ground });
+    this.stage.turnTo(turn);
+    this.lost = false;
+    this.app.graphicsCame();
+  }
   get weights() {
     const own = this.app.weights, other = this.app.compared.weights;
     return other ? { left: own, right: other, at: this.border } : own;
@@ -79,10 +88,24 @@ class StageView {
       this.settle();
     });
     this.makeBorder();
+    // The wheel comes closer where the picture has the focus, and with Ctrl; else it scrolls the panels.
     this.canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
-      this.closer(event.deltaY > 0 ? 1.08 : 1 / 1.08);
+      if (event.ctrlKey || document.activeElement === this.canvas) this.closer(event.deltaY > 0 ? 1.08 : 1 / 1.08);
+      else byId("controls").scrollBy(0, event.deltaY);
     }, { passive: false });
+    byId("save-picture").addEventListener("click", () => this.savePicture());
+    byId("full-screen").addEventListener("click", () => {
+      if (document.fullscreenElement) document.exitFullscreen();
+      else byId("stage-section").requestFullscreen().catch(() => this.app.say("This browser shows no part of a page on the full screen."));
+    });
+    this.canvas.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault();
+      this.lost = true;
+      this.rest(null);
+      this.app.say("The graphics of this computer were reset: the picture comes back when they do. Nothing is lost.");
+    });
+    this.canvas.addEventListener("webglcontextrestored", () => this.app.attempt(() => this.begin()));
     this.showLamp();
   }
 
@@ -93,7 +116,9 @@ class StageView {
     this.takeBack();
     for (const one of document.querySelectorAll("#turn, #turn-range, #lamp, #lamp-azimuth, #lamp-elevation, #lamp-stops, #reset-view, #ground, #drag-kinds .around"))
       one.disabled = fixed;
-    this.canvas.style.aspectRatio = fixed ? `${view.width} / ${view.height}` : "";
+    const box = document.getElementById("stage-box");
+    box.classList.toggle("shaped", fixed);
+    if (fixed) box.style.setProperty("--shape", view.width / view.height);
     this.app.surface.setKind(this.app.surface.kind);
     if (fixed) {
       this.lightChanged();
@@ -171,10 +196,58 @@ class StageView {
     else this.settle();
   }
 
-  closer(factor) {
+  closer(factor, moving = false) {
     if (this.traced !== null) return;
     const usual = this.app.data.mesh.view.distance;
-    this.look({ ...this.view, distance: clamped(this.view.distance * factor, 0.3 * usual, 4 * usual) });
+    this.look({ ...this.view, distance: clamped(this.view.distance * factor, 0.05 * usual, 4 * usual) }, moving);
+  }
+  // Moves what the camera goes around, by pixels of the window: what is at the target follows the pointer.
+  pan(view, dx, dy) {
+    if (this.traced !== null) return;
+    const { fov } = this.camera, pixel = (2 * view.distance * Math.tan((fov * Math.PI) / 360)) / this.canvas.clientHeight;
+    const forward = scaled(orbitDirection(view.azimuth, view.elevation), -1), right = unit(crossed(forward, [0, 1, 0])), down = crossed(forward, right);
+    this.look({ ...view, target: added(added(view.target, right, -dx * pixel), down, -dy * pixel) }, true);
+  }
+  // From now on the camera goes around the point of the mesh under a place of the window.
+  retarget(clientX, clientY) {
+    if (this.traced !== null) return;
+    const box = this.canvas.getBoundingClientRect(), { camera } = this;
+    const point = this.stage.pointUnder(camera, box.width / box.height, (clientX - box.left) / box.width, (clientY - box.top) / box.height);
+    if (point) this.look({ ...this.view, target: point });
+  }
+  // Shows what a link holds.
+  see({ view, environment, stops, lamp, turn }) {
+    if (!(environment in this.app.data.environments) || !view || !lamp) return;
+    for (const [id, value] of [["environment", environment], ["exposure", stops]]) document.getElementById(id).value = value;
+    document.getElementById("exposure-value").textContent = stops;
+    Object.assign(this, { view, stops });
+    this.choose(String(environment));
+    this.turnTo(turn);
+    this.setLamp(lamp);
+  }
+  // Goes slowly around the mesh until somebody touches the page, where pictures are fast and motion is welcome.
+  turnAround() {
+    if (matchMedia("(prefers-reduced-motion: reduce)").matches) return;
+    const stop = new AbortController(), { signal } = stop;
+    for (const kind of ["pointerdown", "keydown", "wheel", "hashchange"]) window.addEventListener(kind, () => stop.abort(), { signal, capture: true });
+    let last = null;
+    const step = (now) => {
+      if (signal.aborted) return this.settle();
+      if (last !== null && this.traced === null) this.look({ ...this.view, azimuth: this.view.azimuth + 0.012 * Math.min(50, now - last) }, true);
+      last = now;
+      return requestAnimationFrame(step);
+    };
+    const begin = () => {
+      if (signal.aborted || this.full_ms > 16) return;
+      if (this.full_ms > 0) requestAnimationFrame(step);
+      else setTimeout(begin, 500);
+    };
+    begin();
+  }
+  // The picture as the page shows it, in a PNG.
+  savePicture() {
+    const light = this.traced !== null ? this.app.data.views[this.traced].name : this.app.data.environments[this.environment].name;
+    this.canvas.toBlob((blob) => save(`${fileName(this.app.paint.name)}-${fileName(light)}.png`, blob, "image/png"));
   }
   look(view, moving = false) {
     this.view = view;
@@ -198,6 +271,7 @@ class StageView {
   drawNow(moving, now = performance.now()) {
     if (this.drawing !== undefined) cancelAnimationFrame(this.drawing);
     this.drawing = undefined;
+    if (this.lost) return;
     this.rest(null);
     if (moving && this.lastFrame !== undefined && now - this.lastFrame < 400) this.pace(now - this.lastFrame);
     this.lastFrame = moving ? now : undefined;
@@ -293,13 +367,14 @@ class StageView {
     });
   }
 
-  // What is seen under a place of the window: null beside the mesh. `angle` is the aspecular angle to the light.
+  // What is seen under a place of the window: null beside the mesh. `angle` is the aspecular angle to the light,
+  // and what is `lit` wears the paint.
   pointAt(clientX, clientY) {
     const box = this.canvas.getBoundingClientRect();
     const seen = this.stage.surfaceAt(this.camera, box.width / box.height, (clientX - box.left) / box.width,
                                       (clientY - box.top) / box.height);
     if (!seen) return null;
     const mirror = mirrored(seen), { toward } = this.light;
-    return { ...seen, mirror, angle: angleBetween(mirror, toward), lit: dotted(seen.normal, toward) > 0 };
+    return { ...seen, mirror, angle: angleBetween(mirror, toward), lit: seen.painted && dotted(seen.normal, toward) > 0 };
   }
 }

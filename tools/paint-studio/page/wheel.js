@@ -5,6 +5,8 @@ class Wheel {
     this.app = app;
     this.svg = document.getElementById("wheel");
     this.column = document.getElementById("lightness");
+    this.border = drawn("g", { "aria-hidden": "true" });  // what the screen shows at the lightness of the face
+    this.svg.append(this.border);
     for (const radius of [25, 50, 75, 100]) this.svg.append(drawn("circle", { r: radius, class: "grid" }));
     for (const [x, y] of [[1, 0], [0, 1]])
       this.svg.append(drawn("line", { x1: -105 * x, y1: -105 * y, x2: 105 * x, y2: 105 * y, class: "grid" }));
@@ -13,7 +15,7 @@ class Wheel {
     this.way = drawn("polyline", { class: "way" });
     this.arrow = drawn("path", { class: "arrow" });
     this.svg.append(this.way, this.arrow);
-    for (let L = 0; L <= 100; L += 20) {
+    for (let L = 0; L <= 150; L += 25) {
       this.column.append(drawn("line", { x1: 18, x2: 44, y1: this.heightOf(L), y2: this.heightOf(L), class: "grid" }));
       this.column.append(drawn("text", { x: 0, y: this.heightOf(L) + 3 }, String(L)));
     }
@@ -32,11 +34,15 @@ class Wheel {
                                      "aria-label": `${what} of the ${end}`, "aria-valuenow": 0 });
     const edit = (lab) => ({ [end]: lab.map((value) => rounded(value)), ...this.app.controls.residual() });
     const merged = (part) => this.app.description.appearance[end].map((value, i) => part[i] ?? value);
-    let last = null;
+    let last = null, apart = null;  // from where the pointer took the handle to its middle
     draggable(circle, {
-      begin: () => { last = null; },
+      begin: (event) => {
+        last = null;
+        const taken = from(event);
+        apart = merged([null, null, null]).map((value, i) => (taken[i] === null ? 0 : value - taken[i]));
+      },
       move: (event) => {
-        last = edit(merged(from(event)));
+        last = edit(merged(from(event).map((value, i) => (value === null ? null : Math.max(i === 0 ? 0 : -Infinity, value + apart[i])))));
         this.app.preview(last);
       },
       end: () => { if (last) this.app.commit(last); },
@@ -46,13 +52,13 @@ class Wheel {
       if (!step) return;
       event.preventDefault();
       const size = event.shiftKey ? 5 : 1, lab = this.app.description.appearance[end];
-      this.app.commit(edit([Math.max(0, lab[0] + size * step[0]), lab[1] + size * step[1], lab[2] + size * step[2]]));
+      this.app.commit(edit([Math.max(0, lab[0] + size * step[0]), lab[1] + size * step[1], lab[2] + size * step[2]]), true);
     });
     svg.append(circle);
     return circle;
   }
 
-  heightOf(L) { return 205 - 1.9 * clamped(L, 0, 103); }
+  heightOf(L) { return 205 - 1.27 * clamped(L, 0, 152); }
   pointOf(svg, event) {
     return new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
   }
@@ -60,10 +66,21 @@ class Wheel {
     const at = this.pointOf(this.svg, event);
     return [null, clamped(at.x, -108, 108), clamped(-at.y, -108, 108)];
   }
-  lightnessOf(event) { return [clamped((205 - this.pointOf(this.column, event).y) / 1.9, 0, 110), null, null]; }
+  lightnessOf(event) { return [clamped((205 - this.pointOf(this.column, event).y) / 1.27, 0, 150), null, null]; }
+
+  showBorder(border) {
+    const at = ({ a, b }) => [a, -b].map((value) => value * Math.min(1, 108 / Math.hypot(a, b, 1e-9))).join(), before = (i) => border[(i + border.length - 1) % border.length];
+    while (this.border.children.length < border.length) this.border.append(drawn("polygon", { class: "shown" }));
+    border.forEach((point, i) => {
+      const wedge = this.border.children[i];
+      wedge.setAttribute("points", `0,0 ${at(before(i))} ${at(point)}`);
+      wedge.style.fill = point.css;
+    });
+  }
 
   show(description) {
     const { face, flop, face_css, flop_css } = description.appearance;
+    this.showBorder(description.screen.border);
     const place = (lab) => [clamped(lab[1], -108, 108), clamped(-lab[2], -108, 108)];
     const from = place(face), to = place(flop);
     this.way.setAttribute("points", description.curve.map((point) => place(point.lab).join(",")).join(" "));
@@ -82,6 +99,8 @@ class Wheel {
       handle.style.fill = fill;
       handle.setAttribute("aria-valuetext", label);
     };
+    // Where both ends are near each other, the face is a ring about the flop.
+    this.handles.face.setAttribute("r", length < 14 ? 12 : 7);
     set("face", from[0], from[1], face_css, `a* ${rounded(face[1])}, b* ${rounded(face[2])}`);
     set("flop", to[0], to[1], flop_css, `a* ${rounded(flop[1])}, b* ${rounded(flop[2])}`);
     set("faceL", 26, this.heightOf(face[0]), face_css, `L* ${rounded(face[0])}`);

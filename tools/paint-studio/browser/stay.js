@@ -1,0 +1,130 @@
+// What stays while one works on a page: the stage beside the panels in windows of six sizes, the picture after the graphics
+// were lost, the sessions of two tabs, and a design in a link. The camera by wheel, fingers and double click, handles that
+// lie on each other, steps of keys, colors that the screen does not show, names and the palette.
+//
+//   node stay.js PAGE.html FOLDER
+"use strict";
+const { check, drive } = require("./drive.js");
+
+drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value, shot, quiet, choose, fill, checkNames }) => {
+  const paint = () => value("studio.paint"), steps = () => value("studio.history.now.steps.length"), near = (a, b, by) => Math.abs(a - b) <= by;
+  check("the first paint is one of interference, where there is one", await value(`(() => {
+    const kinds = [...Array(studio.library.count).keys()].map((i) => studio.library.paint(i).class);
+    return !kinds.includes("interference") || studio.paint.class === "interference"; })()`));
+  for (const [width, height] of [[390, 844], [844, 390], [768, 1024], [1000, 1000], [1400, 900], [3840, 2160]]) {
+    await browser.send("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: false });
+    const seen = await value(`(() => {
+      document.getElementById("controls").scrollTo(0, 1e6);
+      const last = document.getElementById("copy").getBoundingClientRect();
+      document.getElementById("controls").scrollTo(0, 0);
+      const inside = (box) => box.top >= -1 && box.left >= -1 && box.right <= innerWidth + 1 && box.bottom <= innerHeight + 1;
+      const stage = document.getElementById("stage").getBoundingClientRect(), wheel = document.getElementById("wheel").getBoundingClientRect();
+      return { stage: inside(stage) && stage.height >= 0.25 * innerHeight, last: inside(last), wheel: wheel.top < innerHeight - 60,
+               wide: document.documentElement.scrollWidth <= innerWidth, tall: document.documentElement.scrollHeight <= innerHeight }; })()`);
+    check(`at ${width}x${height} the stage is seen beside the first and the last control: ${JSON.stringify(seen)}`, Object.values(seen).every((one) => one));
+    await shot(`stay-${width}x${height}`);
+  }
+  await browser.send("Emulation.setDeviceMetricsOverride", { width: 1400, height: 900, deviceScaleFactor: 1, mobile: false });
+  await quiet();
+
+  // The wheel, fingers, the right button and a double click.
+  const view = () => value("studio.stageView.view"), middle = await browser.middle("#stage"), first = await view();
+  const wheel = (modifiers) => browser.send("Input.dispatchMouseEvent", { type: "mouseWheel", ...middle, deltaX: 0, deltaY: 120, modifiers });
+  await value("document.activeElement.blur()");
+  await wheel(0);
+  check("the wheel alone scrolls the panels", (await view()).distance === first.distance && (await value("document.getElementById('controls').scrollTop")) > 0);
+  await wheel(2);
+  check("the wheel with Ctrl moves the camera", (await view()).distance > first.distance);
+  const touch = (type, points) => browser.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x: middle.x + x, y: middle.y + y, id })) });
+  await touch("touchStart", [[-50, 0]]);
+  await touch("touchStart", [[-50, 0], [50, 0]]);
+  await touch("touchMove", [[-100, 0], [100, 0]]);
+  await touch("touchEnd", []);
+  check("two fingers that part come closer", near((await view()).distance, 1.08 * first.distance / 2, 0.02 * first.distance));
+  await browser.click("#reset-view");
+  const button = (type, x, y) => browser.send("Input.dispatchMouseEvent", { type, x, y, button: "right", buttons: 2, clickCount: 1 });
+  await button("mousePressed", middle.x, middle.y);
+  await button("mouseMoved", middle.x + 80, middle.y);
+  await button("mouseReleased", middle.x + 80, middle.y);
+  const panned = await view(), to = await value(`(() => {
+    const camera = widened(cameraOf(studio.stageView.view), studio.stageView.canvas.clientWidth / studio.stageView.canvas.clientHeight), box = studio.stageView.canvas.getBoundingClientRect();
+    const { clip } = projected(camera, box.width, box.height, studio.stage.mesh, [0, 0]), p = [...${JSON.stringify(first.target)}, 1];
+    const row = (i) => [0, 1, 2, 3].reduce((sum, k) => sum + clip[4 * k + i] * p[k], 0);
+    return (0.5 + 0.5 * row(0) / row(3)) * box.width - 0.5 * box.width; })()`);
+  check(`what the camera goes around follows the right button: ${to}`, near(to, 80, 1) && panned.azimuth === first.azimuth);
+  await browser.click("#reset-view");
+  for (const clickCount of [1, 2])
+    for (const type of ["mousePressed", "mouseReleased"])
+      await browser.send("Input.dispatchMouseEvent", { type, ...middle, button: "left", buttons: 1, clickCount });
+  const target = (await view()).target, box = await value("(({ low, high }) => ({ low, high }))(studio.stage.mesh)");
+  check("a double click goes around a point of the mesh", target.every((x, i) => x >= box.low[i] - 1e-3 && x <= box.high[i] + 1e-3) && target.some((x, i) => Math.abs(x - first.target[i]) > 1e-6));
+  await browser.click("#reset-view");
+
+  // Steps of keys on a slider are one step of the history; an edited paint has a name of its own.
+  await choose("library", "candy_red");
+  await quiet();
+  await value("document.querySelector('#numbers input[type=range][aria-label=gloss]').focus()");
+  for (let i = 0; i < 10; ++i) await browser.key("ArrowLeft");
+  check("ten keys are one step", (await steps()) === 1);
+  check("a paint that was edited is a copy", (await paint()).name === "candy_red copy" && (await value("document.getElementById('command').textContent")).includes("--rename"));
+  await fill("paint-name", JSON.stringify("evening red"));
+  check("it gets the name that is asked for", (await paint()).name === "evening red");
+  await browser.click("#keep");
+  check("the palette has it by its name", (await value("document.querySelector('#palette .tile span').textContent")) === "1: evening red");
+
+  // Handles on each other, each of which moves from where it is taken.
+  await value("studio.commit({ face: [50, 20, 10], flop: [50, 20, 10] })");
+  const ends = () => value("studio.description.appearance"), place = await browser.middle("#wheel .handle");
+  const scale = await value("document.getElementById('wheel').getScreenCTM().a"), ring = { x: place.x + 9.5 * scale, y: place.y };
+  await browser.mouseDrag(ring, { x: ring.x + 10 * scale, y: ring.y });
+  const moved = await ends();
+  check(`the ring is the face, and does not jump: ${moved.face}`, near(moved.face[1], 30, 0.7) && near(moved.face[2], 10, 0.7) && near(moved.flop[1], 20, 0.01));
+  await browser.click("#undo");
+  await browser.mouseDrag(place, { x: place.x, y: place.y - 10 * scale });
+  const flop = await ends();
+  check(`its middle is the flop: ${flop.flop}`, near(flop.flop[2], 20, 0.7) && near(flop.face[2], 10, 0.01));
+
+  // What the screen does not show is told, with the nearest that it shows.
+  await value("studio.commit({ face: [60, 120, 110] })");
+  check("a loss is told", /The screen shows the face \d+\.\d/.test(await value("document.getElementById('screen-loss').textContent")));
+  await shot("stay-loss");
+  await browser.click("#screen-loss button");
+  check("the nearest color is shown as it is", !(await value("document.getElementById('screen-loss').textContent")).includes("face"));
+  // A swatch shows what a matt surface of the color shows in the picture, however bright.
+  const { css, rgb } = await value("studio.engine.ask({ do: 'color', lab: [133, 0, 30] })"), swatch = css.slice(1).match(/../g).map((code) => parseInt(code, 16));
+  const shown = await value(`(() => {
+    const texture = studio.stage.floatTexture(1, 1, new Float32Array([...${JSON.stringify(rgb)}, 1]));
+    return [...studio.stage.pixels({ texture, width: 1, height: 1 }, 1, 0).data.slice(0, 3)]; })()`);
+  check(`a swatch is what the stage shows: ${swatch}, ${shown}`, swatch.every((code, i) => Math.abs(code - shown[i]) <= 1));
+
+  // The graphics are lost and come back.
+  await quiet();
+  const radiance = "[...studio.stage.radiance(studio.stageView.camera, 64, 36, studio.weights, studio.stageView.environment)]";
+  const before = await value(radiance), kept = JSON.stringify(await paint());
+  await value("(window.losing = studio.stage.gl.getExtension('WEBGL_lose_context')).loseContext()");
+  await browser.until("studio.stageView.lost");
+  check("the loss is said", /graphics/.test(await value("document.getElementById('status').textContent")));
+  await value("studio.commit({ gloss: 40 })");
+  await value("losing.restoreContext()");
+  await browser.until("!studio.stageView.lost");
+  await value("studio.turn('undo')");
+  const after = await value(radiance);
+  check("the picture is back", JSON.stringify(await paint()) === kept && before.some((x) => x > 0) && before.every((x, i) => Math.abs(x - after[i]) <= 1e-6 * (1 + x)));
+
+  // A link holds the design and how it is seen.
+  await value("studio.stageView.turnTo(30)");
+  const link = await value("packedText(studio.linked())"), seen = JSON.stringify([await paint(), await view(), await value("studio.stage.turn")]);
+  check(`a link is short: ${link.length}`, link.length <= 2000);
+  await choose("library", "arctic_white");
+  await value("studio.stageView.turnTo(0)");
+  await value(`(() => { location.hash = "p=${link}"; })()`);
+  await browser.until(`JSON.stringify([studio.paint, studio.stageView.view, studio.stage.turn]) === ${JSON.stringify(seen)}`, 10);
+
+  // Another tab has a session of its own; both are kept.
+  const own = await value("studio.tab");
+  await value("(() => { sessionStorage.setItem('paint-studio tab', 'other'); studio.tab = undefined; studio.store(); })()");
+  check("two tabs keep two sessions", (await value("studio.kept().map(({ place }) => place.split(' ').pop())")).sort().join() === [own, "other"].sort().join());
+  await browser.click("#palette .remove");
+  check("a paint leaves the palette", (await value("studio.palette.length")) === 0);
+  await checkNames();
+});
