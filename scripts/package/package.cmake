@@ -87,11 +87,12 @@ if(GONIOCHROME_TESTS)
   add_test(NAME project.consumer COMMAND ${CMAKE_CURRENT_LIST_DIR}/consumer_test.sh ${PROJECT_BINARY_DIR} ${CMAKE_CXX_COMPILER})
   # The program is compiled with the flags of the libraries, which sanitizers demand.
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
-  set_tests_properties(project.consumer PROPERTIES TIMEOUT 300 ENVIRONMENT "CXXFLAGS=${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}}")
+  set_tests_properties(project.consumer PROPERTIES COST 40 TIMEOUT 300 ENVIRONMENT "CXXFLAGS=${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}}")
   add_test(NAME project.wheel COMMAND bats --tap ${CMAKE_CURRENT_LIST_DIR}/wheel.bats)
   set_tests_properties(
     project.wheel
     PROPERTIES
+      COST 40
       TIMEOUT 900
       ENVIRONMENT
       "PATH=${CMAKE_RUNTIME_OUTPUT_DIRECTORY}:$ENV{PATH};TESTDATA=${testdata};GONIOCHROME_BUILD=${PROJECT_BINARY_DIR}")

@@ -2,10 +2,14 @@
 
 bats_require_minimum_version 1.5.0
 
+setup_file() {
+  fit-paint -q -b "$TESTDATA/b7.basis.xml" "$TESTDATA/paints.paints.xml" -o "$BATS_FILE_TMPDIR/fitted.xml"
+}
+
 setup() {
   cd "$BATS_TEST_TMPDIR" || exit 1
   paints=$TESTDATA/paints.paints.xml
-  fit-paint -q -b "$TESTDATA/b7.basis.xml" "$paints" -o fitted.xml
+  cp "$BATS_FILE_TMPDIR/fitted.xml" .
 }
 
 @test "one paint makes a page: curves, lobes, polar diagram, surfaces and squares" {

@@ -1,13 +1,12 @@
 #include "materials/internal/tensor_tree.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "base/angles.h"
 #include "base/parallel.h"
-#include "base/text.h"
 
 namespace goniochrome::materials {
 
@@ -226,7 +225,9 @@ bool TensorTree::ends(std::size_t node, int channel) const {
 void TensorTree::append(std::string& text, std::size_t node, int channel, bool mirrored) const {
   const auto put = [&](std::size_t k) {
     const double x = nodes_[k].value[static_cast<std::size_t>(channel)];
-    fmt::format_to(std::back_inserter(text), fmt::runtime(channel == 0 ? "{:.4g}" : "{:.4f}"), x);
+    std::array<char, 32> digits;  // as few as any number of a tree takes
+    const auto format = channel == 0 ? std::chars_format::general : std::chars_format::fixed;
+    text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), x, format, 4).ptr);
   };
   if (ends(node, channel)) {
     text += '{';

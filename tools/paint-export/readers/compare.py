@@ -1,6 +1,7 @@
-"""Compares a file of paint-export with the lobes of its paint, by a reader of its own and none of our code.
+"""Compares files of paint-export with the lobes of their paints, by a reader of its own and none of our code.
 
-  compare.py PAINTS.xml NAME FILE        prints the mean and the largest CIEDE2000 difference over the 17 geometries
+  compare.py PAINTS.xml NAME FILE [NAME FILE]...   prints the mean and the largest CIEDE2000 difference over the 17
+                                                   geometries, a line for each file
 
 The ending of FILE chooses the reader: rgl.py, mdl.py, materialx.py, enterprise.py, gltf.py, usd.py, radiance.py or
 openmaterial.py beside this script.
@@ -78,12 +79,13 @@ def lobes(path, name, light, view):
 
 
 def main():
-    paints, name, file = sys.argv[1:]
+    paints, *files = sys.argv[1:]
     light, view = geometries()
-    reader = importlib.import_module(next(name for ending, name in READERS.items() if file.endswith(ending)))
-    shown = lab(numpy.pi * reader.reflection(file, light, view) @ XYZ_FROM_REC709.T)
-    differences = de2000(lab(numpy.pi * lobes(paints, name, light, view) @ XYZ_FROM_REC2020.T), shown)
-    print(f"{differences.mean():.4f} {differences.max():.4f}")
+    for name, file in zip(files[::2], files[1::2], strict=True):
+        reader = importlib.import_module(next(reader for ending, reader in READERS.items() if file.endswith(ending)))
+        shown = lab(numpy.pi * reader.reflection(file, light, view) @ XYZ_FROM_REC709.T)
+        differences = de2000(lab(numpy.pi * lobes(paints, name, light, view) @ XYZ_FROM_REC2020.T), shown)
+        print(f"{differences.mean():.4f} {differences.max():.4f}")
 
 
 if __name__ == "__main__":

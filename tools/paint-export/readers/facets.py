@@ -1,5 +1,7 @@
 """Microfacets of GGX and the dielectric, as arrays of numpy."""
 
+import functools
+
 import numpy
 
 
@@ -21,16 +23,29 @@ def ggx(alpha, light, view, beside=None):
     return d * 2 / (a + b) / (4 * light[..., 2] * view[..., 2])
 
 
-def reflected(alpha, view, fresnel):
-    """The share of even light that goes to the viewer, by a sum over half vectors with the density D cos."""
+@functools.lru_cache(4)
+def half_vectors(alpha):
+    """Half vectors with the density D cos, and their cosines."""
     u, turn = numpy.meshgrid((numpy.arange(400) + 0.5) / 400, (numpy.arange(90) + 0.5) / 45 * numpy.pi)
     tangent = alpha * numpy.sqrt(u / (1 - u))
     z = 1 / numpy.sqrt(1 + tangent ** 2)
-    half = numpy.stack([z * tangent * numpy.cos(turn), z * tangent * numpy.sin(turn), z], -1)
+    return numpy.stack([z * tangent * numpy.cos(turn), z * tangent * numpy.sin(turn), z], -1), z
+
+
+@functools.lru_cache(4)
+def shares(alpha, view):
+    """The cosine of the viewer to each of these half vectors, and the share of even light by it from a mirror there."""
+    half, z = half_vectors(alpha)
     along = half @ view
     light = 2 * along * z - view[2]
     masking = 2 / sum(numpy.sqrt(1 + alpha ** 2 * (1 / c ** 2 - 1)) for c in (light, view[2]))
-    return (((along > 0) & (light > 0)) * fresnel(along) * masking * along / (z * view[2])).mean()
+    return along, ((along > 0) & (light > 0)) * masking * along / (z * view[2])
+
+
+def reflected(alpha, view, fresnel):
+    """The share of even light that goes to the viewer, by a sum over half vectors with the density D cos."""
+    along, share = shares(float(alpha), tuple(view))
+    return (share * fresnel(along)).mean()
 
 
 def dielectric(c, index):

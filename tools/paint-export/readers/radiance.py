@@ -1,7 +1,6 @@
 """Looks directions up in a .xml file of Radiance: the tensor tree of rank 3 on the side of "Reflection Back", as the library
 of Radiance does, with Y and the chromaticities u' and v' relative to the illuminant E."""
 
-import json
 import xml.etree.ElementTree
 
 import numpy
@@ -11,20 +10,34 @@ BRADFORD = numpy.array(((0.8951, 0.2664, -0.1614), (-0.7502, 1.7135, 0.0367), (0
 XYZ_FROM_REC709 = numpy.array(((0.412391, 0.357584, 0.180481), (0.212639, 0.715169, 0.072192), (0.019331, 0.119195, 0.950532)))
 
 
-def tree_of(text):
-    """A grid of 1, 8 or 64... numbers, or a list of eight trees."""
-    words = text.replace("{", " [ ").replace("}", " ] ").replace(",", " ").split()
-    return json.loads(",".join(words).replace("[,", "[").replace(",]", "]"))
+class Tree:
+    """A grid of 1, 8 or 64... numbers, or eight trees, as nested braces. Only the branches that are looked up are read."""
 
+    def __init__(self, text):
+        self.text = text.encode()
+        letters = numpy.frombuffer(self.text, numpy.uint8)
+        self.places = numpy.flatnonzero((letters == ord("{")) | (letters == ord("}")))
+        opens = letters[self.places] == ord("{")
+        depth = numpy.cumsum(numpy.where(opens, 1, -1)) + ~opens  # a brace and its partner have the same
+        order = numpy.argsort(depth, kind="stable")  # at one depth the braces open and close in turn
+        assert depth[-1] == 1 and len(order) % 2 == 0 and opens[order[::2]].all() and not opens[order[1::2]].any()
+        self.partner = numpy.empty_like(order)
+        self.partner[order[::2]] = order[1::2]
 
-def look_up(tree, place):
-    while isinstance(tree[0], list):  # of eight branches the first axis is the fastest
-        place = 2 * place
-        high = place >= 1
-        place = place - high
-        tree = tree[high @ (1, 2, 4)]
-    width = round(len(tree) ** (1 / 3))  # of a grid the last axis is the fastest
-    return tree[(width * place).astype(int) @ (width * width, width, 1)]
+    def at(self, place):
+        node = 0
+        while self.partner[node] > node + 1:  # of eight branches the first axis is the fastest
+            branches = [node + 1]
+            while self.partner[branches[-1]] + 1 < self.partner[node]:
+                branches.append(self.partner[branches[-1]] + 1)
+            assert len(branches) == 8
+            place = 2 * place
+            high = place >= 1
+            place = place - high
+            node = branches[high @ (1, 2, 4)]
+        grid = self.text[self.places[node] + 1:self.places[node + 1]].replace(b",", b" ").split()
+        width = round(len(grid) ** (1 / 3))  # of a grid the last axis is the fastest
+        return float(grid[(width * place).astype(int) @ (width * width, width, 1)])
 
 
 def square(x, y):
@@ -43,7 +56,7 @@ def trees(path):
     for data in layer.findall(SPACE + "WavelengthData"):
         block = data.find(SPACE + "WavelengthDataBlock")
         assert block.find(SPACE + "WavelengthDataDirection").text == "Reflection Back"
-        found[data.find(SPACE + "Wavelength").text] = tree_of(block.find(SPACE + "ScatteringData").text)
+        found[data.find(SPACE + "Wavelength").text] = Tree(block.find(SPACE + "ScatteringData").text)
     return found
 
 
@@ -54,7 +67,7 @@ def xyz(path, light, view):
         sine = numpy.hypot(l[0], l[1])
         c, s = (-l[0] / sine, -l[1] / sine) if sine > 0 else (1, 0)
         place = numpy.array((0.5 - 1e-6 - sine / 2, *square(c * v[0] + s * v[1], c * v[1] - s * v[0])))
-        y, u, w = (look_up(found[name], place) for name in ("Visible", "CIE-u", "CIE-v"))
+        y, u, w = (found[name].at(place) for name in ("Visible", "CIE-u", "CIE-v"))
         rows.append((9 * u * y / (4 * w), y, y * (12 - 3 * u - 20 * w) / (4 * w)))
     return numpy.array(rows)
 
