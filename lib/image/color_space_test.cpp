@@ -32,7 +32,7 @@ TEST(ColorSpace, ChromaticitiesLeaveTheCurve) {
   }
 }
 
-// What a file says is shown as white was D65 for any adoptedNeutral.
+// White was D65 for any adoptedNeutral of a file.
 TEST(ColorSpace, TheAdoptedNeutralBecomesWhite) {
   const auto read = [](std::vector<float> neutral) {
     ImagePart part;

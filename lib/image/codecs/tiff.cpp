@@ -92,7 +92,7 @@ Layout layout_of(TIFF* tiff) {
   return layout;
 }
 
-// Whether the samples are color or inks as they stand. libtiff itself makes 8-bit RGBA of palettes and others.
+// True where the samples are color or inks as they stand. libtiff itself makes 8-bit RGBA of palettes and others.
 bool is_plain(const Layout& layout) {
   switch (layout.photometric) {
     case PHOTOMETRIC_MINISBLACK:
@@ -227,8 +227,8 @@ std::string read_plain(TIFF* tiff, const Layout& layout, std::size_t bytes, bool
   return "";
 }
 
-// Why libtiff's own way to RGB would change the colors; "" where it does not. It takes L*a*b* under D50 for that of a
-// display under D65, and cuts the logarithms of light to those of a display.
+// The reason why libtiff's own way to RGB would change the colors; "" where it does not. It takes L*a*b* under D50 for
+// that of a display under D65, and cuts the logarithms of light to those of a display.
 std::string changed_colors(const Layout& layout) {
   switch (layout.photometric) {
     case PHOTOMETRIC_CIELAB:
