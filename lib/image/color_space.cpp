@@ -67,8 +67,13 @@ Result<Space> space_of(const ImagePart& part, const std::string& file) {
     return input_error("{}: {} is \"{}\", which is not known: convert it to linear Rec.709 and tag it lin_rec709_scene",
                        file, attribute, value);
   };
+  const auto* neutral = find_attribute<std::vector<float>>(part.attributes, "adoptedNeutral");
+  const auto with_neutral = [&](Space space) {
+    if (neutral && neutral->size() == 2) space.neutral = {(*neutral)[0], (*neutral)[1]};
+    return space;
+  };
   if (const std::string id = text("colorInteropID"); !id.empty()) {
-    if (const auto space = named_space(id)) return *space;
+    if (const auto space = named_space(id)) return with_neutral(*space);
     return unknown("colorInteropID", id);
   }
   const bool whole_numbers = attribute_or(part.attributes, "goniochrome:integer", 0) != 0;
@@ -79,14 +84,9 @@ Result<Space> space_of(const ImagePart& part, const std::string& file) {
   const auto named = name.empty() ? Space{kRec709, whole_numbers ? Curve::kSrgb : Curve::kLinear}
                      : whole_numbers && lower(name) == "rec709" ? Space{kRec709, Curve::kSrgb}
                                                                 : named_space(name);
-  const auto* neutral = find_attribute<std::vector<float>>(part.attributes, "adoptedNeutral");
   const auto* xy = find_attribute<std::vector<float>>(part.attributes, "chromaticities");
   const bool stated = xy && xy->size() == 8;
   if (!named && (whole_numbers || !stated || is_logarithmic(name))) return unknown("its color space", name);
-  const auto with_neutral = [&](Space space) {
-    if (neutral && neutral->size() == 2) space.neutral = {(*neutral)[0], (*neutral)[1]};
-    return space;
-  };
   if (!stated) return with_neutral(*named);
   // Chromaticities tell the primaries and nothing of the curve, which is linear for floats unless their space has one.
   Space space = named.value_or(Space{});
