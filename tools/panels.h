@@ -38,9 +38,9 @@ inline void add_seam_options(cli::ToolSpec& spec, panels::SeamTexts& seam) {
   spec.option("unit", "UNIT", "mm", &seam.unit, "length of one unit of the mesh")
       .one_of({"auto", "m", "in", "cm", "mm"})
       .more(
-          "auto goes by the diagonal of the mesh's box: up to 30 units are meters, up to 300 inches, up to 900 "
-          "centimeters, "
-          "and more are millimeters. What it took is told.");
+          "auto takes the unit that the file states: meters for glTF, or a comment such as \"# File units = inches\". "
+          "Else it goes by the diagonal of the mesh's box: up to 30 units are meters, up to 300 inches, up to 900 "
+          "centimeters, and more are millimeters. What it took is told.");
   spec.option("max-gap", "MM", "8", &seam.max_gap_mm, "wider gaps are no seam; 0 is a hundredth of the mesh's size")
       .from(0, 1e6);
   spec.option("light-from", "AZ,EL", "0,75", &seam.lights_from, "a light in the world")

@@ -142,7 +142,7 @@ Result<std::unique_ptr<MeasuredBrdf>> read_measured(const std::string& name, std
   return input_error("{}: is none of {}", name, measured_formats());
 }
 
-MeasuredChecks checks(const MeasuredBrdf& brdf) {
+MeasuredChecks checks(const MeasuredBrdf& brdf, const color::ViewingCondition& condition) {
   const MeasuredTraits& traits = brdf.traits();
   MeasuredChecks result;
   result.negative_share = static_cast<double>(traits.negative) / static_cast<double>(traits.samples);
@@ -178,6 +178,11 @@ MeasuredChecks checks(const MeasuredBrdf& brdf) {
   if (result.albedo_45 > 1)
     result.warnings.push_back(
         fmt::format("reflects {:.2f} of the light at 45 deg: more than there is", result.albedo_45));
+  const auto meter = ChannelColorimeter::make(traits, condition);
+  if (meter.ok() && meter->held_share() > color::kToldHeldShare)
+    result.warnings.push_back(
+        fmt::format("its spectra leave out {:.0f} % of what the observer sees, and were taken to go on as they end",
+                    100 * meter->held_share()));
   return result;
 }
 

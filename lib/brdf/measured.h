@@ -1,6 +1,6 @@
-// Measured BRDFs in the file formats of the laboratories that measured them: MERL tables, Cornell spectra, NVIDIA MBSDF,
-// RGL tensor files and tables of OpenMATERIAL. This header tells what a file says at a pair of directions, how far it can be trusted, and what
-// a multi-angle instrument would have read. goniochrome-theory(7), MEASURED BRDFS.
+// Measured BRDFs in the file formats of the laboratories that measured them: MERL tables, Cornell spectra, NVIDIA
+// MBSDF, RGL tensor files and tables of OpenMATERIAL. This header tells what a file says at a pair of directions, how
+// far it can be trusted, and what a multi-angle instrument would have read. goniochrome-theory(7), MEASURED BRDFS.
 #pragma once
 
 #include <cstddef>
@@ -89,7 +89,8 @@ struct MeasuredChecks {
   double albedo_45 = 0;    // reflectance for light at 45 deg, without 10 deg about specular
   std::vector<std::string> warnings;
 };
-MeasuredChecks checks(const MeasuredBrdf& brdf);
+// The warnings tell how much of what an observer sees the spectra leave out.
+MeasuredChecks checks(const MeasuredBrdf& brdf, const color::ViewingCondition& condition = {"D65", 2});
 
 // Takes noise off reflectance factors in the channels of a file, and returns whether there was any: values below 0 of a
 // spectrum, or of a noisy file. In other files RGB below 0 is a color outside of Rec.709, such as a deep yellow.

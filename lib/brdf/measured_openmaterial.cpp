@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "base/angles.h"
 #include "base/json.h"
@@ -23,8 +24,9 @@ using TableRow = std::array<double, kTableColumns>;  // wavelength, incidence, e
 // Hears the JSON of a table as it is read, without keeping it as a tree.
 class TableListener : public nlohmann::json_sax<nlohmann::json> {
  public:
-  std::string name;
+  std::string name, version;
   std::vector<TableRow> rows;
+  std::vector<double> wavelengths;  // m, of the list beside the table
   std::string fault;
 
   bool null() override { return number(std::numeric_limits<double>::quiet_NaN()); }
@@ -36,6 +38,7 @@ class TableListener : public nlohmann::json_sax<nlohmann::json> {
   bool string(string_t& value) override {
     if (in_row()) return fail("holds a text where a number stands");
     if (objects_ == 2 && section_ == "metadata" && key_ == "name") name = value;
+    if (objects_ == 2 && section_ == "metadata" && key_ == "openMaterial3dVersion") version = value;
     return true;
   }
   bool start_object(std::size_t) override { return ++objects_ < kDeepest; }
@@ -72,6 +75,7 @@ class TableListener : public nlohmann::json_sax<nlohmann::json> {
     return false;
   }
   bool number(double value) {
+    if (objects_ == 2 && section_ == "brdf" && key_ == "wavelengths") wavelengths.push_back(value);
     if (!in_row()) return true;
     if (count_ < kTableColumns) row_[count_] = value;
     ++count_;
@@ -83,6 +87,24 @@ class TableListener : public nlohmann::json_sax<nlohmann::json> {
   TableRow row_{};
   std::size_t count_ = 0;
 };
+
+double nanometers(double wavelength_m) {
+  return std::round(wavelength_m * 1e12) / 1e3;
+}
+
+// A finding where the list of wavelengths, which a file need not have, is another than that of the rows; else "".
+std::string contradiction(const std::vector<double>& list_m, const std::map<double, std::size_t>& of_rows) {
+  std::string rest;
+  std::set<double> listed;
+  for (const double wavelength_m : list_m) listed.insert(nanometers(wavelength_m));
+  const auto differ = [&](double nm, const char* where) { rest = fmt::format("{} nm stands {}", shortest(nm), where); };
+  for (const double nm : listed)
+    if (rest.empty() && !of_rows.contains(nm)) differ(nm, "in its list of wavelengths and in no row of its table");
+  for (const auto& [nm, none] : of_rows)
+    if (rest.empty() && !listed.empty() && !listed.contains(nm))
+      differ(nm, "in its table and not in its list of wavelengths");
+  return rest.empty() ? "" : rest + ": the table counts";
+}
 
 // Error, without the file: a row is out of range.
 Result<void> check_row(const TableRow& row, std::size_t number) {
@@ -108,6 +130,9 @@ Result<MeasuredPointer> read_openmaterial(const std::string& path, std::string_v
   TableListener table;
   const bool is_whole = nlohmann::json::sax_parse(bytes, &table);
   if (!is_whole) return input_error("{}: {}", path, table.fault.empty() ? "is nested too deeply" : table.fault);
+  if (!table.version.empty() && !table.version.starts_with("1."))
+    return input_error("{}: is of OpenMATERIAL 3D {}, and versions 1.x are read: export it as one of these", path,
+                       table.version);
   if (table.rows.empty())
     return input_error("{}: has no brdf with a lookupTable: of OpenMATERIAL the tables of BRDFs are read", path);
   MeasuredTraits traits{.format = "openmaterial", .description = table.name, .scattered = true};
@@ -122,7 +147,7 @@ Result<MeasuredPointer> read_openmaterial(const std::string& path, std::string_v
     }
     if (const auto checked = check_row(row, i + 1); !checked.ok())
       return input_error("{}: {}", path, checked.error().message);
-    const double nm = std::round(row[0] * 1e12) / 1e3;
+    const double nm = nanometers(row[0]);
     wavelengths[nm] = 0;
     const auto [kept, is_new] = spectra[{row[1], row[2], row[3]}].try_emplace(nm, row[4]);
     repeated += !is_new && kept->second != row[4];
@@ -146,6 +171,8 @@ Result<MeasuredPointer> read_openmaterial(const std::string& path, std::string_v
   const std::size_t partial = spectra.size() - rows.size();
   if (rows.empty())
     return input_error("{}: has no pair of directions with all of its {} wavelengths", path, wavelengths.size());
+  if (const std::string differs = contradiction(table.wavelengths, wavelengths); !differs.empty())
+    traits.findings.push_back(differs);
   if (repeated > 0)
     traits.findings.push_back(fmt::format(
         "{} rows repeat a wavelength and its directions with another BRDF: the first row counts", repeated));

@@ -63,6 +63,31 @@ TEST(OpenMaterial, ContradictionsAreTold) {
               testing::ElementsAre(HasSubstr("1 rows repeat a wavelength and its directions with another BRDF")));
 }
 
+// A table of version 2.0.0 and a list of other wavelengths than those of the rows were read in silence.
+TEST(OpenMaterial, ItsVersionAndItsListOfWavelengthsAreHeard) {
+  const std::string text = openmaterial_text();
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string other = text;
+    return other.replace(other.find(from), from.size(), to);
+  };
+  const auto version = [&](const char* number) {
+    return with(R"("name":"lab")", fmt::format(R"("name":"lab","openMaterial3dVersion":"{}")", number));
+  };
+  EXPECT_TRUE(read_measured("a.xompt", version("1.1.0")).ok());
+  EXPECT_THAT(refusal(version("2.0.0")), HasSubstr("is of OpenMATERIAL 3D 2.0.0, and versions 1.x are read"));
+  const auto found = [&](const char* list) {
+    const auto brdf = read_measured("a.xompt", with(R"("wavelengths":[])", list));
+    EXPECT_TRUE(brdf.ok());
+    return brdf.ok() ? (*brdf)->traits().findings : std::vector<std::string>();
+  };
+  EXPECT_THAT(found(R"("wavelengths":[7e-7,4e-7,5.5e-7])"), testing::IsEmpty());
+  EXPECT_THAT(found(R"("wavelengths":[4e-7,5e-7,7e-7])"),
+              testing::ElementsAre("500 nm stands in its list of wavelengths and in no row of its table: the table "
+                                   "counts"));
+  EXPECT_THAT(found(R"("wavelengths":[4e-7,7e-7])"),
+              testing::ElementsAre("550 nm stands in its table and not in its list of wavelengths: the table counts"));
+}
+
 TEST(OpenMaterial, RefusalsNameTheRow) {
   const std::string whole = openmaterial_text();
   const auto with = [&](const std::string& row) {

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "image/color_space.h"
+#include "image/icc.h"
 #include "image/image.h"
 
 namespace goniochrome::capture {
@@ -44,15 +45,16 @@ Result<void> PhotoStack::add(const Photo& photo, const PhotoTable& table, double
   const double step = whole ? step_of(part.image) : 0, limit = whole ? 1 - step / 2 : saturated;
   std::vector<PhotoPixel> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   std::size_t full = 0, black = 0;
+  const int colors = image::color_channels(part.image);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const float* stored = &part.image.data[i * static_cast<std::size_t>(channels)];
     float most = 0, sum = 0;
-    for (int c = 0; c < std::min(channels, 3); ++c) {
+    for (int c = 0; c < colors; ++c) {
       if (!std::isfinite(stored[c]))
         return input_error("{}:{}: pixel ({},{}) of {} is {}: every value must be a finite number", table.path,
                            photo.line, i % static_cast<std::size_t>(width), i / static_cast<std::size_t>(width),
                            photo.image, stored[c]);
-      most = std::max(most, stored[c]), sum += stored[c] / static_cast<float>(std::min(channels, 3));
+      most = std::max(most, stored[c]), sum += stored[c] / static_cast<float>(colors);
     }
     const double rounding = step * srgb_slope(sum) / std::sqrt(12.0);
     pixels[i].rounding = static_cast<float>(rounding);

@@ -96,12 +96,7 @@ Result<BrdfTarget> read_brdf_target(InputFile& file) {
   const bool is_stream = file.name() == "standard input";
   GONIO_ASSIGN(BrdfTarget target,
                brdf_target(is_stream ? "measured" : std::filesystem::path(file.name()).stem().string(), *brdf));
-  target.remarks = brdf::checks(*brdf).warnings;
-  GONIO_ASSIGN(const brdf::ChannelColorimeter meter, brdf::ChannelColorimeter::make(brdf->traits(), kWorkingCondition));
-  if (meter.held_share() > color::kToldHeldShare)
-    target.remarks.push_back(
-        fmt::format("its spectra leave out {:.0f} % of what the observer sees, and were taken to go on as they end",
-                    100 * meter.held_share()));
+  target.remarks = brdf::checks(*brdf, kWorkingCondition).warnings;
   target.source = std::move(brdf);
   return target;
 }

@@ -70,7 +70,8 @@ struct CsvPaintReader::State {
   Scale asked_scale;
   double unit = 1;  // of the reflectances: 1, or .01 for percent
   bool begun = false, scale_unknown = false;
-  std::string name_above;  // of the last row, for rows that leave it out
+  mutable std::string decimal_comma, decimal_point;  // a number with each
+  std::string name_above;                            // of the last row, for rows that leave it out
   int line = 0;
 
   // Long tables: the sample whose rows are being collected.
@@ -176,7 +177,15 @@ void CsvPaintReader::State::judge_row(ScaleJudge& judge, std::string& name) cons
 // A comma is a decimal point: the separator does not stand in a cell, unless that is quoted.
 Result<double> CsvPaintReader::State::number(int column, Domain domain) const {
   const std::string& text = cells[static_cast<std::size_t>(column)];
-  const auto value = number_in(with_decimal_point(text).value_or(text), domain);
+  const auto pointed = with_decimal_point(text);
+  std::string& first = pointed ? decimal_comma : decimal_point;
+  if (first.empty() && (pointed || text.find('.') != std::string::npos)) first = text;
+  if (!decimal_comma.empty() && !decimal_point.empty())
+    return error(
+        fmt::format("the table has the numbers {} and {}: write all with a decimal point, and none with a "
+                    "separator of thousands",
+                    shown(decimal_comma), shown(decimal_point)));
+  const auto value = number_in(pointed.value_or(text), domain);
   if (!value.ok())
     return error(fmt::format("{} {}", shown(header.headings[static_cast<std::size_t>(column)]), value.error().message));
   return *value;

@@ -34,6 +34,17 @@ void expect_two_paints(const Reading& reading) {
   EXPECT_EQ(reading.paints[1].measurement->rows[0].lab, (color::Lab{4, 5, 6}));
 }
 
+// A gloss of "1,234" beside decimal points was 1.234.
+TEST(PaintCsv, SeparatorsOfThousandsAreNoDecimalCommas) {
+  const std::string header = "sample,geometry,illuminant,observer,L,a,b,gloss20\n";
+  const Reading mixed = reading_of_text(header + "x,45as15,D65,10,41.87,1,2,\"1,234\"\n");
+  EXPECT_THAT(mixed.errors, ElementsAre(HasSubstr("the table has the numbers 1,234 and 41.87: write all with a decimal "
+                                                  "point, and none with a separator of thousands")));
+  const Reading commas = reading_of_text(header + "x,45as15,D65,10,\"41,87\",1,2,\"1,234\"\n");
+  ASSERT_EQ(commas.paints.size(), 1u);
+  EXPECT_EQ(commas.paints[0].gloss.at(0).gloss_units, 1.234);
+}
+
 TEST(PaintCsv, ReadsLongTablesInEveryForm) {
   const std::string body = "RM331,45as-15,A,2,41.87,-45.99,-21.5\nRM331,45,A,2,1,2,3\nb,45as15,A,2,4,5,6\n";
   const Reading plain = reading_of_text(kHeader + body);

@@ -175,9 +175,11 @@ class JcampParser {
     form_ = form.starts_with("(X++") ? Form::kSteps : form.starts_with("(XY") ? Form::kPairs : Form::kNone;
     if (form_ == Form::kNone)
       return input_error("the form \"{}\" is not known: (X++(Y..Y)) and (XY..XY) are", shown(form));
-    for (const char* label : {"FIRSTX", "LASTX", "NPOINTS"})
-      if (form_ == Form::kSteps && !block_.number(label))
+    for (const char* label : {"FIRSTX", "LASTX", "NPOINTS", "XFACTOR", "YFACTOR"}) {
+      const bool is_optional = form_ == Form::kPairs || label[1] == 'F';
+      if (!block_.number(label) && !(is_optional && block_.text(label).empty()))
         return input_error("{} is \"{}\": write a number", label, shown(block_.text(label)));
+    }
     return {};
   }
 
@@ -269,6 +271,7 @@ class JcampParser {
     if (record.nm.front() > record.nm.back()) std::ranges::reverse(record.nm), std::ranges::reverse(record.values);
     if (!std::ranges::is_sorted(record.nm, std::less_equal<>()))
       return input_error("the wavelengths of the spectrum above neither ascend nor descend");
+    note_largest(record.values);
     record.name = block_.text("TITLE");
     record.code = block_.text("$CODE");
     record.instrument = block_.text("SPECTROMETERDATASYSTEM");
@@ -277,6 +280,18 @@ class JcampParser {
     record.scale = *scale_;
     import_.add(std::move(record));
     return {};
+  }
+
+  // Remarks that a file states another largest value than its ordinates have.
+  void note_largest(const std::vector<double>& values) {
+    constexpr double kRounding = 0.02;  // of the value
+    const auto stated = block_.number("MAXY");
+    const double largest = *std::ranges::max_element(values);
+    if (stated && std::abs(*stated - largest) > kRounding * std::abs(largest))
+      import_.remarks().note(fmt::format("MAXY is {}, and the largest ordinate times YFACTOR {}: the file contradicts "
+                                         "itself, and the ordinates count",
+                                         shortest(*stated), shortest(largest)),
+                             shown(block_.text("TITLE")));
   }
 
   std::string_view text_;

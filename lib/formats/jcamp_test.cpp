@@ -83,6 +83,20 @@ TEST_F(Jcamp, OtherUnitsAreTurnedOrNamed) {
   EXPECT_NEAR(color.paints[0].measurement->rows.at(0).lab.L, 51.8372, 1e-4);  // 116 (.2)^(1/3) - 16
 }
 
+// A factor that is no number was 1, and a largest value that contradicts the ordinates was not heard.
+TEST_F(Jcamp, FactorsAndTheLargestValueAreHeard) {
+  const auto with = [](const std::string& from, const std::string& to) {
+    std::string text = block(kPlain);
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_THAT(refusal(with("##YFACTOR=1", "##YFACTOR=1,0")), HasSubstr("YFACTOR is \"1,0\": write a number"));
+  EXPECT_THAT(refusal(with("##XFACTOR=1", "##XFACTOR=x")), HasSubstr("XFACTOR is \"x\": write a number"));
+  EXPECT_EQ(good(with("##YFACTOR=1\n", "")).paints.size(), 1u);
+  const auto told = HasSubstr("MAXY is 4, and the largest ordinate times YFACTOR 40: the file contradicts itself");
+  EXPECT_THAT(good(with("##YFACTOR=1\n", "##YFACTOR=1\n##MAXY=40.3\n")).warnings, testing::Not(Contains(told)));
+  EXPECT_THAT(good(with("##YFACTOR=1\n", "##YFACTOR=1\n##MAXY=4\n")).warnings, Contains(told));
+}
+
 TEST_F(Jcamp, RefusalsNameLineAndCount) {
   EXPECT_THAT(refusal(block(kPlain.substr(0, kPlain.find("610")))),
               HasSubstr("has 21 values, and NPOINTS is 31: the file is damaged, or was cut off"));

@@ -1,4 +1,5 @@
 // QTX: standards and batches as sections of keys. Texts are made here; those of programs are read where they are known.
+#include <cmath>
 #include <cstdlib>
 
 #include "formats/importers.h"
@@ -86,6 +87,22 @@ TEST_F(Qtx, TristimulusValuesTellColorAndScale) {
   EXPECT_THAT(factors.warnings, Contains(HasSubstr("factors, as the L* beside them says")));
   EXPECT_THAT(good(section("d", "45/0", 31, -7.3)).warnings,
               Contains(HasSubstr("give --scale factor if they are factors")));
+}
+
+// XYZ from 0 to 1 were nearly black, and XYZ beside the spectrum of another color were dropped, both without a word.
+TEST_F(Qtx, DarkAndContradictoryTristimulusValuesAreTold) {
+  const std::string head = "[STANDARD 1]\nSTD_NAME=w\nSTD_VIEWING=45/0\nSTD_CORD_ILLUM=D65/10\n";
+  const std::string ones = head + "STD_X=.42665\nSTD_Y=.45\nSTD_Z=.48287\n";
+  EXPECT_THAT(good(ones).warnings, Contains(HasSubstr("XYZ were read from 0 to 100, as the format has them")));
+  ImportOptions options;
+  options.scale = Scale::kFactor;
+  EXPECT_NEAR(good(ones, options).paints.at(0).measurement->rows.at(0).lab.L, 116 * std::cbrt(.45) - 16, 1e-9);
+  const auto told = HasSubstr("the color of the spectrum was taken where the XYZ beside it are another (a at 45as45)");
+  const auto beside = [](const char* y) {
+    return section("a", "45/0", 31, 45, fmt::format("STD_CORD_ILLUM=D65/10\nSTD_X=42.67\nSTD_Y={}\nSTD_Z=48.29", y), 0);
+  };
+  EXPECT_THAT(good(beside("45")).warnings, testing::Not(Contains(told)));
+  EXPECT_THAT(good(beside("30")).warnings, Contains(told));
 }
 
 TEST_F(Qtx, NamesMayBeInAnyEncoding) {

@@ -41,6 +41,7 @@ struct Table {
   std::string wavelength_fault;  // why they make no spectrum
   Scale scale = Scale::kUnstated;
   std::vector<TextureColumn> textures;
+  std::vector<std::string> other_colors;  // headings that end in L, a or b and are of another color
 
   bool has_values() const {
     return !colors.empty() || wavelengths.size() >= kFewestWavelengths || (geometry != kNoColumn && !textures.empty());
@@ -86,10 +87,30 @@ color::ViewingCondition condition_in(std::string_view text) {
   return condition;
 }
 
-// A heading such as `L*`, `a* (D65/10)` or `D65/10 b*`.
+// True where every word of a heading is of the light, the observer or CIELAB.
+bool names_light_alone(std::string_view text) {
+  static constexpr std::array<std::string_view, 9> kWords = {"cie", "cielab",     "lab",      "deg",         "degree",
+                                                             "obs", "illuminant", "observer", "normlichtart"};
+  std::string word;
+  for (std::size_t i = 0; i <= text.size(); ++i) {
+    const char c = i < text.size() ? text[i] : ' ';
+    if ((c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-') {
+      word += c;
+      continue;
+    }
+    const bool known = word.empty() || word == "-" || is_one_of(lower(word), kWords) || color::observer_in(word) != 0 ||
+                       !color::condition_among(word).illuminant.empty();
+    if (!known) return false;
+    word.clear();
+  }
+  return true;
+}
+
+// A heading such as `L*`, `a* (D65/10)` or `D65/10 b*`, or of another color: `Hunter L`, `Delta a*`.
 struct LabHeading {
   std::size_t channel = 0;  // of L, a and b
   color::ViewingCondition condition;
+  bool is_other = false;
 };
 std::optional<LabHeading> lab_heading(std::string_view heading) {
   heading = trimmed(heading);
@@ -103,7 +124,7 @@ std::optional<LabHeading> lab_heading(std::string_view heading) {
   const std::string plain = plain_column(word);
   const auto channel = std::string_view("lab").find(plain);
   if (plain.size() != 1 || channel == std::string_view::npos) return std::nullopt;
-  return LabHeading{channel, condition_in(before)};
+  return LabHeading{channel, condition_in(before), !names_light_alone(before)};
 }
 
 // A heading that names a texture, and its version where it stands in brackets: `Sparkle Grade (v2)`.
@@ -118,6 +139,11 @@ std::optional<TextureColumn> texture_heading(std::string_view heading, int colum
   if (open != std::string_view::npos && close != std::string_view::npos && close > open)
     texture.version = trimmed(heading.substr(open + 1, close - open - 1));
   return texture.quantity.empty() ? std::nullopt : std::optional(texture);
+}
+
+// The number of a cell such as `45%`.
+std::string_view without_percent(std::string_view text) {
+  return text.ends_with('%') ? trimmed(text.substr(0, text.size() - 1)) : text;
 }
 
 // Whether the row is a title such as `Reflectance [%]`.
@@ -198,7 +224,9 @@ Table WorkbookReader::table_below(const Sheet& sheet, std::size_t heading) const
         table.wavelength_fault = taken.error().message;
     }
     if (auto texture = texture_heading(cell.text, cell.column)) table.textures.push_back(std::move(*texture));
-    if (const auto lab = lab_heading(cell.text)) {
+    if (const auto lab = lab_heading(cell.text); lab && lab->is_other) {
+      table.other_colors.push_back(cell.text);
+    } else if (lab) {
       const auto open = std::ranges::find_if(table.colors, [&](const LabColumns& columns) {
         return columns.condition == lab->condition && columns.at[lab->channel] == kNoColumn;
       });
@@ -244,6 +272,10 @@ Result<void> WorkbookReader::read_lab(const Sheet& sheet, const SheetRow& row, c
       values[k] = value.value_or(0);
     }
     if (empty == 3) continue;
+    if (empty > 0 && sheet.formulas_without_value > 0)
+      return error(sheet, row,
+                   "one of L*, a* and b* is missing, and formulas of the sheet have no stored value: open and save the "
+                   "workbook");
     if (empty > 0) return error(sheet, row, "one of L*, a* and b* is missing: give all three, or none");
     const color::Lab lab{values[0], values[1], values[2]};
     if (const auto checked = check_lab(lab); !checked.ok()) return error(sheet, row, checked.error().message);
@@ -278,14 +310,19 @@ Result<void> WorkbookReader::read_spectrum(const Sheet& sheet, const SheetRow& r
   if (!table.wavelength_fault.empty()) return error(sheet, row, table.wavelength_fault);
   const double from_nm = table.wavelengths[0].nm, step_nm = table.wavelengths[1].nm - from_nm;
   std::vector<double> factors;
+  std::size_t in_percent = 0;  // cells that say so
   for (const auto& [nm, column] : table.wavelengths) {
     const std::string_view text = row.at(column);
     if (text.empty() && factors.empty()) return {};
-    const auto value = number_in_cell(text);
+    in_percent += text.ends_with('%');
+    const auto value = number_in_cell(without_percent(text));
     if (!value || !(std::abs(*value) <= kMostLab))
       return error(sheet, row, fmt::format("the reflectance at {} nm is \"{}\": write a number", nm, shown(text)));
     factors.push_back(*value);
   }
+  if (in_percent > 0 && in_percent < factors.size())
+    return error(sheet, row, "some of its reflectances are shown as percent and others are not: show all alike");
+  if (in_percent > 0) GONIO_TRY(state_scale(sheet, row, Scale::kPercent));
   gathered.open.spectra.push_back({geometry, from_nm, step_nm, std::move(factors)});
   gathered.places.push_back(fmt::format("{} at {}", gathered.open.paint.name, paint::geometry_name(geometry)));
   return {};
@@ -315,7 +352,7 @@ Result<void> WorkbookReader::read_textures(const Sheet& sheet, const SheetRow& r
 bool WorkbookReader::is_row_of_units(const SheetRow& row, const Table& table) {
   if (table.wavelengths.size() < kFewestWavelengths) return false;
   const std::string_view cell = row.at(table.wavelengths.front().at);
-  return !number_in_cell(cell) && scale_in(cell) != Scale::kUnstated;
+  return !number_in_cell(without_percent(cell)) && scale_in(cell) != Scale::kUnstated;
 }
 
 // All sheets have one scale. Error: another was stated before.
@@ -349,6 +386,8 @@ Result<void> WorkbookReader::read(const Sheet& sheet) {
   sheets_ += fmt::format("{}\"{}\"", sheets_.empty() ? "" : ", ", shown(sheet.name));
   if (sheet.formulas_without_value > 0)
     remarks_.note("formulas without a stored value count as empty cells: open and save the workbook", sheet.name);
+  if (sheet.is_hidden || sheet.hidden_rows > 0)
+    remarks_.note("sheets and rows that the workbook hides are read as well", sheet.name);
   stated_name_.clear(), stated_ = {"", 0};
   Table table;
   for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
@@ -357,6 +396,8 @@ Result<void> WorkbookReader::read(const Sheet& sheet) {
       table = std::move(below);
       if (table.wavelengths.size() >= kFewestWavelengths) GONIO_TRY(state_scale(sheet, row, table.scale));
       any_table_ = any_table_ || table.geometry != kNoColumn;
+      for (const std::string& other : table.other_colors)
+        remarks_.note("columns of another color than CIELAB under a light are not read", other);
       if (table.geometry != kNoColumn) continue;
       remarks_.note("a table without a column of geometries was left out", sheet.name);
       table = {};
@@ -369,8 +410,11 @@ Result<void> WorkbookReader::read(const Sheet& sheet) {
     } else if (row.cells.size() >= 2) {  // `STANDARD: | name` and the like
       const std::string word = plain_column(row.cells[0].text);
       if (is_one_of(word, kNameHeadings)) stated_name_ = row.cells[1].text;
+      const color::ViewingCondition said = condition_in(row.cells[1].text);
       if (word.find("illum") != std::string::npos || word.find("lichtart") != std::string::npos)
-        stated_ = condition_in(row.cells[1].text);
+        stated_ = {said.illuminant, said.observer_deg != 0 ? said.observer_deg : stated_.observer_deg};
+      else if (is_one_of(word, kObserverHeadings))
+        stated_.observer_deg = color::observer_in(row.cells[1].text);
     }
   }
   return {};

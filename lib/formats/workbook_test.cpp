@@ -192,6 +192,55 @@ TEST_F(Workbook, SharedStringsMergedCellsAndDates) {
   EXPECT_EQ(paints.paints[0].measurement->rows[1].lab, (color::Lab{40, 3, 4}));
 }
 
+// A truth value was the number 1, a date of a workbook that counts from 1904 four years early, and hidden sheets and
+// rows were read without a word.
+TEST_F(Workbook, HearsWhatCellsAndSheetsAre) {
+  const auto sheet = [](const std::string& attributes, const std::string& L) {
+    return "<sheetData><row r=\"1\">" + text_cell("A1", "Name") + text_cell("B1", "Geometry") + text_cell("C1", "L*") +
+           text_cell("D1", "a*") + text_cell("E1", "b*") + text_cell("F1", "Date") + "</row><row r=\"2\" " +
+           attributes + ">" + text_cell("A2", "gray") + text_cell("B2", "45as45") + L + number_cell("D2", "0") +
+           number_cell("E2", "0") + "<c r=\"F2\" s=\"1\"><v>43538</v></c></row></sheetData>";
+  };
+  Parts parts = parts_of({{"s", sheet("hidden=\"1\"", number_cell("C2", "50"))}});
+  parts["xl/styles.xml"] =
+      "<styleSheet xmlns=\"http://schemas.openxmlformats.org/spreadsheetml/2006/main\"><cellXfs><xf numFmtId=\"0\"/>"
+      "<xf numFmtId=\"14\"/></cellXfs></styleSheet>";
+  auto paints = good_workbook(parts);
+  EXPECT_EQ(paints.paints.at(0).measurement->date, "2019-03-14T00:00:00");
+  EXPECT_THAT(paints.warnings, Contains(HasSubstr("sheets and rows that the workbook hides are read as well (s)")));
+  std::string& book = parts["xl/workbook.xml"];
+  book.insert(book.find("<sheets>"), "<workbookPr date1904=\"1\"/>");
+  paints = good_workbook(parts);
+  EXPECT_EQ(paints.paints.at(0).measurement->date, "2023-03-15T00:00:00");
+  EXPECT_THAT(refused(parts_of({{"s", sheet("", "<c r=\"C2\" t=\"b\"><v>1</v></c>")}})),
+              HasSubstr("L* is \"TRUE\": write a number"));
+  EXPECT_THAT(refused(parts_of({{"s", sheet("", "<c r=\"C2\"><f>SUM(1)</f></c>")}})),
+              HasSubstr("formulas of the sheet have no stored value: open and save the workbook"));
+}
+
+// The columns Hunter L, Delta L* and L (target) were taken for CIELAB, and an observer above the table was not heard.
+TEST_F(Workbook, HeadingsOfOtherColorsAreNoCielab) {
+  const auto sheet = [](const std::string& before, const std::string& behind) {
+    std::vector<std::vector<std::string>> rows = {{"Illuminant", "A"},
+                                                  {"Observer", "2"},
+                                                  {"Name", "Geometry"},
+                                                  {"gray", "45as45", "50", "1", "2", "60", "3", "4"}};
+    for (const std::string heading : {"L*", "a*", "b*"}) rows[2].push_back(before + heading + behind);
+    for (const std::string heading : {"L*", "a*", "b*"}) rows[2].push_back(heading);
+    return parts_of({{"s", data(rows)}});
+  };
+  for (const auto& [before, behind] : {std::pair{"Hunter ", ""}, {"Delta ", ""}, {"", " (target)"}}) {
+    const auto paints = good_workbook(sheet(before, behind));
+    EXPECT_EQ(paints.paints.at(0).measurement->rows.at(0).lab, (color::Lab{60, 3, 4})) << before << behind;
+    EXPECT_EQ(paints.paints.at(0).measurement->condition, (color::ViewingCondition{"A", 2}));
+    EXPECT_THAT(paints.warnings,
+                Contains(HasSubstr("columns of another color than CIELAB under a light are not read")));
+  }
+  for (const auto& [before, behind] : {std::pair{"CIE D65/10 ", ""}, {"", " (D65, 10 deg)"}, {"D65/10\xc2\xb0 ", ""}})
+    EXPECT_EQ(good_workbook(sheet(before, behind)).paints.at(0).measurement->condition,
+              (color::ViewingCondition{"D65", 10}));
+}
+
 TEST(WorkbookCells, PlacesAndDates) {
   EXPECT_EQ(cell_place("A1")->column, 0);
   EXPECT_EQ(cell_place("AB12")->column, 27);
@@ -233,6 +282,33 @@ TEST_F(Workbook, TellsPercentAndDisagreement) {
   const auto other = good_workbook(parts_of({{"s", data(spectra("0.02", "20"))}}));
   EXPECT_EQ(other.paints.at(0).measurement->rows.at(0).lab.L, 20);
   EXPECT_THAT(other.warnings, Contains(testing::AllOf(HasSubstr("at 1 of the readings"), HasSubstr("gray at 45as45"))));
+}
+
+// A cell that is shown as percent holds a factor, which a heading in percent divided by 100 once more.
+TEST_F(Workbook, CellsShownAsPercentAreThat) {
+  const auto sheet = [](const std::string& unit, const std::string& last_style) {
+    std::string head = text_cell("A1", "Name") + text_cell("B1", "Geometry");
+    std::string row = text_cell("A2", "gray") + text_cell("B2", "45as45");
+    for (int i = 0; i < 16; ++i) {
+      const std::string column(1, static_cast<char>('C' + i));
+      head += text_cell(column + "1", std::to_string(400 + 20 * i) + " nm" + unit);
+      row += "<c r=\"" + column + "2\" s=\"" + (i == 15 ? last_style : "1") + "\"><v>0.45</v></c>";
+    }
+    Parts parts =
+        parts_of({{"s", "<sheetData><row r=\"1\">" + head + "</row><row r=\"2\">" + row + "</row></sheetData>"}});
+    parts["xl/styles.xml"] =
+        "<styleSheet xmlns=\"http://schemas.openxmlformats.org/spreadsheetml/2006/main\"><numFmts><numFmt "
+        "numFmtId=\"170\" formatCode=\"0.0%\"/></numFmts><cellXfs><xf numFmtId=\"0\"/><xf numFmtId=\"10\"/><xf "
+        "numFmtId=\"170\"/></cellXfs></styleSheet>";
+    return parts;
+  };
+  for (const char* unit : {"", " (%)"}) {
+    const auto paints = good_workbook(sheet(unit, "2"));
+    EXPECT_NEAR(paints.paints.at(0).measurement->spectra.at(0).factors.at(15), 0.45, 1e-12) << unit;
+    EXPECT_THAT(paints.warnings, testing::Not(Contains(HasSubstr("--scale"))));
+  }
+  EXPECT_THAT(refused(sheet(" (factor)", "1")), HasSubstr("says another scale of reflectances"));
+  EXPECT_THAT(refused(sheet("", "0")), HasSubstr("some of its reflectances are shown as percent and others are not"));
 }
 
 // One factor above 20 made a whole workbook percent, and percent below 20 were factors.

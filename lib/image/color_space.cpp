@@ -27,6 +27,7 @@ struct Space {
   Primaries primaries = kRec709;
   Curve curve = Curve::kLinear;
   double gamma = 1;
+  std::optional<std::array<double, 2>> neutral = {};  // x and y of what is shown as white, where it is another
 };
 
 // Linear light from a value in sRGB (IEC 61966-2-1).
@@ -66,8 +67,13 @@ Result<Space> space_of(const ImagePart& part, const std::string& file) {
     return input_error("{}: {} is \"{}\", which is not known: convert it to linear Rec.709 and tag it lin_rec709_scene",
                        file, attribute, value);
   };
+  const auto* neutral = find_attribute<std::vector<float>>(part.attributes, "adoptedNeutral");
+  const auto with_neutral = [&](Space space) {
+    if (neutral && neutral->size() == 2) space.neutral = {(*neutral)[0], (*neutral)[1]};
+    return space;
+  };
   if (const std::string id = text("colorInteropID"); !id.empty()) {
-    if (const auto space = named_space(id)) return *space;
+    if (const auto space = named_space(id)) return with_neutral(*space);
     return unknown("colorInteropID", id);
   }
   const bool whole_numbers = attribute_or(part.attributes, "goniochrome:integer", 0) != 0;
@@ -81,11 +87,11 @@ Result<Space> space_of(const ImagePart& part, const std::string& file) {
   const auto* xy = find_attribute<std::vector<float>>(part.attributes, "chromaticities");
   const bool stated = xy && xy->size() == 8;
   if (!named && (whole_numbers || !stated || is_logarithmic(name))) return unknown("its color space", name);
-  if (!stated) return *named;
+  if (!stated) return with_neutral(*named);
   // Chromaticities tell the primaries and nothing of the curve, which is linear for floats unless their space has one.
   Space space = named.value_or(Space{});
   std::copy(xy->begin(), xy->end(), space.primaries.begin());
-  return space;
+  return with_neutral(space);
 }
 
 bool same(const Primaries& a, const Primaries& b) {
@@ -96,20 +102,25 @@ bool same(const Primaries& a, const Primaries& b) {
 
 using Columns = std::array<Vec3, 3>;
 
-// The columns of the matrix from RGB of `p` to the working space. They are the primaries, scaled so that they add up to
-// the white, and adapted to D65.
-Result<Columns> to_working_space(const Primaries& p, const std::string& file) {
+// The columns of the matrix from RGB of a space to the working space. They are the primaries, scaled so that they add
+// up to the white, and adapted from what is shown as white to D65.
+Result<Columns> to_working_space(const Space& space, const std::string& file) {
+  const Primaries& p = space.primaries;
   const auto xyz = [&](int i) { return Vec3{p[i], p[i + 1], 1 - p[i] - p[i + 1]}; };
   const Vec3 r = xyz(0), g = xyz(2), b = xyz(4), w = xyz(6);
   const double det = dot(r, cross(g, b));
   if (!(std::fabs(det) > 1e-6) || !(w.y > 0))
     return input_error("{}: its chromaticities span no color space: retag the file", file);
   const Vec3 white = (1 / w.y) * w;
+  const auto [x, y] = space.neutral.value_or(std::array{w.x, w.y});
+  if (!(x >= 0 && y > 0 && x + y <= 1))
+    return input_error("{}: its adoptedNeutral is {},{}, which is no chromaticity: retag the file", file, x, y);
+  const Vec3 neutral = {x / y, 1, (1 - x - y) / y};
   const Vec3 scale = {dot(white, cross(g, b)) / det, dot(white, cross(b, r)) / det, dot(white, cross(r, g)) / det};
   const Vec3 d65 = {.3127 / .329, 1, (1 - .3127 - .329) / .329};
   const auto column = [&](double s, const Vec3& c) {
     const color::Xyz there =
-        color::adapted({s * c.x, s * c.y, s * c.z}, {white.x, white.y, white.z}, {d65.x, d65.y, d65.z});
+        color::adapted({s * c.x, s * c.y, s * c.z}, {neutral.x, neutral.y, neutral.z}, {d65.x, d65.y, d65.z});
     return color::rgb_from_xyz_d65(there);
   };
   return Columns{column(scale.x, r), column(scale.y, g), column(scale.z, b)};
@@ -140,8 +151,8 @@ Result<Image> working_space_rgb(ImagePart part, const std::string& name) {
   if (const std::string profile = profile_of(part); !profile.empty())
     return image_through_icc(part.image, profile, name, attribute_or(part.attributes, "goniochrome:integer", 0) != 0);
   GONIO_ASSIGN(const Space space, space_of(part, name));
-  GONIO_ASSIGN(const Columns columns, to_working_space(space.primaries, name));
-  const bool convert = !same(space.primaries, kRec2020);
+  GONIO_ASSIGN(const Columns columns, to_working_space(space, name));
+  const bool convert = space.neutral || !same(space.primaries, kRec2020);
   Image& from = part.image;
   const int green = from.channels < 3 ? 0 : 1, blue = from.channels < 3 ? 0 : 2;
   Image to = {from.width, from.height, 3, {}, {}};

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,26 @@ TEST(ColorSpace, ChromaticitiesLeaveTheCurve) {
     ASSERT_TRUE(image.ok()) << image.error().message;
     EXPECT_NEAR(image->data[1], wanted, 1e-4) << space;
   }
+}
+
+// White was D65 for any adoptedNeutral of a file.
+TEST(ColorSpace, TheAdoptedNeutralBecomesWhite) {
+  const auto read = [](std::vector<float> neutral) {
+    ImagePart part;
+    // Light of the chromaticity of D50 and Y = .5 in linear Rec.709. [IEC 61966-2-1]
+    const double x = .3457, y = .3585, X = .5 * x / y, Z = .5 * (1 - x - y) / y;
+    part.image = {1, 1, 3, {}, {"R", "G", "B"}};
+    for (const auto& [r, g, b] : {std::array{3.24097, -1.53738, -.49861}, std::array{-.96924, 1.87597, .04156},
+                                  std::array{.05563, -.20398, 1.05697}})
+      part.image.data.push_back(static_cast<float>(r * X + g * .5 + b * Z));
+    if (!neutral.empty()) part.attributes["adoptedNeutral"] = std::move(neutral);
+    return working_space_rgb(std::move(part), "x.exr");
+  };
+  const auto gray = read({.3457F, .3585F}), yellow = read({});
+  ASSERT_TRUE(gray.ok() && yellow.ok());
+  for (const float value : gray->data) EXPECT_NEAR(value, .5, 1e-4);
+  EXPECT_GT(yellow->data[0] - yellow->data[2], .05);
+  EXPECT_THAT(read({.5F, 0}).error().message, HasSubstr("x.exr: its adoptedNeutral is 0.5,0"));
 }
 
 TEST(ColorSpace, LogarithmsAreRefusedWithChromaticitiesToo) {

@@ -242,7 +242,74 @@ std::string_view exif_of(std::string_view content, std::string_view format) {
   return exif;
 }
 
+// The number of 4 bytes in a TGA or BMP, lowest byte first; 0 beyond the end.
+std::uint32_t little_endian(std::string_view content, std::size_t at, std::size_t bytes = 4) {
+  std::uint32_t value = 0;
+  for (std::size_t i = bytes; i-- > 0 && at + bytes <= content.size();)
+    value = value << 8 | static_cast<unsigned char>(content[at + i]);
+  return value;
+}
+
+// The number that tells the kind of alpha in the extension of a TGA, to which the 26 bytes at its end point; none
+// without an extension. [Truevision TGA 2.0, fields 24 and 28]
+std::optional<int> alpha_type_of_targa(std::string_view content) {
+  constexpr std::size_t kFooter = 26, kType = 494;
+  if (content.size() < kFooter || !content.substr(content.size() - 18).starts_with("TRUEVISION-XFILE."))
+    return std::nullopt;
+  const std::size_t extension = little_endian(content, content.size() - kFooter);
+  if (extension == 0 || extension + kType >= content.size()) return std::nullopt;
+  return static_cast<unsigned char>(content[extension + kType]);
+}
+
+// The header of a BMP behind the 14 bytes of the file: a size, and by it the fields there are.
+struct BmpHeader {
+  static constexpr std::size_t kAt = 14;
+  static constexpr std::uint32_t kCalibrated = 0, kEmbedded = 0x4d424544;  // bV5CSType
+  std::string_view content;
+  std::uint32_t size() const { return field(0); }
+  std::uint32_t depth() const { return little_endian(content, kAt + 14, 2); }
+  std::uint32_t field(std::size_t at) const { return little_endian(content, kAt + at); }
+  bool has_masks() const { return field(16) == 3 || field(16) == 6; }
+  std::uint32_t alpha_mask() const { return has_masks() && (size() >= 56 || field(16) == 6) ? field(52) : 0; }
+};
+
+std::string_view profile_of_bmp(std::string_view content) {
+  const BmpHeader header{content};
+  if (header.size() < 124 || header.field(56) != BmpHeader::kEmbedded) return {};
+  const std::size_t at = BmpHeader::kAt + std::size_t{header.field(112)};
+  return at < content.size() ? content.substr(at, header.field(116)) : std::string_view();
+}
+
+// Endpoints of 0 are those of programs that fill in a header without colors to state.
+bool states_primaries(const BmpHeader& header) {
+  return header.size() >= 108 && header.field(56) == BmpHeader::kCalibrated && header.field(60) != 0;
+}
+
 }  // namespace
+
+bool has_alpha(std::string_view content, std::string_view format) {
+  if (format == "bmp") return BmpHeader{content}.alpha_mask() != 0;
+  if (format != "targa") return true;
+  constexpr int kStraight = 3, kMultiplied = 4, kBits = 15;
+  if (const auto type = alpha_type_of_targa(content)) return *type == kStraight || *type == kMultiplied;
+  return (content[17] & kBits) != 0;
+}
+
+std::string misread_colors(std::string_view content, std::string_view format) {
+  if (format == "targa" && (content[2] & ~8) == 3 && content[16] != 8)
+    return fmt::format("is a gray TGA of {} bits a pixel, and 8 are read: {}", int{content[16]}, kAdvice);
+  if (format != "bmp") return "";
+  const BmpHeader header{content};
+  if (header.depth() == 32 && header.has_masks() &&
+      (header.field(40) != 0xff0000 || header.field(44) != 0xff00 || header.field(48) != 0xff))
+    return fmt::format(
+        "is a BMP whose masks of red, green and blue are {:x}, {:x} and {:x}, and only ff0000, ff00 and "
+        "ff are read: {}",
+        header.field(40), header.field(44), header.field(48), kAdvice);
+  if (states_primaries(header))
+    return fmt::format("is a BMP that states primaries and curves of its own, which are not read: {}", kAdvice);
+  return "";
+}
 
 int exif_orientation(std::string_view content, std::string_view format) {
   return tiff_orientation(exif_of(content, format));
@@ -250,7 +317,10 @@ int exif_orientation(std::string_view content, std::string_view format) {
 
 Attributes stated_colors(std::string_view content, std::string_view format) {
   Attributes attributes;
-  if (const auto profile = chunk_of_webp(content, "ICCP"); format == "webp" && !profile.empty()) {
+  if (const auto profile = format == "webp"  ? chunk_of_webp(content, "ICCP")
+                           : format == "bmp" ? profile_of_bmp(content)
+                                             : std::string_view();
+      !profile.empty()) {
     attributes["ICCProfile"] = std::string(profile);
     return attributes;
   }

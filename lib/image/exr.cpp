@@ -13,6 +13,7 @@
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfVecAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 
 #include <algorithm>
@@ -98,6 +99,8 @@ Attributes attributes_of(const Imf::Header& header) {
       attributes[name] = whole->value();
     else if (const auto* xy = dynamic_cast<const Imf::ChromaticitiesAttribute*>(&value))
       attributes[name] = xy_values(xy->value());
+    else if (const auto* point = dynamic_cast<const Imf::V2fAttribute*>(&value); point && name == "adoptedNeutral")
+      attributes[name] = std::vector<float>{point->value().x, point->value().y};
     else if (const auto* map = dynamic_cast<const Imf::EnvmapAttribute*>(&value))
       attributes[name] = std::string(map->value() == Imf::ENVMAP_CUBE ? "cube" : "latlong");
   }

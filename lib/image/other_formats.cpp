@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -16,6 +17,7 @@
 #include "base/paths.h"
 #include "base/text.h"
 #include "image/exr.h"
+#include "image/internal/content_format.h"
 
 extern char** environ;
 
@@ -96,9 +98,22 @@ std::string reason_in(std::string_view words) {
   return shown(words.substr(0, words.find('\n')));
 }
 
+void drop_alpha(Image& image) {
+  for (std::size_t i = 0; i < image.data.size() / 4; ++i) std::copy_n(&image.data[4 * i], 3, &image.data[3 * i]);
+  image.data.resize(image.data.size() / 4 * 3);
+  image.channels = 3, image.channel_names = {"R", "G", "B"};
+}
+
+void associate_alpha(Image& image) {
+  for (std::size_t i = 0; i < image.data.size(); i += 4)
+    for (std::size_t c = 0; c < 3; ++c) image.data[i + c] *= image.data[i + 3];
+}
+
 }  // namespace
 
 Result<ImagePart> decoded_by_oiiotool(const std::string& content, const std::string& format, const std::string& name) {
+  if (const std::string misread = misread_colors(content, format); !misread.empty())
+    return input_error("{}: {}", name, misread);
   Scratch scratch;
   if (!scratch.is_there())
     return input_error("{}: no temporary folder can be made ({}): set TMPDIR", name, std::strerror(errno));
@@ -109,6 +124,10 @@ Result<ImagePart> decoded_by_oiiotool(const std::string& content, const std::str
   std::vector<std::string> command = {program_path(), "--threads", "1", "--nosoftwareattrib"};
   // Some versions hear the EXIF of a WebP file and others do not: exif_orientation() does in all of them.
   if (format != "webp") command.emplace_back("--autoorient");
+  // A false alpha of 0 would make the picture black.
+  const bool false_alpha = !has_alpha(content, format);
+  if (false_alpha || format == "bmp")
+    for (const char* word : {"--iconfig", "oiio:UnassociatedAlpha", "1"}) command.emplace_back(word);
   for (const char* word : {"--info", "-v"}) command.emplace_back(word);
   command.push_back(in);
   for (const char* word : {"-d", "float", "--compression", "none", "-o"}) command.emplace_back(word);
@@ -127,11 +146,19 @@ Result<ImagePart> decoded_by_oiiotool(const std::string& content, const std::str
   GONIO_ASSIGN(auto parts, decoded_exr(file_content(out).value(), name));
   ImagePart part = std::move(parts.front());
   part.name.clear(), part.attributes.clear();
+  if (part.image.channels == 4 && false_alpha) drop_alpha(part.image);
+  if (part.image.channels == 4 && format == "bmp") associate_alpha(part.image);
   std::string space = listed(said.value(), "oiio:ColorSpace");
-  // OpenImageIO names no color space for the densities of film, which are logarithms as KodakLog is, and for depths.
-  const std::string transfer = listed(said.value(), "dpx:Transfer");
-  for (const std::string_view other : {"Printing density", "ADX", "Z depth linear", "Z depth homogeneous"})
+  // OpenImageIO names no color space for the densities of film, which are logarithms as KodakLog is, for depths, and
+  // where the file does not tell; and none for the primaries of older television.
+  const std::string transfer = listed(said.value(), "dpx:Transfer"),
+                    primaries = listed(said.value(), "dpx:Colorimetric");
+  for (const std::string_view other :
+       {"Printing density", "ADX", "Z depth linear", "Z depth homogeneous", "User defined", "Undefined"})
     if (transfer == other) space = transfer;
+  for (const std::string_view other :
+       {"ITU-R 601-5 system B or G", "ITU-R 601-5 system M", "NTSC composite video", "PAL composite video"})
+    if (primaries == other) space = primaries;
   if (!space.empty()) part.attributes["oiio:ColorSpace"] = space;
   part.attributes["goniochrome:integer"] = said->find(" channel, float ") == std::string::npos ? 1 : 0;
   return part;

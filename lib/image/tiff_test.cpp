@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/scratch_for_test.h"
+#include "image/color_space.h"
 #include "image/image.h"
 
 namespace goniochrome::image::tiff_test {
@@ -46,7 +47,8 @@ std::vector<unsigned char> packed(const Kind& kind, int y, int x, int width, int
       const double value = slope(i, y, c);
       if (kind.format == SAMPLEFORMAT_IEEEFP && kind.bits == 64) put(value);
       if (kind.format == SAMPLEFORMAT_IEEEFP && kind.bits == 32) put(static_cast<float>(value));
-      if (kind.format == SAMPLEFORMAT_INT && kind.bits == 16) put(static_cast<std::int16_t>(std::lround(value * 32767)));
+      if (kind.format == SAMPLEFORMAT_INT && kind.bits == 16)
+        put(static_cast<std::int16_t>(std::lround(value * 32767)));
       if (kind.format != SAMPLEFORMAT_UINT) continue;
       const auto code = static_cast<std::uint32_t>(std::llround(value * ((std::uint64_t{1} << kind.bits) - 1)));
       if (kind.bits == 32) put(code);
@@ -123,7 +125,8 @@ TEST_F(TiffFile, EveryKindOfNumbersAndLayoutsIsReadAsItStands) {
       for (int x = 0; x < kWidth; ++x)
         for (int c = 0; c < kind.samples; ++c)
           // Half a step of 16 signed bits, which hold no fifteenths.
-          ASSERT_NEAR(image.pixel(x, y)[c], slope(x, y, c), 0.5 / 32767) << kind.what << " " << x << "," << y << "," << c;
+          ASSERT_NEAR(image.pixel(x, y)[c], slope(x, y, c), 0.5 / 32767)
+              << kind.what << " " << x << "," << y << "," << c;
   }
 }
 
@@ -139,13 +142,32 @@ TEST_F(TiffFile, WhiteIsZeroWhereTheFileSaysSoAndABitIsBlackOrWhite) {
 }
 
 TEST_F(TiffFile, ColorOfAnAlphaThatIsNotAssociatedIsMultipliedByIt) {
-  const auto part = read_image(written({"alpha", 8, 4, SAMPLEFORMAT_UINT, PHOTOMETRIC_RGB, false, false,
-                                        COMPRESSION_NONE, EXTRASAMPLE_UNASSALPHA}));
+  const auto part = read_image(written(
+      {"alpha", 8, 4, SAMPLEFORMAT_UINT, PHOTOMETRIC_RGB, false, false, COMPRESSION_NONE, EXTRASAMPLE_UNASSALPHA}));
   ASSERT_TRUE(part.ok()) << part.error().message;
   EXPECT_EQ(part->image.channel_names, (std::vector<std::string>{"R", "G", "B", "A"}));
   for (int x = 0; x < kWidth; ++x)
-    for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(part->image.pixel(x, 3)[c], slope(x, 3, c) * slope(x, 3, 3), 1e-6);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(part->image.pixel(x, 3)[c], slope(x, 3, c) * slope(x, 3, 3), 1e-6);
+}
+
+// A fourth channel of any kind was alpha, L*a*b* was off by 10 in b*, and a curve was that of sRGB.
+TEST_F(TiffFile, WhatItsTagsSayOfColorsAndAlphaIsHeard) {
+  const auto other = read_image(written(
+      {"extra", 8, 4, SAMPLEFORMAT_UINT, PHOTOMETRIC_RGB, false, false, COMPRESSION_NONE, EXTRASAMPLE_UNSPECIFIED}));
+  ASSERT_TRUE(other.ok()) << other.error().message;
+  EXPECT_EQ(other->image.channel_names, (std::vector<std::string>{"R", "G", "B", "channel3"}));
+  EXPECT_NEAR(other->image.pixel(1, 3)[0], slope(1, 3, 0), 1e-6);
+  const auto lab = read_image(written({"Lab", 8, 3, SAMPLEFORMAT_UINT, PHOTOMETRIC_CIELAB}));
+  ASSERT_FALSE(lab.ok());
+  EXPECT_THAT(lab.error().message, HasSubstr("its pixels are L*a*b*: convert it to RGB with a profile"));
+  std::vector<std::uint16_t> curve(256);
+  for (std::size_t i = 0; i < curve.size(); ++i) curve[i] = static_cast<std::uint16_t>(257 * i);
+  const auto linear = read_image(written({"curve", 8, 3, SAMPLEFORMAT_UINT, PHOTOMETRIC_RGB}, [&](TIFF* tiff) {
+    TIFFSetField(tiff, TIFFTAG_TRANSFERFUNCTION, curve.data(), curve.data(), curve.data());
+  }));
+  ASSERT_TRUE(linear.ok());
+  EXPECT_THAT(working_space_rgb(*linear, "x.tif").error().message,
+              HasSubstr("its color space is \"TransferFunction\", which is not known"));
 }
 
 TEST_F(TiffFile, InksAreKeptOrMixed) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <map>
 #include <tuple>
@@ -28,9 +29,29 @@ namespace {
 // The file: this head, then arrays at multiples of 64 bytes in the machine's own number format, then a directory in
 // JSON that says what stands where. Another machine's byte order makes another magic number.
 struct Head {
-  std::uint64_t magic = 0x0250414e534e4f47;  // "GONSNAP" and the version of the format
+  std::uint64_t magic = 0x0350414e534e4f47;  // "GONSNAP" and the version of the format
+  std::uint64_t sum = 0;                     // of everything behind this number
   std::uint64_t file_bytes = 0, directory_at = 0, directory_bytes = 0;
 };
+
+constexpr std::uint64_t kEmptySum = 0xcbf29ce484222325;
+
+// A 64-bit sum goes on over bytes: words are mixed in by multiplication (FNV's prime) and rotation, the last one filled
+// up by zeros. Each step is one-to-one, so that no change of one word is lost. Guards against accidents, not malice.
+std::uint64_t summed(std::uint64_t sum, std::string_view bytes) {
+  for (std::size_t at = 0; at < bytes.size(); at += sizeof sum) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + at, std::min(sizeof word, bytes.size() - at));
+    sum = (sum ^ word) * 0x100000001b3;
+    sum = (sum << 27) | (sum >> 37);
+  }
+  return sum;
+}
+
+// The sum that the head of an index states.
+std::uint64_t sum_of_index(std::string_view bytes) {
+  return summed(kEmptySum, bytes.substr(offsetof(Head, file_bytes)));
+}
 
 // The metrics that an index keeps.
 std::span<const paint::MetricColumn> columns() {
@@ -91,22 +112,14 @@ class LibraryIndex::Bytes {
 
 namespace {
 
-// A 64-bit sum of a file's content: words are mixed in by multiplication (FNV's prime) and rotation. Guards against
-// accidents, not against malice.
+// The sum of a file's content.
 Result<std::uint64_t> checksum(const std::string& path) {
   std::FILE* stream = std::fopen(path.c_str(), "rb");
   if (!stream) return input_error("{}: cannot be read: {}", path, std::strerror(errno));
-  std::vector<std::uint64_t> buffer(1 << 16);
-  std::uint64_t sum = 0xcbf29ce484222325;
-  for (std::size_t count = 1; count > 0;) {
-    buffer.back() = 0;
-    count = std::fread(buffer.data(), 1, buffer.size() * sizeof(std::uint64_t), stream);
-    std::memset(reinterpret_cast<char*>(buffer.data()) + count, 0, (8 - count % 8) % 8);
-    for (std::size_t i = 0; i < (count + 7) / 8; ++i) {
-      sum = (sum ^ buffer[i]) * 0x100000001b3;
-      sum = (sum << 27) | (sum >> 37);
-    }
-  }
+  std::string buffer(1 << 19, '\0');
+  std::uint64_t sum = kEmptySum;
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), stream))
+    sum = summed(sum, std::string_view(buffer).substr(0, count));
   std::fclose(stream);
   return sum;
 }
@@ -136,6 +149,8 @@ class Packer {
     head.directory_at = add(text);
     head.directory_bytes = text.size();
     head.file_bytes = bytes_.size();
+    std::memcpy(bytes_.data(), &head, sizeof head);
+    head.sum = sum_of_index(bytes_);
     std::memcpy(bytes_.data(), &head, sizeof head);
     return std::move(bytes_);
   }
@@ -289,7 +304,7 @@ class Unpacker {
     if (bytes_.size() < sizeof head) throw std::out_of_range("head");
     std::memcpy(&head, bytes_.data(), sizeof head);
     if (head.magic != Head{}.magic || head.file_bytes != bytes_.size() || head.directory_at > bytes_.size() ||
-        head.directory_bytes > bytes_.size() - head.directory_at)
+        head.directory_bytes > bytes_.size() - head.directory_at || head.sum != sum_of_index(bytes_))
       throw std::out_of_range("head");
     return Json::parse(bytes_.substr(head.directory_at, head.directory_bytes));
   }

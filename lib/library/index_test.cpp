@@ -102,33 +102,23 @@ TEST_F(LibraryIndexFile, TouchedLibraryIsStillTheSame) {
 TEST_F(LibraryIndexFile, DamagedIndexIsRebuilt) {
   opened();
   const std::string whole = file_content(index_path(path_)).value();
-  // Cut anywhere, or with bytes turned in the head, the directory or the tables that are followed: never a crash, and
-  // either the damage is found or what is read is inside the file.
+  // Cut anywhere, or with a byte turned in the head, the directory or the numbers, which gave wrong answers in silence.
   for (std::size_t size : {std::size_t{0}, std::size_t{5}, std::size_t{31}, whole.size() / 2, whole.size() - 1}) {
     std::ofstream(index_path(path_), std::ios::binary) << whole.substr(0, size);
     EXPECT_EQ(opened().origin(), LibraryIndex::Origin::kBuilt) << size;
   }
   std::mt19937_64 random(5);
-  int found = 0;
   for (int i = 0; i < 600; ++i) {
     std::string damaged = whole;
     const std::size_t at = i % 3 == 0   ? random() % 64
                            : i % 3 == 1 ? whole.size() - 1 - random() % 2000
                                         : random() % whole.size();
-    damaged[at] = static_cast<char>(random());
-    std::ofstream(index_path(path_), std::ios::binary) << damaged;
-    const LibraryIndex index = opened();
-    found += index.origin() == LibraryIndex::Origin::kBuilt;
-    std::size_t letters = 0;
-    for (std::size_t p = 0; p < index.size(); ++p) letters += index.name(p).size() + index.code(p).size();
-    EXPECT_LE(letters, whole.size());
-    const LibrarySearch search(index, {.count = 3});
-    std::mt19937_64 same(4);
-    const auto plan = search.plan(random_paints::paint(same, "q", {15, 45, 110}));
-    if (!plan.ok()) continue;
-    for (const LibraryMatch& match : search.nearest(*plan)) EXPECT_LT(match.paint, index.size());
+    damaged[at] = static_cast<char>(damaged[at] ^ static_cast<char>(1 + random() % 255));
+    EXPECT_FALSE(LibraryIndex::from_bytes(damaged).ok()) << at;
   }
-  EXPECT_GT(found, 150);
+  std::ofstream(index_path(path_), std::ios::binary) << whole.substr(0, 63) + "!" + whole.substr(64);
+  EXPECT_THAT(opened().note(), HasSubstr("damaged or of another version"));
+  EXPECT_EQ(opened().origin(), LibraryIndex::Origin::kMapped);
 }
 
 TEST_F(LibraryIndexFile, StaysInMemoryWhereItCannotBeKept) {

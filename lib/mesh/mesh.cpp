@@ -13,6 +13,7 @@
 #include "base/paths.h"
 #include "base/text.h"
 #include "mesh/internal/polygons.h"
+#include "mesh/unit.h"
 
 namespace goniochrome::mesh {
 
@@ -357,9 +358,10 @@ Result<Mesh> read_mesh(const std::string& path) {
   GONIO_ASSIGN(Polygons polygons, extension == ".obj" ? polygons_from_obj(content, source)
                                   : is_gltf           ? polygons_from_gltf(content, source, folder)
                                                       : polygons_from_soup(content, extension, source));
+  const double unit_m = is_gltf ? 1 : stated_unit_m(content);
   content = std::string();  // its memory is needed
   GONIO_ASSIGN(Mesh mesh, mesh_from_polygons(std::move(polygons), source.name));
-  mesh.unit_m = is_gltf ? 1 : 0;
+  mesh.unit_m = unit_m;
   return mesh;
 }
 

@@ -97,6 +97,21 @@ TEST_F(MeshFiles, MarksOfEncodingsAreNoPartOfTheText) {
   }
 }
 
+TEST_F(MeshFiles, TheUnitIsThatOfTheFileWhereItStatesOne) {
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_EQ(obj(triangle)->unit_m, 0);
+  EXPECT_EQ(obj("# File units = inches\n" + triangle)->unit_m, 0.0254);
+}
+
+// Glass within the object of a body was painted without a word.
+TEST_F(MeshFiles, SeveralMaterialsOfOnePartAreRemarked) {
+  const auto mesh = obj(kSquare + "o body\nusemtl lacquer\nf 1 2 3\nusemtl glass\nf 1 3 4\n");
+  EXPECT_THAT(mesh->remarks,
+              testing::ElementsAre("\"body\" has faces of several materials (\"lacquer\", \"glass\"), "
+                                   "and is one part of the first: write an o line before each material"));
+  EXPECT_TRUE(obj(kSquare + "o body\nusemtl a\nf 1 2 3\no glass\nusemtl b\nf 1 3 4\n")->remarks.empty());
+}
+
 TEST_F(MeshFiles, FreeFormSurfacesAreRemarked) {
   const std::string form = "cstype bezier\nsurf 0 1 0 1 1 2 3 4\nend\n";
   EXPECT_THAT(obj(kSquare + "f 1 2 3 4\n" + form)->remarks, testing::ElementsAre(HasSubstr("1 free-form surfaces")));

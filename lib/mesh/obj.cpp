@@ -132,7 +132,13 @@ struct Faces {
   std::vector<Polygons::Face> faces;
   std::vector<Polygons::Part> parts;
   bool normals_lost = false;  // whether a normal has no length
+  std::string mixed = {};     // the first part of several materials, and two of these
 };
+
+std::string mixed_materials(const Polygons::Part& part, const std::string& other) {
+  const std::string name = part.name.empty() ? "a part without a name" : fmt::format("\"{}\"", part.name);
+  return fmt::format("{} has faces of several materials (\"{}\", \"{}\")", name, part.material, other);
+}
 
 // Reads one chunk. Its vertices go to their places in `mesh`, which has room for all.
 class ChunkReader {
@@ -160,7 +166,7 @@ class ChunkReader {
     if (keyword == "vt") return texture(line);
     if (keyword == "vn") return normal(line);
     if (keyword == "f") return face(line);
-    if (keyword == "usemtl") material_ = trimmed(line);
+    if (keyword == "usemtl") material_ = trimmed(line), part_.reset();
     if (keyword == (has_objects_ ? "o" : "g")) part_name_ = trimmed(line), part_.reset();
     return {};
   }
@@ -259,6 +265,8 @@ class ChunkReader {
     if (part_) return *part_;
     const auto [entry, is_new] = part_index_.try_emplace(part_name_, static_cast<std::uint32_t>(faces_.parts.size()));
     if (is_new) faces_.parts.push_back({part_name_, material_});
+    const Polygons::Part& part = faces_.parts[entry->second];
+    if (part.material != material_ && faces_.mixed.empty()) faces_.mixed = mixed_materials(part, material_);
     part_ = entry->second;
     return *part_;
   }
@@ -283,10 +291,13 @@ class FacesJoined {
   }
 
   void add(Faces chunk) {
+    if (mixed_.empty()) mixed_ = std::move(chunk.mixed);
     std::vector<std::uint32_t> number_of;  // in the mesh, of each part of the chunk
     for (Polygons::Part& part : chunk.parts) {
       const auto [entry, is_new] = index_.try_emplace(part.name, static_cast<std::uint32_t>(mesh_.parts.size()));
       if (is_new) mesh_.parts.push_back(std::move(part));
+      const Polygons::Part& known = mesh_.parts[entry->second];
+      if (!is_new && known.material != part.material && mixed_.empty()) mixed_ = mixed_materials(known, part.material);
       number_of.push_back(entry->second);
     }
     const std::size_t before = mesh_.corners.size();
@@ -296,8 +307,10 @@ class FacesJoined {
     normals_lost_ |= chunk.normals_lost;
   }
   bool normals_lost() const { return normals_lost_; }
+  const std::string& mixed() const { return mixed_; }
 
  private:
+  std::string mixed_;
   Polygons& mesh_;
   std::unordered_map<std::string, std::uint32_t> index_;
   bool normals_lost_ = false;
@@ -339,6 +352,8 @@ Result<Polygons> polygons_from_obj(std::string_view text, const Source& source) 
     joined.add(std::move(**chunk));
     chunk.reset();
   }
+  if (!joined.mixed().empty())
+    mesh.remarks.push_back(joined.mixed() + ", and is one part of the first: write an o line before each material");
   if (joined.normals_lost()) {
     for (Polygons::Corner& corner : mesh.corners)
       if (corner.normal != kNoNormal && mesh.normals[static_cast<std::size_t>(corner.normal)] == Vec3{})

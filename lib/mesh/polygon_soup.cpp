@@ -121,8 +121,10 @@ Result<Polygons> polygons_from_soup(const std::string& content, const std::strin
         Faces faces;
         const bool is_ply = extension != ".ply" || content.starts_with("ply");
         if (!is_ply || !read_soup(content, extension, points, faces) || faces.empty())
-          return input_error("{}: not a whole {} mesh: export it again, or as OBJ, where errors can be told by line",
-                             path, extension.substr(1));
+          return input_error(
+              "{}: not a whole {} mesh, or one of number types that are not read: export it again, or as OBJ, where "
+              "errors can be told by line",
+              path, extension.substr(1));
         GONIO_ASSIGN(Polygons polygons, polygons_of(points, faces, source));
         take_normals(read_normals(content, extension), polygons);
         if (extension == ".ply" && has_property(content, {"s", "u", "texture_u", "texcoord"}))

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 namespace goniochrome::mesh::unit_test {
 namespace {
@@ -26,6 +27,21 @@ TEST(Unit, PanelsInMillimetersAndSmallThingsInMetersAreRecognized) {
   EXPECT_EQ(likely_unit(car(1100)).meters, 1e-3);
   EXPECT_EQ(likely_unit(car(0.12)).meters, 1);
   EXPECT_EQ(likely_unit(Box{}).meters, 1);
+}
+
+// A unit that a file states was guessed from the size of the mesh.
+TEST(Unit, CommentsStateIt) {
+  const std::pair<const char*, double> files[] = {
+      {"# Alias OBJ Model File\r\n# File units = inches\r\nv 0 0 0\n", 0.0254},
+      {"# units: MM\nv 0 0 0\n", 1e-3},
+      {"# Units : feet\n", 0.3048},
+      {"# 12 units tall\n# units = unknown\nv 0 0 0\n", 0},
+      {"v 0 0 0\n# units = mm\n", 0},
+      {"ply\nformat ascii 1.0\ncomment unit: cm\nelement vertex 3\n", 1e-2},
+      {"UNITS=mm  COLOR=\1\1\1", 1e-3},
+      {"solid x units = m\nfacet", 1}};
+  for (const auto& [text, meters] : files) EXPECT_EQ(stated_unit_m(text), meters) << text;
+  for (const double meters : {1.0, 0.3048, 0.0254, 1e-2, 1e-3}) EXPECT_EQ(unit_of(meters).meters, meters);
 }
 
 }  // namespace

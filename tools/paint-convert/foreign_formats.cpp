@@ -57,10 +57,6 @@ std::vector<std::string> cautions(const brdf::MeasuredColor& color) {
   }
   for (const paint::Geometry& geometry : color.unmeasured) append(unmeasured, paint::geometry_name(geometry));
   std::vector<std::string> lines;
-  if (color.held_share > color::kToldHeldShare)
-    lines.push_back(
-        fmt::format("its spectra leave out {:.0f} % of what the observer sees, and were taken to go on as they end",
-                    100 * color.held_share));
   if (!gaps.empty()) lines.push_back("interpolated between samples far apart: " + gaps);
   if (!outside.empty()) lines.push_back("beyond the measured directions, the nearest sample was taken: " + outside);
   if (!negative.empty()) lines.push_back("a channel is negative, which no color is, and was taken as 0: " + negative);
@@ -83,11 +79,12 @@ class MeasuredSource : public formats::PaintSource {
     GONIO_ASSIGN(const std::string bytes, input.rest(kLargestFile));
     GONIO_ASSIGN(const auto brdf, brdf::read_measured(name_, bytes));
     const bool is_rgb = brdf->traits().wavelengths_nm.empty();
-    const brdf::MeasuredChecks told = brdf::checks(*brdf);
-    brdf::MeasuredColorOptions options{setup_.geometries, {}, setup_.aperture_deg, told.noise_floor};
+    brdf::MeasuredColorOptions options{setup_.geometries, {}, setup_.aperture_deg};
     if (is_rgb) options.condition.observer_deg = 2;
     if (!setup_.import.illuminant.empty()) options.condition.illuminant = setup_.import.illuminant;
     if (setup_.import.observer_deg) options.condition.observer_deg = setup_.import.observer_deg;
+    const brdf::MeasuredChecks told = brdf::checks(*brdf, options.condition);
+    options.noise_floor = told.noise_floor;
     if (options.geometries.empty())
       for (const paint::LabReading& row : paint::rows_of({})) options.geometries.push_back(row.geometry);
     const auto color = brdf::measured_color(*brdf, options);

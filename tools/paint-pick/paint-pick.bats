@@ -212,11 +212,64 @@ board_error() { # TEXT LINE...
   awk 'BEGIN { print "P3\n4 4\n255"; for (i = 0; i < 16; ++i) print "149 90 121" }' >film.ppm
   oiiotool film.ppm -d uint10 -o film.dpx
   # The byte 801 of the header names the curve: 1 is printing density, 3 a logarithm, 6 that of ITU-R 709.
-  for curve in 1 3 6; do
+  for curve in 0 1 3 6 377; do # 0 is a curve of the user, and 377 none
     printf "\\x0$curve" | dd of=film.dpx bs=1 seek=801 conv=notrunc 2>dd.txt
     run paint-pick --face film.dpx@2,2,1 -o none.xml
     [ "$status" -eq $((curve == 6 ? 0 : 3)) ]
-    case $curve in 1) [[ $output == *'film.dpx: its color space is "Printing density", which is not known'* ]] ;; esac
+    case $curve in
+    0) [[ $output == *'film.dpx: its color space is "User defined", which is not known'* ]] ;;
+    1) [[ $output == *'film.dpx: its color space is "Printing density", which is not known'* ]] ;;
+    esac
+  done
+  # The byte 802 names the primaries: 9 are those of NTSC.
+  printf '\006\011' | dd of=film.dpx bs=1 seek=801 conv=notrunc 2>dd.txt
+  run paint-pick --face film.dpx@2,2,1 -o none.xml
+  [ "$status" -eq 3 ]
+  [[ $output == *'film.dpx: its color space is "NTSC composite video", which is not known'* ]]
+}
+
+@test "the fourth channel of a TGA or BMP is alpha where the file says so" {
+  pixels() { # ALPHA, octal
+    for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16; do printf "\\171\\132\\225\\$1"; done
+  }
+  tga() { # ALPHA-BITS ALPHA [TYPE]
+    printf "\\0\\0\\2\\0\\0\\0\\0\\0\\0\\0\\0\\0\\4\\0\\4\\0\\40\\$((40 + $1))"
+    pixels "$2"
+    [ -z "${3-}" ] || { head -c 494 /dev/zero && printf "\\$3"; }
+    [ -z "${3-}" ] && printf '\0\0\0\0' || printf '\122\0\0\0'
+    printf '\0\0\0\0TRUEVISION-XFILE.\0'
+  }
+  tga 0 0 >bits.tga # black with the library's alpha
+  tga 0 0 0 >none.tga
+  tga 10 0 2 >kept.tga
+  tga 10 377 3 >alpha.tga
+  # A header of 40 bytes, and one of 108 with masks and sRGB.
+  bmp() { # MASK-OF-RED MASK-OF-BLUE COLORS
+    printf 'BM\272\0\0\0\0\0\0\0\172\0\0\0\154\0\0\0\4\0\0\0\4\0\0\0\1\0\40\0\3\0\0\0\100\0\0\0\0\0\0\0\0\0\0\0'
+    printf "\\0\\0\\0\\0\\0\\0\\0\\0$1\\0\\377\\0\\0$2\\0\\0\\0\\0$3"
+    printf '\1\1\1\1' && head -c 44 /dev/zero
+    pixels 0
+  }
+  {
+    printf 'BM\166\0\0\0\0\0\0\0\66\0\0\0\50\0\0\0\4\0\0\0\4\0\0\0\1\0\40\0\0\0\0\0\100\0\0\0\0\0\0\0\0\0\0\0'
+    printf '\0\0\0\0\0\0\0\0'
+    pixels 0
+  } >plain.bmp
+  red='\0\0\377\0' blue='\377\0\0\0' srgb='BGRs'
+  bmp "$red" "$blue" "$srgb" >masks.bmp
+  for image in bits.tga none.tga kept.tga alpha.tga plain.bmp masks.bmp; do
+    paint-pick -q --face $image@2,2,1 -o out.xml --report r.json
+    near "$(result 'paints[0].face[0]')" 45.742 0.002
+    near "$(result 'paints[0].face[1]')" 28.803 0.002
+  done
+  bmp "$blue" "$red" "$srgb" >swapped.bmp
+  bmp "$red" "$blue" '\0\0\0\0' >calibrated.bmp
+  printf '\0\0\3\0\0\0\0\0\0\0\0\0\4\0\4\0\20\40' >gray.tga && pixels 0 >>gray.tga
+  for case in 'swapped.bmp: is a BMP whose masks of red, green and blue are ff, ff00 and ff0000' \
+    'calibrated.bmp: is a BMP that states primaries and curves of its own' 'gray.tga: is a gray TGA of 16 bits a pixel'; do
+    run paint-pick --face "${case%%:*}@2,2,1" -o none.xml
+    [ "$status" -eq 3 ]
+    [[ $output == *"$case"* ]]
   done
 }
 

@@ -1,5 +1,7 @@
 #include "pattern.h"
 
+#include <algorithm>
+
 #include "base/angles.h"
 #include "base/text.h"
 
@@ -8,7 +10,8 @@ namespace goniochrome::tool {
 Result<Mask> Mask::read(const std::string& path, bool alpha, bool invert) {
   GONIO_ASSIGN(const image::ImagePart part, image::read_image(path));
   const image::Image& from = part.image;
-  const bool has_alpha = alpha && (from.channels == 2 || from.channels == 4);
+  const auto named = std::ranges::find(from.channel_names, "A");
+  const bool has_alpha = alpha && named != from.channel_names.end();
   const int colors = from.channels < 3 ? 1 : 3;
   Mask mask;
   mask.gray_ = {from.width, from.height, 1, {}, {"Y"}};
@@ -17,7 +20,7 @@ Result<Mask> Mask::read(const std::string& path, bool alpha, bool invert) {
       const float* pixel = from.pixel(x, y);
       float value = 0;
       for (int c = 0; c < colors; ++c) value += pixel[c] / static_cast<float>(colors);
-      if (has_alpha) value = pixel[from.channels - 1];
+      if (has_alpha) value = pixel[named - from.channel_names.begin()];
       if (!std::isfinite(value))
         return input_error("{}: pixel ({},{}) is {}: a mask holds numbers from 0 to 1", path, x, y, value);
       value = std::clamp(value, 0.0F, 1.0F);

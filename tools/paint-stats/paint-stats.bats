@@ -265,6 +265,13 @@ column() {
   run --separate-stderr paint-stats --score nobody.csv gray.xml
   [ "$status" -eq 3 ]
   [[ "$stderr" == *"no paint has both a model and directions there"* ]]
+  # Reasons to doubt a measured BRDF were told by fits alone.
+  awk 'BEGIN { print "3\n400 550 700"
+    for (ti = 0; ti < 1.5; ti += 0.2) for (to = 0; to < 1.5; to += 0.1) for (az = 0; az <= 3.1; az += 0.3)
+      print ti, 0, to, az, 0.9, 0.9, 0.9 }' >gray.brdf
+  run --separate-stderr paint-stats --score gray.brdf gray.xml
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *": warning: gray.brdf: reflects "*" of the light at 45 deg: more than there is"* ]]
   run --separate-stderr paint-stats --score table.csv --where 'L15>1' gray.xml
   [ "$status" -eq 2 ]
   run --separate-stderr paint-stats --score table.csv -f paints gray.xml

@@ -104,6 +104,7 @@ class Table {
 
   // Whether a measured BRDF is meant for this paint: where a paint has the name of its file, for no other.
   bool is_of_one_paint() const { return brdf_ != nullptr; }
+  std::vector<std::string> doubts() const { return brdf_ ? brdf::checks(*brdf_).warnings : std::vector<std::string>(); }
   std::string stem() const { return std::filesystem::path(path_).stem().string(); }
 
  private:
@@ -227,6 +228,7 @@ Result<cli::Verdict> score(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(const color::DifferenceFormula formula, formula_of(options.formula));
   const std::string column = column_of(formula);
   GONIO_ASSIGN(const Table table, Table::read(options.score));
+  for (const std::string& doubt : table.doubts()) session.warn(fmt::format("{}: {}", options.score, doubt));
   std::vector<std::pair<paint::Paint, std::filesystem::path>> paints;
   bool named = false;
   for (const std::string& path : options.inputs.empty() ? std::vector<std::string>{"-"} : options.inputs) {

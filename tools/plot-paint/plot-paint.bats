@@ -119,6 +119,10 @@ setup() {
   cp candy_red.brdf other.brdf
   run plot-paint --paint candy_red --brdf other.brdf fitted.xml -o page.svg
   [[ "$output" =~ 'no paint is named "other"' ]]
+  # Reasons to doubt it were told by fits alone.
+  awk 'NR > 2 { for (i = 5; i <= 7; ++i) $i *= 9 } { print }' candy_red.brdf >other.brdf
+  run plot-paint --brdf other.brdf fitted.xml -o page.svg
+  [[ "$output" == *": warning: other.brdf: reflects "*" of the light at 45 deg: more than there is"* ]]
 }
 
 @test "wrong values are refused by name" {

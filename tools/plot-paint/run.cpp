@@ -22,10 +22,11 @@ namespace {
 
 using Brdfs = std::map<std::string, std::unique_ptr<brdf::MeasuredBrdf>>;
 
-Result<Brdfs> read_brdfs(const std::vector<std::string>& paths) {
+Result<Brdfs> read_brdfs(const std::vector<std::string>& paths, cli::Session& session) {
   Brdfs brdfs;
   for (const std::string& path : paths) {
     GONIO_ASSIGN(auto brdf, brdf::read_measured(path));
+    for (const std::string& doubt : brdf::checks(*brdf).warnings) session.warn(fmt::format("{}: {}", path, doubt));
     brdfs[std::filesystem::path(path).stem().string()] = std::move(brdf);
   }
   return brdfs;
@@ -149,7 +150,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   }
   GONIO_ASSIGN(std::optional<PageFiles> files, PageFiles::create(options));
   GONIO_ASSIGN(const std::vector<ChosenPaint> paints, chosen_paints(options));
-  GONIO_ASSIGN(const Brdfs brdfs, read_brdfs(options.brdfs));
+  GONIO_ASSIGN(const Brdfs brdfs, read_brdfs(options.brdfs, session));
   for (const auto& [name, brdf] : brdfs)
     if (std::ranges::none_of(paints, [&](const ChosenPaint& chosen) { return chosen.paint.name == name; }))
       session.warn(fmt::format("no paint is named \"{}\" as the measured BRDF is: it is not used", name));

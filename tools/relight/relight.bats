@@ -206,6 +206,14 @@ END
   [ "$status" -eq 0 ]
   grep -q '"primaries":\[\[0.64,0.33\],' op.json
   relight -q --from D65 --to A --operator op.json "$sky" -o out.exr
+  # Behind a mark of the encoding the first row was taken for names, and columns of other names for x, y and z.
+  { printf '\xef\xbb\xbf' && tail -n +2 cie.csv; } >marked.csv
+  "$estimate" marked.csv --primaries rec709 -o same.json
+  cmp op.json same.json
+  sed 's/nm,x,y,z/nm,z,y,x/' cie.csv >turned.csv
+  run "$estimate" turned.csv -o none.json
+  [ "$status" -eq 3 ]
+  [[ "$output" == *"turned.csv:1: the columns are nm, z, y, x: give wavelength, x, y and z bar"* ]]
   run "$estimate" cie.csv --primaries 0.64,0.33,0.3
   [ "$status" -ne 0 ]
   run "$estimate" cie.csv --primaries 0.1,0.1,0.2,0.2,0.3,0.3

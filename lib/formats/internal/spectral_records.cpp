@@ -11,6 +11,9 @@ namespace goniochrome::formats {
 
 namespace {
 
+// Instruments weigh their spectra by tables for their own bands, which changes the color by less.
+constexpr double kAgrees_de00 = 0.5;
+
 std::vector<double> wavelengths_of(const SpectralRecord& record) {
   if (!record.nm.empty()) return record.nm;
   std::vector<double> nm;
@@ -32,8 +35,11 @@ Result<ImportedPaints> RecordImport::finish() {
   for (SpectralRecord& record : records_)
     if (!record.geometry) record.geometry = geometry_in_words(record.viewing, options_, remarks_);
   GONIO_TRY(find_units());
+  const auto has_spectrum = [](const SpectralRecord& record) { return !record.values.empty(); };
+  xyz_scale_.set(options_.scale, std::ranges::any_of(records_, has_spectrum));
   for (SpectralRecord& record : records_) make_paint(record);
   close_paint();
+  xyz_scale_.finish(remarks_);
   result_.warnings = remarks_.lines();
   return std::move(result_);
 }
@@ -96,10 +102,14 @@ std::optional<color::Lab> RecordImport::color_of(const SpectralRecord& record, c
     return std::nullopt;
   };
   Result<color::Lab> lab = color::Lab{};
-  if (record.values.empty()) {
+  std::optional<color::Lab> stated;
+  if (record.xyz) {
     const auto white = color::white_point(condition);
-    if (!white.ok()) return left_out(white.error());
-    lab = color::lab_from_xyz({record.xyz->X / 100, record.xyz->Y / 100, record.xyz->Z / 100}, *white);
+    if (!white.ok() && record.values.empty()) return left_out(white.error());
+    if (white.ok()) stated = color::lab_from_xyz(xyz_scale_.scaled(*record.xyz), *white);
+  }
+  if (record.values.empty()) {
+    lab = *stated;
   } else {
     if (const auto checked = check_not_negative(record.values); !checked.ok()) return left_out(checked.error());
     if (record.nm.empty()) {
@@ -114,6 +124,8 @@ std::optional<color::Lab> RecordImport::color_of(const SpectralRecord& record, c
   }
   if (!lab.ok()) return left_out(lab.error());
   if (const auto checked = check_lab(*lab); !checked.ok()) return left_out(checked.error());
+  if (stated && !record.values.empty() && color::delta_e_2000(*lab, *stated) > kAgrees_de00)
+    remarks_.note("the color of the spectrum was taken where the XYZ beside it are another", place);
   return *lab;
 }
 

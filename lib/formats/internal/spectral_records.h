@@ -58,6 +58,7 @@ class RecordImport {
   Remarks remarks_;
   std::vector<SpectralRecord> records_;
   std::array<double, 3> units_ = {1, 1, 0.01};  // by Scale
+  XyzScale xyz_scale_;
   SpectralMeter meter_;
   UniqueNames names_;
   std::optional<OpenPaint> open_;

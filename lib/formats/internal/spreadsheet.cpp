@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "base/text.h"
 #include "formats/internal/xml_stream.h"
@@ -64,17 +63,25 @@ class PartHandler : public XmlHandler {
 
 struct SheetPart {
   std::string name, part;
+  bool is_hidden = false;
 };
+
+bool is_true(std::string_view text) {
+  return text == "1" || text == "true";
+}
 
 class WorkbookHandler : public PartHandler {
  public:
   std::vector<SheetPart> sheets;  // `part` is the relation's Id
+  bool since_1904 = false;
 
  private:
   Result<void> begun(const XmlTag& tag) override {
+    if (in("workbook", "workbookPr")) since_1904 = is_true(attribute(tag, "date1904"));
     if (!in("sheets", "sheet")) return {};
     if (sheets.size() == kMostSheets) return input_error("more than {} sheets: split the workbook", kMostSheets);
-    sheets.push_back({attribute(tag, "name"), attribute(tag, "id")});
+    const std::string state = attribute(tag, "state");
+    sheets.push_back({attribute(tag, "name"), attribute(tag, "id"), state == "hidden" || state == "veryHidden"});
     return {};
   }
 };
@@ -108,8 +115,9 @@ class StringHandler : public PartHandler {
   }
 };
 
-// Whether a format of numbers such as `dd.mm.yyyy` shows a date. Letters in quotation marks and brackets are text.
-bool is_date_format(std::string_view format) {
+// True for a format of numbers that has one of the characters, in quotation marks and brackets or not at all: these are
+// text. `dd.mm.yyyy` shows a date, and `0.0%` percent.
+bool shows(std::string_view format, std::string_view characters) {
   char until = 0;
   for (std::size_t i = 0; i < format.size(); ++i) {
     const char c = format[i];
@@ -119,29 +127,37 @@ bool is_date_format(std::string_view format) {
       until = c == '"' ? '"' : ']';
     } else if (c == '\\') {
       ++i;
-    } else if (std::string_view("ymdhYMDH").find(c) != std::string_view::npos) {
+    } else if (characters.find(c) != std::string_view::npos) {
       return true;
     }
   }
   return false;
 }
 
+// How a cell shows its number.
+enum class CellStyle { kNumber, kDate, kPercent };
+
 class StyleHandler : public PartHandler {
  public:
-  // Whether cells of a style are dates.
-  std::vector<bool> dates;
+  std::vector<CellStyle> styles;
 
  private:
   Result<void> begun(const XmlTag& tag) override {
     const auto number = parse_integer(attribute(tag, "numFmtId"));
-    if (in("numFmts", "numFmt") && number && is_date_format(attribute(tag, "formatCode"))) own_.insert(*number);
-    // ECMA-376 part 1, 18.8.30: these formats of dates and times need not be spelled out.
-    if (in("cellXfs", "xf"))
-      dates.push_back(number &&
-                      ((*number >= 14 && *number <= 22) || (*number >= 45 && *number <= 47) || own_.contains(*number)));
+    if (in("numFmts", "numFmt") && number) own_[*number] = style_of(attribute(tag, "formatCode"));
+    if (in("cellXfs", "xf")) styles.push_back(number ? style_of(*number) : CellStyle::kNumber);
     return {};
   }
-  std::set<std::int64_t> own_;
+  static CellStyle style_of(const std::string& format) {
+    return shows(format, "ymdhYMDH") ? CellStyle::kDate : shows(format, "%") ? CellStyle::kPercent : CellStyle::kNumber;
+  }
+  // ECMA-376 part 1, 18.8.30: these formats need not be spelled out.
+  CellStyle style_of(std::int64_t number) const {
+    if (const auto own = own_.find(number); own != own_.end()) return own->second;
+    if ((number >= 14 && number <= 22) || (number >= 45 && number <= 47)) return CellStyle::kDate;
+    return number == 9 || number == 10 ? CellStyle::kPercent : CellStyle::kNumber;
+  }
+  std::map<std::int64_t, CellStyle> own_;
 };
 
 struct Range {
@@ -150,8 +166,8 @@ struct Range {
 
 class SheetHandler : public PartHandler {
  public:
-  SheetHandler(const std::vector<std::string>& strings, const std::vector<bool>& dates)
-      : strings_(strings), dates_(dates) {}
+  SheetHandler(const std::vector<std::string>& strings, const std::vector<CellStyle>& styles, bool since_1904)
+      : strings_(strings), styles_(styles), since_1904_(since_1904) {}
 
   Sheet sheet;
 
@@ -191,6 +207,7 @@ class SheetHandler : public PartHandler {
       const std::int64_t own = number.value_or(last + 1);
       if (own <= last || own > kMostSheetRows) return input_error("row {} stands behind row {}", own, last);
       sheet.rows.push_back({static_cast<int>(own), {}});
+      is_row_hidden_ = is_true(attribute(tag, "hidden")), is_row_empty_ = true;
       column_ = -1;
     } else if (in("row", "c") && !sheet.rows.empty()) {
       const std::string reference = attribute(tag, "r");
@@ -203,8 +220,8 @@ class SheetHandler : public PartHandler {
       column_ = column;
       type_ = attribute(tag, "t"), value_.clear();
       const auto style = parse_integer(attribute(tag, "s"));
-      is_date_ = style && *style >= 0 && *style < static_cast<std::int64_t>(dates_.size()) &&
-                 dates_[static_cast<std::size_t>(*style)];
+      const bool known = style && *style >= 0 && *style < static_cast<std::int64_t>(styles_.size());
+      style_ = known ? styles_[static_cast<std::size_t>(*style)] : CellStyle::kNumber;
       is_formula_ = has_value_ = false;
     } else if (in("c", "f")) {
       is_formula_ = true;
@@ -236,23 +253,30 @@ class SheetHandler : public PartHandler {
         return input_error("row {}: a cell has the text number {}, and the workbook has {} texts: it is damaged",
                            sheet.rows.back().number, shown(value_), strings_.size());
       value_ = strings_[static_cast<std::size_t>(*index)];
-    } else if (is_date_ && (type_.empty() || type_ == "n")) {
-      if (const auto days = parse_number(trimmed(value_))) value_ = date_text(*days);
+    } else if (type_ == "b") {
+      value_ = trimmed(value_) == "0" ? "FALSE" : "TRUE";
+    } else if (style_ != CellStyle::kNumber && (type_.empty() || type_ == "n")) {
+      if (const auto number = parse_number(trimmed(value_)))
+        value_ = style_ == CellStyle::kDate ? date_text(*number, since_1904_) : shortest(100 * *number) + "%";
     }
     const std::string_view text = trimmed(value_);
     if (text.empty()) return {};
     if (++cells_ > kMostCells) return too_many();
+    sheet.hidden_rows += is_row_hidden_ && is_row_empty_;
+    is_row_empty_ = false;
     sheet.rows.back().cells.push_back({column_, std::string(text)});
     return {};
   }
 
   const std::vector<std::string>& strings_;
-  const std::vector<bool>& dates_;
+  const std::vector<CellStyle>& styles_;
+  bool since_1904_;
   std::vector<Range> merged_;
   std::size_t cells_ = 0;
   int column_ = -1;
   std::string type_, value_;
-  bool is_date_ = false, is_formula_ = false, has_value_ = false;
+  CellStyle style_ = CellStyle::kNumber;
+  bool is_formula_ = false, has_value_ = false, is_row_hidden_ = false, is_row_empty_ = true;
 };
 
 }  // namespace
@@ -274,8 +298,10 @@ Result<CellPlace> cell_place(std::string_view reference) {
   return place;
 }
 
-std::string date_text(double days) {
+std::string date_text(double days, bool since_1904) {
   using namespace std::chrono;
+  constexpr double kOf1904 = 1462;  // days later
+  if (since_1904) days += kOf1904;
   constexpr double kLastDay = 2958466;  // the year 10000
   if (!(days >= 0 && days < kLastDay)) return shortest(days);
   // Day 60 would be February 29 of 1900, which was none; from March on, day 1 was December 31 of 1899.
@@ -292,7 +318,8 @@ struct Spreadsheet::State {
   zip_t* archive = nullptr;
   std::vector<SheetPart> sheets;
   std::vector<std::string> strings;
-  std::vector<bool> dates;
+  std::vector<CellStyle> styles;
+  bool since_1904 = false;
 
   ~State() {
     if (archive) zip_discard(archive);
@@ -337,14 +364,15 @@ Result<void> Spreadsheet::State::read_frame() {
   WorkbookHandler workbook;
   RelationHandler relations;
   StringHandler texts;
-  StyleHandler styles;
+  StyleHandler formats;
   if (!has("xl/workbook.xml"))
     return input_error("{}: is a ZIP archive without a workbook (XLSX): unpack it, and give what is in it", name);
   GONIO_TRY(read("xl/workbook.xml", name, workbook));
   GONIO_TRY(read("xl/_rels/workbook.xml.rels", name, relations));
   if (has("xl/sharedStrings.xml")) GONIO_TRY(read("xl/sharedStrings.xml", name, texts));
-  if (has("xl/styles.xml")) GONIO_TRY(read("xl/styles.xml", name, styles));
-  sheets = std::move(workbook.sheets), strings = std::move(texts.strings), dates = std::move(styles.dates);
+  if (has("xl/styles.xml")) GONIO_TRY(read("xl/styles.xml", name, formats));
+  sheets = std::move(workbook.sheets), strings = std::move(texts.strings);
+  styles = std::move(formats.styles), since_1904 = workbook.since_1904;
   for (SheetPart& sheet : sheets) {
     // Relative to the folder xl, or absolute. Parts are looked up in the archive alone, so that no name leads out of
     // it.
@@ -385,8 +413,8 @@ std::size_t Spreadsheet::sheet_count() const {
 
 Result<Sheet> Spreadsheet::sheet(std::size_t index) {
   const SheetPart& about = state_->sheets[index];
-  SheetHandler handler(state_->strings, state_->dates);
-  handler.sheet.name = about.name;
+  SheetHandler handler(state_->strings, state_->styles, state_->since_1904);
+  handler.sheet.name = about.name, handler.sheet.is_hidden = about.is_hidden;
   const std::string called = fmt::format("{}: sheet \"{}\"", state_->name, shown(about.name));
   GONIO_TRY(state_->read(about.part, called, handler));
   if (const auto filled = handler.fill_merged(); !filled.ok())

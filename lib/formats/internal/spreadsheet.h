@@ -14,8 +14,9 @@ namespace goniochrome::formats {
 
 // A cell that is not empty.
 struct SheetCell {
-  int column = 0;    // from 0
-  std::string text;  // numbers as they are stored, dates as in 2024-08-20 15:44:19
+  int column = 0;  // from 0
+  // Numbers as they are stored, those that are shown as percent as `45%`, dates as in 2024-08-20 15:44:19.
+  std::string text;
 };
 
 struct SheetRow {
@@ -30,6 +31,8 @@ struct Sheet {
   std::string name;
   std::vector<SheetRow> rows;  // that are not empty, in order; the cells of a merged range all have its text
   int formulas_without_value = 0;
+  bool is_hidden = false;
+  int hidden_rows = 0;
 };
 
 class Spreadsheet {
@@ -57,7 +60,7 @@ struct CellPlace {
 };
 Result<CellPlace> cell_place(std::string_view reference);
 
-// The date and time that a workbook stores as days since the end of 1899.
-std::string date_text(double days);
+// The date and time that a workbook stores as days since the end of 1899, or of 1903 where it says that it counts so.
+std::string date_text(double days, bool since_1904 = false);
 
 }  // namespace goniochrome::formats

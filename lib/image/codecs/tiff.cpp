@@ -92,7 +92,7 @@ Layout layout_of(TIFF* tiff) {
   return layout;
 }
 
-// Whether the samples are color or inks as they stand. libtiff itself makes 8-bit RGBA of palettes, L*a*b* and others.
+// True where the samples are color or inks as they stand. libtiff itself makes 8-bit RGBA of palettes and others.
 bool is_plain(const Layout& layout) {
   switch (layout.photometric) {
     case PHOTOMETRIC_MINISBLACK:
@@ -206,8 +206,9 @@ std::vector<std::string> names_of(const Layout& layout) {
   if (layout.photometric == PHOTOMETRIC_SEPARATED) return {"C", "M", "Y", "K"};
   const int colors = layout.photometric == PHOTOMETRIC_RGB && layout.samples >= 3 ? 3 : 1;
   std::vector<std::string> names = color_names(colors);
-  if (layout.samples > colors) names.emplace_back("A");
-  for (int c = colors + 1; c < layout.samples; ++c) names.push_back("channel" + std::to_string(c));
+  const bool has_alpha = layout.extra_kind == EXTRASAMPLE_ASSOCALPHA || layout.extra_kind == EXTRASAMPLE_UNASSALPHA;
+  for (int c = colors; c < layout.samples; ++c)
+    names.push_back(c == colors && has_alpha ? "A" : "channel" + std::to_string(c));
   return names;
 }
 
@@ -226,7 +227,24 @@ std::string read_plain(TIFF* tiff, const Layout& layout, std::size_t bytes, bool
   return "";
 }
 
+// The reason why libtiff's own way to RGB would change the colors; "" where it does not. It takes L*a*b* under D50 for
+// that of a display under D65, and cuts the logarithms of light to those of a display.
+std::string changed_colors(const Layout& layout) {
+  switch (layout.photometric) {
+    case PHOTOMETRIC_CIELAB:
+    case PHOTOMETRIC_ICCLAB:
+    case PHOTOMETRIC_ITULAB:
+      return "its pixels are L*a*b*: convert it to RGB with a profile";
+    case PHOTOMETRIC_LOGL:
+    case PHOTOMETRIC_LOGLUV:
+      return "its pixels are logarithms of light: convert it to EXR";
+    default:
+      return "";
+  }
+}
+
 std::string read_as_rgba(TIFF* tiff, const Layout& layout, std::size_t bytes, Picture& picture) {
+  if (std::string changed = changed_colors(layout); !changed.empty()) return changed;
   char reason[1024] = "";
   if (!TIFFRGBAImageOK(tiff, reason)) return *reason ? reason : "its samples are of a kind that is not read";
   const int channels = layout.extra > 0 ? 4 : 3;
@@ -248,6 +266,11 @@ void keep_words(TIFF* tiff, Picture& picture) {
   const void* profile = nullptr;
   if (TIFFGetField(tiff, TIFFTAG_ICCPROFILE, &size, &profile) && profile)
     picture.icc_profile.assign(static_cast<const char*>(profile), size);
+  // A table of the curve of each channel, which is not read; the color space of that name is not known.
+  const std::uint16_t* curves[3] = {};
+  if (picture.icc_profile.empty() && TIFFGetField(tiff, TIFFTAG_TRANSFERFUNCTION, &curves[0], &curves[1], &curves[2]) &&
+      curves[0])
+    picture.color_space = "TransferFunction";
   const char* texture = nullptr;
   if (TIFFGetField(tiff, TIFFTAG_PIXAR_TEXTUREFORMAT, &texture) && texture) {
     if (std::strcmp(texture, "LatLong Environment") == 0) picture.envmap = "latlong";
@@ -257,7 +280,7 @@ void keep_words(TIFF* tiff, Picture& picture) {
   toff_t exif = 0;
   std::uint16_t space = 0;
   if (TIFFGetField(tiff, TIFFTAG_EXIFIFD, &exif) && TIFFReadEXIFDirectory(tiff, exif) &&
-      TIFFGetField(tiff, EXIFTAG_COLORSPACE, &space) && space == 1)
+      TIFFGetField(tiff, EXIFTAG_COLORSPACE, &space) && space == 1 && picture.color_space.empty())
     picture.color_space = "sRGB";
 }
 

@@ -18,8 +18,14 @@ Result<std::string> content_format(std::string_view content, const std::string& 
 // turn pictures.
 int exif_orientation(std::string_view content, std::string_view format);
 
-// The attributes that a file states beside what its decoder hears: the ICC profile of a WebP, the primaries of a TIFF,
-// and Adobe RGB by EXIF. None goes before an ICC profile that the decoder has found.
+// False for a TGA or BMP whose header says that the fourth channel is no alpha, which decoders take it for.
+bool has_alpha(std::string_view content, std::string_view format);
+
+// The reason why a TGA or BMP would be decoded to wrong colors, and the remedy; "" where it is not.
+std::string misread_colors(std::string_view content, std::string_view format);
+
+// The attributes that a file states beside what its decoder hears: the ICC profile of a WebP or BMP, the primaries of a
+// TIFF, and Adobe RGB by EXIF. None goes before an ICC profile that the decoder has found.
 Attributes stated_colors(std::string_view content, std::string_view format);
 
 }  // namespace goniochrome::image

@@ -14,6 +14,7 @@ namespace {
 
 // Version 2 has the coats of the parts. In a file of version 1 no part has one.
 constexpr int kVersion = 2, kVersionWithoutCoats = 1;
+const char* const kColorSpace = "lin_rec2020_scene";
 const char* const kRemedy = "render it again with --aov transport";
 const char* const kKindNames[PaintGroups::kKinds] = {"base", "gloss", "deeper"};
 
@@ -96,7 +97,7 @@ image::ImagePart light_part(const LobeTransport& t, std::size_t column, bool bou
     for (std::size_t c = 0; c < 3; ++c)
       part.image.data[3 * static_cast<std::size_t>(t.places[i]) + c] = scale * light[i * t.floats() + 3 * column + c];
   part.attributes["goniochrome:column"] = t.columns.name(column);
-  part.attributes["colorInteropID"] = "lin_rec2020_scene";
+  part.attributes["colorInteropID"] = kColorSpace;
   const double error = half_error(t, part.image, column);
   const bool fits = std::ranges::all_of(part.image.data, [](float value) { return std::abs(value) < 65504; });
   if (!fits || error > kHalfError_de00) {
@@ -247,17 +248,15 @@ class Reader {
       return wrong(fmt::format("its part {} has {} x {} pixels of {} channels, and the picture has {} x {} of {}", name,
                                part->image.width, part->image.height, part->image.channels, t_.width, t_.height,
                                channels));
-    // Channels come R G B, or in the order of their names.
+    if (const std::string id = image::text_attribute(*part, "colorInteropID"); !id.empty() && id != kColorSpace)
+      return wrong(fmt::format("colorInteropID of its part {} is \"{}\", not \"{}\"", name, id, kColorSpace));
     std::vector<std::size_t> from(static_cast<std::size_t>(channels));
     for (std::size_t c = 0; c < from.size(); ++c) {
-      from[c] = c;
-      if (channels != 3) {
-        const std::string wanted = fmt::format("{}.{}", kKindNames[c / 3], "RGB"[c % 3]);
-        const auto found = std::ranges::find(part->image.channel_names, wanted);
-        if (found == part->image.channel_names.end())
-          return wrong(fmt::format("its part {} lacks the channel {}", name, wanted));
-        from[c] = static_cast<std::size_t>(found - part->image.channel_names.begin());
-      }
+      const std::string color(1, "RGB"[c % 3]), wanted = channels == 3 ? color : kKindNames[c / 3] + ("." + color);
+      const auto found = std::ranges::find(part->image.channel_names, wanted);
+      if (found == part->image.channel_names.end())
+        return wrong(fmt::format("its part {} lacks the channel {}", name, wanted));
+      from[c] = static_cast<std::size_t>(found - part->image.channel_names.begin());
     }
     for (std::size_t i = 0; i < t_.places.size(); ++i) {
       const float* pixel = &part->image.data[static_cast<std::size_t>(channels) * t_.places[i]];

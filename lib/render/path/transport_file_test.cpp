@@ -145,6 +145,15 @@ TEST(TransportFile, DamagedIsRefusedByName) {
               layer(file, "bounced-class-000")->image.channel_names[0] = "X";
             }).find("bounced-class-000 lacks the channel"),
             std::string::npos);
+  // Other channels, and colors that a program has converted, were taken for red, green and blue of Rec.2020.
+  EXPECT_NE(refused([&](auto& file) {
+              layer(file, "direct-mirror")->image.channel_names[2] = "Z";
+            }).find("direct-mirror lacks the channel B"),
+            std::string::npos);
+  EXPECT_NE(refused([&](auto& file) {
+              layer(file, "bounced-mirror")->attributes["colorInteropID"] = "lin_rec709_scene";
+            }).find("colorInteropID of its part bounced-mirror is \"lin_rec709_scene\", not \"lin_rec2020_scene\""),
+            std::string::npos);
   EXPECT_NE(refused([](auto& file) { file.transport.resize(file.transport.size() / 2); }).find("no JSON object"),
             std::string::npos);
   EXPECT_NE(refused([](auto& file) {
