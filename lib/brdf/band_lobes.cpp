@@ -7,6 +7,7 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "color/color_bands.h"
 #include "color/spectrum.h"
 #include "math/elementary.h"
 #include "math/least_squares.h"
@@ -21,10 +22,6 @@ using color::kBands;
 
 // Weights whose channels differ by no more are gray: written and read numbers are exact, sums of them are not.
 constexpr double kGray = 1e-6;
-// How much more the color of a weight counts than the shape of its spectrum, whose steps are between 0 and some 0.1 of
-// it: the color is met to about 1e-6.
-constexpr double kColorCounts = 1e3;
-
 bool is_gray(const color::Rgb& c) {
   const double most = std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)});
   return std::abs(c.x - c.y) <= kGray * most && std::abs(c.y - c.z) <= kGray * most;
@@ -44,27 +41,6 @@ Bands mixture(const color::Rgb& wanted, const std::vector<Bands>& spectra, const
   for (std::size_t k = 0; k < spectra.size(); ++k)
     for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += fit.x[k] * spectra[k][b];
   return sum;
-}
-
-// The bands >= 0 of that color whose differences from `shape` change least from band to band.
-Bands of_color(const color::Rgb& wanted, const Bands& shape, const color::BandObserver& eye) {
-  const double size = std::max({std::abs(wanted.x), std::abs(wanted.y), std::abs(wanted.z)});
-  math::Matrix rows(kBands - 1 + 3, kBands);
-  std::vector<double> right(static_cast<std::size_t>(rows.rows));
-  for (int b = 0; b + 1 < kBands; ++b) {
-    rows(b, b) = -1, rows(b, b + 1) = 1;
-    const auto at = static_cast<std::size_t>(b);
-    right[at] = (shape[at + 1] - shape[at]) / size;
-  }
-  for (int c = 0; c < 3; ++c) {
-    for (int b = 0; b < kBands; ++b)
-      rows(kBands - 1 + c, b) = kColorCounts * eye.weights()[static_cast<std::size_t>(b)][c];
-    right[static_cast<std::size_t>(kBands - 1 + c)] = kColorCounts * wanted[c] / size;
-  }
-  const math::NonNegativeFit fit = math::nnls(rows, right);
-  Bands bands{};
-  for (std::size_t b = 0; b < bands.size(); ++b) bands[b] = size * fit.x[b];
-  return bands;
 }
 
 // How much a weight in bands may leave its mixture, relative to its size, for a reading that is wrong by the whole of
@@ -178,9 +154,16 @@ Bands& place_of(const Weight& weight, paint::BandLobes& lobes) {
   return view.directional_diffuse[static_cast<std::size_t>(j)];
 }
 
-// Sets the gray weights of a view, and lists the colored ones.
-Result<void> sort_weights(const paint::ViewLobes& view, std::size_t number, paint::BandLobes& lobes,
-                          std::vector<Weight>& colored) {
+// The bands of gloss. Error: it is colored, and not to be guessed.
+Result<Bands> gloss_bands(const color::Rgb& gloss, const color::BandObserver& eye, NoSpectrum otherwise) {
+  if (is_gray(gloss)) return color::even_bands(gloss.y);
+  if (otherwise == NoSpectrum::kRefused) return input_error("its gloss is colored, and no spectrum tells of gloss");
+  return color::bands_of_color(gloss, eye);
+}
+
+// Sets the gray weights and the gloss of a view, and lists the colored weights of its flakes.
+Result<void> sort_weights(const paint::ViewLobes& view, std::size_t number, const color::BandObserver& eye,
+                          NoSpectrum otherwise, paint::BandLobes& lobes, std::vector<Weight>& colored) {
   paint::BandWeights& weights = lobes.views.emplace_back();
   weights.view_deg = view.view_deg;
   weights.directional_diffuse.assign(lobes.exponents.size(), {});
@@ -196,14 +179,14 @@ Result<void> sort_weights(const paint::ViewLobes& view, std::size_t number, pain
   take({}, view.diffuse);
   for (const paint::Lobe& lobe : view.lobes) {
     if (!has_weight(lobe)) continue;
-    if (!is_gray(lobe.gloss)) return input_error("its gloss is colored, and no spectrum tells of gloss");
+    GONIO_ASSIGN(const Bands gloss, gloss_bands(lobe.gloss, eye, otherwise));
     if (lobe.is_mirror()) {
-      weights.mirror = color::even_bands(lobe.gloss.y);
+      weights.mirror = gloss;
       continue;
     }
     const auto j =
         static_cast<std::size_t>(std::ranges::lower_bound(lobes.exponents, lobe.exponent) - lobes.exponents.begin());
-    weights.gloss[j] = color::even_bands(lobe.gloss.y);
+    weights.gloss[j] = gloss;
     take(lobe.exponent, lobe.directional_diffuse);
   }
   return {};
@@ -245,7 +228,7 @@ Result<std::vector<double>> readings_de00(const paint::Paint& paint, const paint
 
 }  // namespace
 
-Result<paint::BandLobes> band_lobes(const paint::Paint& paint, const color::BandObserver& eye) {
+Result<paint::BandLobes> band_lobes(const paint::Paint& paint, const color::BandObserver& eye, NoSpectrum otherwise) {
   if (!paint.lobes) return input_error("it has no lobes");
   if (paint.color_map) return input_error("its color map has no spectra");
   const paint::LobeFit& fit = *paint.lobes;
@@ -260,14 +243,17 @@ Result<paint::BandLobes> band_lobes(const paint::Paint& paint, const color::Band
   result.exponents.assign(exponents.begin(), exponents.end());
   GONIO_ASSIGN(const std::vector<Bands> spectra, spectra_of(paint));
   std::vector<Weight> colored;
-  for (std::size_t v = 0; v < views.size(); ++v) GONIO_TRY(sort_weights(views[v], v, result, colored));
-  if (!colored.empty()) {
-    if (spectra.empty()) return input_error("it has no spectrum");
+  for (std::size_t v = 0; v < views.size(); ++v) GONIO_TRY(sort_weights(views[v], v, eye, otherwise, result, colored));
+  if (!colored.empty() && spectra.empty()) {
+    if (otherwise == NoSpectrum::kRefused) return input_error("it has no spectrum");
+    for (const Weight& weight : colored) place_of(weight, result) = color::bands_of_color(weight.color, eye);
+  } else if (!colored.empty()) {
     std::vector<Bands> mixed = spectra;
     mixed.push_back(color::even_bands(1));
     for (Weight& weight : colored) weight.bands = mixture(weight.color, mixed, eye);
     meet_readings(paint.measurement->spectra, spectra, result, colored);
-    for (const Weight& weight : colored) place_of(weight, result) = of_color(weight.color, weight.bands, eye);
+    for (const Weight& weight : colored)
+      place_of(weight, result) = color::bands_of_color(weight.color, eye, weight.bands);
   }
   for (std::size_t v = 0; v < views.size(); ++v)
     result.misfit_de00 = std::max(result.misfit_de00, misfit_de00(views[v], result.views[v], result.exponents, eye));

@@ -136,8 +136,16 @@ TEST(BandLobes, GrayAsksForNoSpectrumAndColorDoes) {
   EXPECT_TRUE(band_lobes(colored, eye()).ok());
   colored.lobes->lobes.back().gloss.x = 0.5;  // a colored mirror
   EXPECT_FALSE(band_lobes(colored, eye()).ok());
+  // Guessed spectra have the colors of the weights.
+  colored.measurement.reset();
+  const auto guessed = band_lobes(colored, eye(), NoSpectrum::kGuessed);
+  ASSERT_TRUE(guessed.ok()) << guessed.error().message;
+  EXPECT_LE(length(eye().rgb(guessed->views.front().diffuse) - color::Rgb{0.3, 0.2, 0.2}), 1e-5);
+  EXPECT_LE(length(eye().rgb(guessed->views.front().mirror) - color::Rgb{0.5, 0.4, 0.4}), 1e-5);
+  EXPECT_LT(guessed->misfit_de00, 0.01);
   paint.color_map = paint::ColorMapReference{"map.exr", 1.5};
   EXPECT_FALSE(band_lobes(paint, eye()).ok());
+  EXPECT_FALSE(band_lobes(paint, eye(), NoSpectrum::kGuessed).ok());
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // The products of colors beside spectral integration, on reflectances and lights that no operator was fitted to. The
 // tables of testdata/ are published figures, every 5 nm from 380 to 730 nm; PROVENANCE.md names their sources. The
-// default operator errs less than the plain product in every class here.
+// default operator errs less than the plain product in every class here but one.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -267,10 +267,9 @@ TEST_F(ReflectionEvidence, TheTablesAreThoseThatAreTold) {
   EXPECT_NEAR(gray[1], 0.5 * into_floor, 1e-9);
 }
 
-// The default is better than the plain product in every class that was held out. Of the published and the estimated
-// tables one is better in one class: iso, where a lamp shines on a saturated paint, by 0.04. Over all classes its mean
-// is larger.
-TEST_F(ReflectionEvidence, TheDefaultIsBetterThanThePlainProductInEveryClassThatWasHeldOut) {
+// The default is better than the other products in every class that was held out but one: boxes in daylight, where the
+// plain product errs by 0.03 less. That is the price of red paint that stays red in cyan light.
+TEST_F(ReflectionEvidence, TheDefaultIsBetterThanTheOthersInAllClassesThatWereHeldOutButOne) {
   const auto chosen = chosen_operator(kDefaultOperator);
   ASSERT_TRUE(chosen.ok());
   const auto ours = errors(*chosen);
@@ -282,8 +281,8 @@ TEST_F(ReflectionEvidence, TheDefaultIsBetterThanThePlainProductInEveryClassThat
     for (const auto& [kind, error] : errors(op)) {
       RecordProperty((kind + ", " + name).c_str(), std::to_string(error));
       printf("%-28s %-10s %6.3f  fitted %6.3f\n", kind.c_str(), name.c_str(), error, ours.at(kind));
-      const bool near = name == "iso" && kind == "paints, lamps";
-      EXPECT_LT(ours.at(kind), near ? 1.02 * error : error) << kind << ", " << name;
+      const bool price = name == "plain" && kind == "boxes, daylight";
+      EXPECT_LT(ours.at(kind), price ? 1.04 * error : error) << kind << ", " << name;
     }
   }
 }
@@ -308,12 +307,21 @@ TEST_F(ReflectionEvidence, ASingleBoxCanBeTheOtherWayRound) {
   };
   EXPECT_NEAR(error(fitted_operator(), even), 0.30, 0.01);
   EXPECT_NEAR(error(component_wise(), even), 0.26, 0.01);
-  EXPECT_NEAR(error(fitted_operator(), patch("ISO cyan")), 0.77, 0.01);
+  EXPECT_NEAR(error(fitted_operator(), patch("ISO cyan")), 1.03, 0.01);
   EXPECT_NEAR(error(component_wise(), patch("ISO cyan")), 1.09, 0.01);
 }
 
-// The pairs of scripts/fit-operator: a step of 0.02 in any of the nine numbers makes their error larger. The table has
-// 0.7 of these numbers.
+// The limits of scripts/fit-operator: what red paint keeps in cyan light, green paint in cyan light, and green and blue
+// in the light of the other two.
+bool within_limits(const ReflectionOperator& op) {
+  constexpr double kRounding = 1e-3;
+  const Rgb red_in_cyan = reflected(op, {1, 0, 0}, {0, 1, 1}), green_in_cyan = reflected(op, {0, 1, 0}, {0, 1, 1});
+  return red_in_cyan.x >= 0.05 - kRounding && green_in_cyan.x >= -kRounding && op.k[1][1][1] <= 0.995 + kRounding &&
+         op.k[2][2][2] <= 0.995 + kRounding;
+}
+
+// The pairs of scripts/fit-operator: a step of 0.02 in any of the nine numbers makes their error larger or leaves the
+// limits. The table has 0.7 of these numbers.
 TEST_F(ReflectionEvidence, TheTableIsTheLeastOfItsKindOnWhatItWasFittedTo) {
   std::vector<Spectrum> twice;
   for (const Spectrum& light : spectra.fit_lights)
@@ -325,24 +333,35 @@ TEST_F(ReflectionEvidence, TheTableIsTheLeastOfItsKindOnWhatItWasFittedTo) {
     return mean_error(op, lamps) + 2 * mean_error(op, filtered) + 2 * mean_error(op, both);
   };
   constexpr double kShare = 0.7;
-  ReflectionOperator whole = fitted_operator();
   const ReflectionOperator plain = component_wise();
-  for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t d = 0; d < 3; ++d)
-      for (std::size_t e = 0; e < 3; ++e)
-        whole.k[c][d][e] = plain.k[c][d][e] + (whole.k[c][d][e] - plain.k[c][d][e]) / kShare;
+  const auto times_from_plain = [&](double factor, ReflectionOperator op) {
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t d = 0; d < 3; ++d)
+        for (std::size_t e = 0; e < 3; ++e)
+          op.k[c][d][e] = plain.k[c][d][e] + factor * (op.k[c][d][e] - plain.k[c][d][e]);
+    return op;
+  };
+  const ReflectionOperator whole = times_from_plain(1 / kShare, fitted_operator());
   const double least = objective(whole);
   EXPECT_LT(least, objective(fitted_operator()));
   EXPECT_LT(objective(fitted_operator()), objective(plain));
+  EXPECT_TRUE(within_limits(fitted_operator()));
   constexpr int kDifferences[3][3] = {{1, -1, 0}, {1, 0, -1}, {0, 1, -1}};
+  int beyond = 0;
   for (std::size_t c = 0; c < 3; ++c)
     for (const auto& v : kDifferences)
       for (const double step : {-0.02, 0.02}) {
         ReflectionOperator op = whole;
         for (std::size_t d = 0; d < 3; ++d)
           for (std::size_t e = 0; e < 3; ++e) op.k[c][d][e] += step * v[d] * v[e];
+        if (!within_limits(times_from_plain(kShare, op))) {
+          ++beyond;
+          continue;
+        }
         EXPECT_GT(objective(op), least) << c << " " << step;
       }
+  EXPECT_GE(beyond, 1);
+  EXPECT_LE(beyond, 7);
 }
 
 }  // namespace

@@ -10,18 +10,30 @@
 #include "base/json.h"
 #include "base/paths.h"
 #include "base/text.h"
+#include "color/internal/reflection_space.h"
 
 namespace goniochrome::color {
 
 namespace {
 
-std::optional<ReflectionOperator> named_operator(std::string_view name) {
-  if (name == "fitted") return fitted_operator();
-  if (name == "plain" || name == "none") return component_wise();
-  if (name == "iso") return iso_rgb_operator();
-  if (name == "iso709") return iso_rec709_operator();
-  if (name == "estimated" || name == "working" || name == "rec2020") return working_space_operator();
+// A table, and the primaries of the colors that it multiplies; none: the working space.
+struct Table {
+  ReflectionOperator op;
+  std::optional<Primaries> primaries = {};
+};
+
+std::optional<Table> named_table(std::string_view name) {
+  if (name == "fitted") return Table{fitted_operator()};
+  if (name == "plain" || name == "none") return Table{component_wise()};
+  if (name == "iso") return Table{iso_rgb_operator()};
+  if (name == "iso709") return Table{iso_rgb_operator(), kRec709};
+  if (name == "estimated" || name == "working" || name == "rec2020") return Table{working_space_operator()};
   return std::nullopt;
+}
+
+// In Rec.2020 the estimated table keeps more than 1 of red; the same product has shares of all three in Rec.709.
+bool has_shares_in_rec709(std::string_view name) {
+  return name == "estimated" || name == "working" || name == "rec2020";
 }
 
 // The shares at the end of a text, one or three numbers from 0 to 1 after commas, which are cut off.
@@ -49,49 +61,66 @@ bool is_path(const std::string& text) {
   return text.ends_with(".json") || text.find('/') != std::string::npos || is_there(text);
 }
 
+Result<ReflectionOperator> with_shares(const ReflectionOperator& op, const Rgb& shares) {
+  constexpr const char* kChannels[] = {"red", "green", "blue"};
+  for (int c = 0; c < 3; ++c) {
+    const double own = op.k[static_cast<std::size_t>(c)][static_cast<std::size_t>(c)][static_cast<std::size_t>(c)];
+    if (shares[c] > 0 && own > 1 - 1e-9)
+      return input_error(
+          "{} of this operator keeps {:.3f} of itself and takes nothing from the other channels that could become {}: "
+          "write 0 for it, or name fitted, iso, iso709 or estimated",
+          kChannels[c], own, shares[c]);
+  }
+  return with_transfer(op, shares);
+}
+
+Result<Table> read_table(const std::string& path);
+
+Result<ReflectionOperator> on_working_space(const Table& table) {
+  if (!table.primaries) return table.op;
+  return in_working_space(table.op, *table.primaries);
+}
+
 }  // namespace
 
 std::string operator_sentences() {
-  return "fitted is a bilinear product that is fitted to published spectra, and errs less than plain on every kind of "
-         "spectra that were held out: goniochrome-theory(7), COLORED LIGHT, has the table. plain "
+  return "fitted is a bilinear product that is fitted to published spectra and keeps red paint red in cyan light; it "
+         "errs less than plain on all kinds of spectra that were held out but one: goniochrome-theory(7), COLORED "
+         "LIGHT, has the table. plain "
          "multiplies each channel by itself. iso is the published table for camera sensors, applied to Rec.2020 "
          "values; it was the default before. iso709 is the same table in the primaries of Rec.709, for which it was "
          "made. estimated comes from color-matching functions. none is another name for plain, and working and "
          "rec2020 are other names for estimated. A JSON file holds a table, and may name the primaries that it is "
          "for; goniochrome-paint(5) describes it. A number from 0 to 1 after a comma says how much each channel "
-         "takes from the others, and three numbers say it for red, green and blue; a channel that keeps more than 1 "
-         "of itself takes no such number but 0.";
+         "takes from the others, and three numbers say it for red, green and blue, in the primaries of the table; "
+         "estimated has them in those of Rec.709. A channel that keeps all of itself, as each of plain, takes no such "
+         "number but 0.";
 }
 
-Result<ReflectionOperator> chosen_operator(const std::string& text) {
+Result<ReflectionOperator> chosen_operator(const std::string& text, const std::optional<Rgb>& shares) {
   std::string name(trimmed(text));
-  const std::optional<Rgb> shares = cut_shares(name);
-  std::optional<ReflectionOperator> op = named_operator(name);
-  if (!op) {
+  const std::optional<Rgb> written = cut_shares(name);
+  std::optional<Table> table = named_table(name);
+  if (!table) {
     if (!is_path(name))
       return usage_error(
           "--operator is \"{}\": write fitted, plain, iso, iso709, estimated or a JSON file, and if wanted after a "
           "comma a share from 0 to 1, or three",
           text);
-    GONIO_ASSIGN(op, read_reflection_operator(name));
+    GONIO_ASSIGN(table, read_table(name));
   }
-  if (!shares) return *op;
-  auto result = with_shares(*op, *shares);
-  if (!result.ok()) return usage_error("--operator is \"{}\": {}", text, result.error().message);
+  if (const std::optional<Rgb> wanted = shares ? shares : written) {
+    if (has_shares_in_rec709(name)) {
+      GONIO_ASSIGN(table->op, in_primaries(table->op, kRec709));
+      table->primaries = kRec709;
+    }
+    auto shared = with_shares(table->op, *wanted);
+    if (!shared.ok() && !shares) return usage_error("--operator is \"{}\": {}", text, shared.error().message);
+    GONIO_ASSIGN(table->op, shared);
+  }
+  auto result = on_working_space(*table);
+  if (!result.ok()) return input_error("{}: {}", name, result.error().message);
   return result;
-}
-
-Result<ReflectionOperator> with_shares(const ReflectionOperator& op, const Rgb& shares) {
-  constexpr const char* kChannels[] = {"red", "green", "blue"};
-  for (int c = 0; c < 3; ++c) {
-    const double own = op.k[static_cast<std::size_t>(c)][static_cast<std::size_t>(c)][static_cast<std::size_t>(c)];
-    if (shares[c] > 0 && own > 1 + 1e-9)
-      return input_error(
-          "{} of this operator keeps {:.3f} of itself, which is more than 1: it has no share of the other channels "
-          "that could be set to {}",
-          kChannels[c], own, shares[c]);
-  }
-  return with_transfer(op, shares);
 }
 
 std::string reflection_json(const ReflectionOperator& op, const Primaries* primaries) {
@@ -164,9 +193,7 @@ Result<void> check_coherent(const ReflectionOperator& op, const std::string& pat
   return {};
 }
 
-}  // namespace
-
-Result<ReflectionOperator> read_reflection_operator(const std::string& path) {
+Result<Table> read_table(const std::string& path) {
   GONIO_ASSIGN(const std::string text, file_content(path));
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("k") || !is_table(json["k"]))
@@ -181,10 +208,15 @@ Result<ReflectionOperator> read_reflection_operator(const std::string& path) {
   ReflectionOperator op;
   json["k"].get_to(op.k);
   GONIO_TRY(check_coherent(op, path));
-  op = nearest_coherent(op);
   GONIO_ASSIGN(const std::optional<Primaries> primaries, source_primaries(json, path));
-  if (!primaries) return op;
-  auto result = in_working_space(op, *primaries);
+  return Table{nearest_coherent(op), primaries};
+}
+
+}  // namespace
+
+Result<ReflectionOperator> read_reflection_operator(const std::string& path) {
+  GONIO_ASSIGN(const Table table, read_table(path));
+  auto result = on_working_space(table);
   if (!result.ok()) return input_error("{}: {}", path, result.error().message);
   return result;
 }

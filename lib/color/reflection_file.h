@@ -1,6 +1,7 @@
 // Reflection operators by name, as options of tools have them, and in JSON files. goniochrome-theory(7), COLORED LIGHT.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "base/result.h"
@@ -13,15 +14,13 @@ constexpr const char* kDefaultOperator = "fitted";
 
 // The operator that a text names: fitted, plain (or none), iso, iso709, estimated (or working, or rec2020), or the path
 // of a JSON file. After a comma, a number from 0 to 1 says how much each channel takes from the others, and three
-// numbers say it for red, green and blue. Error: of usage, what the text may be; or of the file.
-Result<ReflectionOperator> chosen_operator(const std::string& text);
+// numbers say it for red, green and blue; `shares`, if given, replaces them. Shares are set in the primaries of the
+// table: those of Rec.709 for iso709 and estimated, those that a file names, else Rec.2020. Error: of usage, what the
+// text may be; of input, a channel that takes nothing from the others or keeps more than 1; or of the file.
+Result<ReflectionOperator> chosen_operator(const std::string& text, const std::optional<Rgb>& shares = {});
 
 // What each of these is, in sentences for those who choose among them.
 std::string operator_sentences();
-
-// with_transfer() for a user: a channel that keeps more than 1 of itself has no share that could be scaled, so it is
-// refused, unless its share is to be 0.
-Result<ReflectionOperator> with_shares(const ReflectionOperator& op, const Rgb& shares);
 
 // The operator as the text of a JSON file, {"k": [[[..3..],[..],[..]], [..], [..]]}, by output channel and then by both
 // colors. The numbers have the fewest digits that read back as the same numbers. `primaries`, if given, are stored:

@@ -67,6 +67,37 @@ TEST(ReflectionFile, PrimariesOfATableAreHonored) {
   EXPECT_LE(largest_difference(*stored, iso_rec709_operator()), 1e-14);
 }
 
+// The shares of a table are set where it was made. The control sets them on working-space values, where both tables
+// keep more than 1 of red, so that what red takes changes its sign.
+TEST(ReflectionFile, SharesAreSetInThePrimariesOfTheTable) {
+  const ScratchFolder folder;
+  const Rgb shares = {0.3, 0.1, 1};
+  const auto in_709 = [](const ReflectionOperator& op, const Rgb& a, const Rgb& b) {
+    return rec709_from_rec2020(reflected(op, rec2020_from_rec709(a), rec2020_from_rec709(b)));
+  };
+  const std::string path = folder.file("iso709.json", reflection_json(iso_rgb_operator(), &kRec709));
+  for (const std::string& name : {std::string("iso709"), std::string("estimated"), path}) {
+    const auto op = chosen_operator(name + ",0.3,0.1,1");
+    ASSERT_TRUE(op.ok()) << name;
+    EXPECT_NEAR(in_709(*op, {1, 0, 0}, {1, 0, 0}).x, 1 - shares.x, 1e-12) << name;
+    EXPECT_NEAR(in_709(*op, {0, 1, 0}, {0, 1, 0}).y, 1 - shares.y, 1e-12) << name;
+    EXPECT_NEAR(in_709(*op, {0, 0, 1}, {0, 0, 1}).z, 0, 1e-12) << name;
+    EXPECT_NEAR(in_709(*op, {1, 0, 0}, {0, 1, 1}).x, shares.x, 1e-12) << name;
+  }
+  const auto wanted = in_working_space(*with_transfer(iso_rgb_operator(), shares), kRec709);
+  EXPECT_LE(largest_difference(*chosen_operator("iso709", shares), *wanted), 1e-14);
+  for (const ReflectionOperator& op : {iso_rec709_operator(), working_space_operator()}) {
+    EXPECT_GT(op.k[0][0][0], 1);
+    EXPECT_LT(with_transfer(op, shares)->k[0][1][0] * op.k[0][1][0], 0);
+  }
+  // Figure 6 of [GranierDamez2004]: all of blue comes from the others.
+  for (const char* name : {"fitted", "iso", "iso709", "estimated"}) {
+    const auto op = chosen_operator(std::string(name) + ",0,0,1");
+    ASSERT_TRUE(op.ok()) << name << ": " << op.error().message;
+    EXPECT_LE(length(reflected(*op, {1, 1, 1}, {0.3, 0.6, 0.2}) - Rgb{0.3, 0.6, 0.2}), 1e-12);
+  }
+}
+
 TEST(ReflectionFile, NamesAndSharesAreTakenAsOptionsHaveThem) {
   const ScratchFolder folder;
   const auto is = [](const std::string& text, const ReflectionOperator& wanted) {
@@ -88,8 +119,7 @@ TEST(ReflectionFile, NamesAndSharesAreTakenAsOptionsHaveThem) {
                                    {"iso,2", "write fitted"},
                                    {"iso,0,1", "write fitted"},
                                    {"", "write fitted"},
-                                   {"estimated,0.1", "keeps 1."},
-                                   {"plain,0.1", "receives nothing"},
+                                   {"plain,0.1", "takes nothing from the other channels"},
                                    {"nowhere.json", "nowhere.json"}}) {
     const auto refused = chosen_operator(text);
     ASSERT_FALSE(refused.ok()) << text;

@@ -1,7 +1,8 @@
 // Reflection operators that were made for other primaries than those of the working space.
-#include <cmath>
+#include "color/internal/reflection_space.h"
 
-#include "color/reflection.h"
+#include <array>
+#include <cmath>
 
 namespace goniochrome::color {
 
@@ -35,23 +36,38 @@ Result<Matrix3> to_working_space(const Primaries& source) {
   return matrix;
 }
 
-}  // namespace
-
-// With M from the source to the working space, A (x) B = M ((M^-1 A) (x)_source (M^-1 B)), which is bilinear with
-// k'[i][j][l] = sum M[i][c] k[c][d][e] M^-1[d][j] M^-1[e][l]. Rounding is taken away by the nearest coherent table.
-Result<ReflectionOperator> in_working_space(const ReflectionOperator& op, const Primaries& source) {
-  GONIO_ASSIGN(const Matrix3 there, to_working_space(source));
-  const Inverse3 back = inverse(there);
-  if (back.condition > 1e8) return input_error("the three primaries lie on one line, or the white is one of them");
-  const Matrix3& m = back.matrix;
+// With M from the space of `op` to another one and m its inverse, A (x) B = M ((m A) (x) (m B)), which is bilinear with
+// k'[i][j][l] = sum M[i][c] k[c][d][e] m[d][j] m[e][l]. Rounding is taken away by the nearest coherent table.
+ReflectionOperator carried(const ReflectionOperator& op, const Matrix3& there, const Matrix3& back) {
   ReflectionOperator result;
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j)
       for (std::size_t l = 0; l < 3; ++l)
         for (std::size_t c = 0; c < 3; ++c)
           for (std::size_t d = 0; d < 3; ++d)
-            for (std::size_t e = 0; e < 3; ++e) result.k[i][j][l] += there[i][c] * op.k[c][d][e] * m[d][j] * m[e][l];
+            for (std::size_t e = 0; e < 3; ++e)
+              result.k[i][j][l] += there[i][c] * op.k[c][d][e] * back[d][j] * back[e][l];
   return nearest_coherent(result);
+}
+
+// The matrix to the working space and its inverse.
+Result<std::array<Matrix3, 2>> both_ways(const Primaries& source) {
+  GONIO_ASSIGN(const Matrix3 there, to_working_space(source));
+  const Inverse3 back = inverse(there);
+  if (back.condition > 1e8) return input_error("the three primaries lie on one line, or the white is one of them");
+  return std::array{there, back.matrix};
+}
+
+}  // namespace
+
+Result<ReflectionOperator> in_working_space(const ReflectionOperator& op, const Primaries& source) {
+  GONIO_ASSIGN(const auto ways, both_ways(source));
+  return carried(op, ways[0], ways[1]);
+}
+
+Result<ReflectionOperator> in_primaries(const ReflectionOperator& op, const Primaries& target) {
+  GONIO_ASSIGN(const auto ways, both_ways(target));
+  return carried(op, ways[1], ways[0]);
 }
 
 }  // namespace goniochrome::color

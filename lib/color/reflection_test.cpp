@@ -65,6 +65,50 @@ TEST(Reflection, RedStaysRedInCyanLight) {
   EXPECT_GT(of_display(red, cyan).x, 0.1);
 }
 
+// The table that was fitted without limits: red paint in cyan light is below 0.
+ReflectionOperator unlimited_fit() {
+  return nearest_coherent({{{{{{1.033, -0.095, 0.062}, {-0.095, 0.179, -0.084}, {0.062, -0.084, 0.022}}},
+                             {{{0.060, -0.032, -0.028}, {-0.032, 1.011, 0.021}, {-0.028, 0.021, 0.007}}},
+                             {{{0.005, -0.007, 0.002}, {-0.007, 0.004, 0.003}, {0.002, 0.003, 0.995}}}}}});
+}
+
+TEST(Reflection, FittedKeepsAPrimaryInTheLightOfTheOtherTwo) {
+  const auto kept = [](const ReflectionOperator& op, int paint, const Rgb& light) {
+    Rgb primary;
+    primary[paint] = 1;
+    return reflected(op, primary, light);
+  };
+  const ReflectionOperator op = fitted_operator();
+  EXPECT_GE(kept(op, 0, {0, 1, 1}).x, 0.05 - 1e-12);
+  EXPECT_GE(kept(op, 1, {0, 1, 1}).x, -1e-12);
+  EXPECT_GE(kept(op, 1, {1, 0, 1}).y, 0.005 - 1e-12);
+  EXPECT_GE(kept(op, 2, {1, 1, 0}).z, 0.005 - 1e-12);
+  EXPECT_LT(kept(unlimited_fit(), 0, {0, 1, 1}).x, -0.03);
+  EXPECT_LT(kept(unlimited_fit(), 1, {1, 0, 1}).y, -0.01);
+}
+
+// Products of primaries are the coefficients. Where none is negative and the rows of k[c] sum to 0 but for row c, all
+// rows but row c are 0, and by symmetry row c is 0 but for k[c][c][c].
+TEST(Reflection, OnlyThePlainProductIsNeverNegative) {
+  const auto least = [](const ReflectionOperator& op) {
+    double smallest = 0;
+    for (const auto& table : op.k)
+      for (const auto& row : table) smallest = std::min(smallest, *std::ranges::min_element(row));
+    return smallest;
+  };
+  EXPECT_EQ(least(component_wise()), 0);
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> uniform(-0.1, 0.1);
+  for (int i = 0; i < 1000; ++i) {
+    ReflectionOperator op = component_wise();
+    for (auto& table : op.k)
+      for (auto& row : table)
+        for (double& k : row) k += uniform(random);
+    op = nearest_coherent(op);
+    EXPECT_LT(least(op), -0.1 * largest_difference(op, component_wise()));
+  }
+}
+
 // Color-matching functions of Rec.709, which the sensors of ISO 17321 are close to, give nearly the published table.
 TEST(Reflection, EstimateForRec709IsCloseToThePublishedTable) {
   std::vector<Rgb> matching;

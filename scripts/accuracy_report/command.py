@@ -28,6 +28,7 @@ STUDIES = {
     "sketches": "round trips of sketch-fit: paints, meshes, sizes and lights, and whether each error has a warning",
     "search": "search: library size, tree and scan against brute force",
     "growth": "growth of times with probes, maps, paints, pixels and lights, and where it is steepest",
+    "frames": "frame rates: lights, lobes and engines, of paints and of lobes in each texel, and the cost of the operator",
     "paths": "paths: error against time for samples, engines, effects and bounces, and growth with triangles, pixels and lights",
     "rays": "effects of rays: what each changes in ten scenes, by the first pass and in truth",
     "chain": "the whole chain: where the error of a picture comes from, and what it costs to lower it",

@@ -12,7 +12,7 @@ _render_osmesa() {
     --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --light) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --emit) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --spectral) COMPREPLY=($(compgen -W "auto on off" -- "$word")); return ;;
+    --spectral) COMPREPLY=($(compgen -W "auto on guess off" -- "$word")); return ;;
     --floor) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --operator) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --critical-angle) COMPREPLY=($(compgen -W "clip slide slide-map index" -- "$word")); return ;;

@@ -38,11 +38,10 @@ Result<color::Rgb> illuminant(const std::string& option, const std::string& text
 }
 
 Result<color::ReflectionOperator> operator_of(const Options& options) {
-  GONIO_ASSIGN(const color::ReflectionOperator op, color::chosen_operator(options.op));
-  if (options.transfer.empty()) return op;
+  if (options.transfer.empty()) return color::chosen_operator(options.op);
   if (options.transfer.size() != 3)
     return usage_error("--transfer has {} values: give three, for red, green and blue", options.transfer.size());
-  return color::with_shares(op, {options.transfer[0], options.transfer[1], options.transfer[2]});
+  return color::chosen_operator(options.op, color::Rgb{options.transfer[0], options.transfer[1], options.transfer[2]});
 }
 
 std::string plan_text(const Options& options, const color::Rgb& from, const color::Rgb& to,

@@ -79,10 +79,12 @@ void add_light(cli::ToolSpec& spec, Options& o) {
           "LIGHT is the radiance of both sides of the part: R,G,B, or a name and a factor, as A*20. It takes the "
           "engine path.");
   spec.option("spectral", "WHEN", "on", &o.spectral, "follow light in bands of wavelength")
-      .one_of({"auto", "on", "off"})
+      .one_of({"auto", "on", "guess", "off"})
       .more(
           "The engine path then multiplies light and paint in 31 bands from 400 to 700 nm. auto does so where a lamp "
-          "is named and nothing lacks a spectrum; on is an error where anything does. Lamps are named " +
+          "is named and nothing lacks a spectrum; on is an error where anything does, and guess takes for it the "
+          "smoothest "
+          "spectrum of its color, and says for what. Lamps are named " +
           color::spectral_illuminants() +
           ", or by tables, see TABLES OF SPECTRA in goniochrome-paint(5). Paints need measured spectra, unless they "
           "are gray; environments and textures have none.");
@@ -252,7 +254,7 @@ void add_report(cli::ToolSpec& spec) {
        "with --gbuffer: times, the error of scaling bounced light, and whether it is beyond the tolerance"},
       {"opengl, opengl_library", "the OpenGL renderer, and OSMesa or EGL; null where none is used"},
       {"noise_de00_p95, noise_de00_mean, noise_reached, samples_mean, path_s, bounces", "of the engine path"},
-      {"spectral: bands, observer_deg, lacks, even",
+      {"spectral: bands, observer_deg, lacks, even, guessed",
        "bands or 0, what lacks a spectrum, and gray paints that were taken as even"},
       {"spectral: misfit_de00, readings_de00", "of the worst paint: bands to three channels, and to its spectra"},
       {"frames", "pictures written"},

@@ -318,7 +318,13 @@ XML
   refused 2 '--operator is "xyz": write fitted, plain, iso, iso709, estimated or a JSON file' --mesh panels.obj $light --operator xyz
   refused 2 '--operator is "iso,2"' --mesh panels.obj $light --operator iso,2
   refused 2 '--operator is "iso,0,1"' --mesh panels.obj $light --operator iso,0,1
-  refused 2 'red of this operator keeps 1.' --mesh panels.obj $light --operator rec2020,0.1
+  refused 2 'red of this operator keeps 1.000 of itself' --mesh panels.obj $light --operator plain,0.1
+  # Every other one has shares, in the primaries of its table: all of blue comes from the other channels.
+  for name in fitted iso iso709 estimated; do
+    render-osmesa -q $red --operator $name,0,0,1 -o shared.exr
+    render-osmesa -q $red --operator $name -o bare.exr
+    [ "$(pixel shared.exr 45 30)" != "$(pixel bare.exr 45 30)" ]
+  done
   # A file holds a table, and the primaries for which it was made.
   k='[[[1,0,0],[0,0,0],[0,0,0]],[[0,0,0],[0,1,0],[0,0,0]],[[0,0,0],[0,0,0],[0,0,1]]]'
   echo "{\"k\": $k}" >plain.json
@@ -329,8 +335,9 @@ XML
   run near "$(pixel file709.exr 45 30)" "0 0.1 0.1 1"
   [ "$status" -ne 0 ]
   refused 3 'nowhere.json' --mesh panels.obj $light --operator nowhere.json
-  # fitted is what is taken without the option.
+  # fitted is what is taken without the option, and red is above 0 in it.
   render-osmesa -q $red -o default.exr
+  awk -v p="$(pixel default.exr 45 30)" 'BEGIN { split(p, c, " "); exit !(c[1] > 0.03 && c[2] > 0 && c[3] > 0) }'
   render-osmesa -q $red --operator fitted -o fitted.exr
   [ "$(pixel default.exr 45 30)" = "$(pixel fitted.exr 45 30)" ]
 }

@@ -62,11 +62,11 @@ Result<Request> request_of(const Options& options) {
   const bool places = std::ranges::any_of(request.lights, [](const render::Light& l) { return l.place.has_value(); });
   // Only one engine has parts that shine, floors that wear a paint, and floors where no effects of rays are drawn. It
   // also draws the extent of lamps at a place on every paint.
-  const bool spectral = options.spectral == "on";
+  const bool spectral = options.needs_bands();
   const bool wants_rays = !request.emissions.empty() || spectral || named.kind == FloorRequest::Kind::kPaint ||
                           (has_floor && options.effects.leave_out_rays());
   const char* of_rays = !request.emissions.empty() ? "emit"
-                        : spectral                 ? "spectral on"
+                        : spectral                 ? "spectral"
                         : places && !wants_rays    ? "light place:..."
                                                    : "floor";
   const auto tracer = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->traces_rays; });

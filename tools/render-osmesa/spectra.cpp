@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "brdf/band_lobes.h"
+#include "color/color_bands.h"
 #include "color/spectrum.h"
 #include "formats/spectrum_table.h"
 #include "stage.h"
@@ -57,7 +58,7 @@ int observer_deg(const DressedMesh& dress) {
   return all.size() == 1 ? *all.begin() : 2;
 }
 
-// What has no spectrum, and the spectra of the rest.
+// The spectra of a scene, and what has none or a guessed one.
 class Gathering {
  public:
   Gathering(const Options& options, const Request& request, const Stage& stage)
@@ -73,8 +74,7 @@ class Gathering {
     gather_paints();
     for (std::size_t i = 0; i < request_.lights.size(); ++i) {
       const auto& bands = request_.light_bands[i];
-      if (!bands) lacks.push_back(fmt::format("--light {} is three numbers", options_.lights[i]));
-      spectra.lights.push_back(bands.value_or(color::Bands{}));
+      spectra.lights.push_back(bands ? *bands : light_of_color(request_.lights[i].white, "light", options_.lights[i]));
     }
     GONIO_TRY(gather_emission());
     return gather_floor();
@@ -83,12 +83,38 @@ class Gathering {
   render::SceneSpectra spectra;
   std::vector<std::string> lacks;
   double misfit_de00 = 0, readings_de00 = 0;
-  std::vector<std::string> even;  // paints without a spectrum whose weights are gray
+  std::vector<std::string> even;     // paints without a spectrum whose weights are gray
+  std::vector<std::string> guessed;  // what has the smoothest spectrum of its color
 
  private:
   void take(const paint::BandLobes& lobes) {
     misfit_de00 = std::max(misfit_de00, lobes.misfit_de00);
     for (const double de00 : lobes.readings_de00) readings_de00 = std::max(readings_de00, de00);
+  }
+
+  bool guesses() const { return options_.spectral == "guess"; }
+
+  // The lobes of a paint in bands, guessed where they are to be and the paint states no spectrum.
+  Result<paint::BandLobes> lobes_of(const paint::Paint& paint, const std::string& what) {
+    auto stated = brdf::band_lobes(paint, spectra.eye);
+    if (stated.ok() || !guesses()) return stated;
+    auto lobes = brdf::band_lobes(paint, spectra.eye, brdf::NoSpectrum::kGuessed);
+    if (lobes.ok()) add(fmt::format("{}: {}", what, stated.error().message), guessed);
+    return lobes;
+  }
+
+  bool is_guessed(const std::string& what) const {
+    return std::ranges::any_of(guessed, [&](const std::string& told) { return told.starts_with(what + ":"); });
+  }
+
+  static void add(const std::string& what, std::vector<std::string>& list) {
+    if (std::ranges::find(list, what) == list.end()) list.push_back(what);
+  }
+
+  // The bands of a light that is three numbers, if they are to be guessed.
+  color::Bands light_of_color(const color::Rgb& color, const char* option, const std::string& word) {
+    (guesses() ? guessed : lacks).push_back(fmt::format("--{} {} is three numbers", option, word));
+    return guesses() ? color::bands_of_color(color, spectra.eye) : color::Bands{};
   }
 
   void gather_paints() {
@@ -98,14 +124,12 @@ class Gathering {
       paint::Paint bare;
       bare.lobes = dress.paints[part];
       const bool has_surface = dress.surfaces[part].texture != nullptr;
-      auto lobes = brdf::band_lobes(dress.worn[part] ? *dress.worn[part] : bare, spectra.eye);
-      if (!lobes.ok() && !has_surface) {
-        const std::string lack = fmt::format("the paint {}: {}", name, lobes.error().message);
-        if (std::ranges::find(lacks, lack) == lacks.end()) lacks.push_back(lack);
-      }
+      const std::string what = fmt::format("the paint {}", name);
+      auto lobes = lobes_of(dress.worn[part] ? *dress.worn[part] : bare, what);
+      if (!lobes.ok() && !has_surface) add(fmt::format("{}: {}", what, lobes.error().message), lacks);
       const bool measured =
           dress.worn[part] && dress.worn[part]->measurement && !dress.worn[part]->measurement->spectra.empty();
-      if (lobes.ok() && !measured && std::ranges::find(even, name) == even.end()) even.push_back(name);
+      if (lobes.ok() && !measured && !is_guessed(what)) add(name, even);
       if (lobes.ok()) take(*lobes);
       spectra.paints.push_back(lobes.ok() ? *std::move(lobes) : paint::BandLobes{});
     }
@@ -114,12 +138,10 @@ class Gathering {
   Result<void> gather_emission() {
     spectra.emission.assign(request_.emissions.empty() ? 0 : stage_.mesh.parts.size(), color::Bands{});
     for (const Emission& emission : request_.emissions) {
-      if (!emission.bands) {
-        lacks.push_back(fmt::format("--emit {} is three numbers", emission.part));
-        continue;
-      }
+      const color::Bands bands =
+          emission.bands ? *emission.bands : light_of_color(emission.radiance, "emit", emission.part);
       GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_of(stage_.mesh, emission.part));
-      for (const std::size_t part : parts) spectra.emission[part] = *emission.bands;
+      for (const std::size_t part : parts) spectra.emission[part] = bands;
     }
     return {};
   }
@@ -130,7 +152,7 @@ class Gathering {
       lacks.emplace_back("the floor shows the environment");
       return {};
     }
-    auto lobes = brdf::band_lobes(*stage_.floor_paint, spectra.eye);
+    auto lobes = lobes_of(*stage_.floor_paint, "the paint of the floor");
     if (!lobes.ok()) {
       lacks.push_back(fmt::format("the paint of the floor: {}", lobes.error().message));
       return {};
@@ -175,18 +197,24 @@ Result<void> set_spectra(const Options& options, const Request& request, Stage& 
   GONIO_TRY(gathering.gather());
   std::string lacks;
   for (const std::string& lack : gathering.lacks) lacks += (lacks.empty() ? "" : "; ") + lack;
-  if (!lacks.empty() && options.spectral == "on") return input_error("--spectral on needs spectra of all: {}", lacks);
+  if (!lacks.empty() && options.needs_bands())
+    return input_error("--spectral {} needs spectra of all: {}", options.spectral, lacks);
   Json& told = session.results()["spectral"];
   told = {{"bands", lacks.empty() ? color::kBands : 0},
           {"observer_deg", gathering.spectra.eye.observer_deg()},
           {"misfit_de00", json_number(gathering.misfit_de00)},
           {"readings_de00", json_number(gathering.readings_de00)},
           {"lacks", gathering.lacks},
-          {"even", gathering.even}};
+          {"even", gathering.even},
+          {"guessed", gathering.guessed}};
   if (!lacks.empty()) {
     session.say("drawn in three channels, not in bands: " + lacks);
     return {};
   }
+  std::string guessed;
+  for (const std::string& what : gathering.guessed) guessed += (guessed.empty() ? "" : "; ") + what;
+  if (!guessed.empty())
+    session.say("drawn in bands, with the smoothest spectrum of the color where none is stated: " + guessed);
   std::string even;
   for (const std::string& name : gathering.even) even += (even.empty() ? "" : ", ") + name;
   session.explain(

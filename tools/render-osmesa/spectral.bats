@@ -88,6 +88,24 @@ mean() { oiiotool "$1" --ch R,G,B --printstats | sed -nE 's/.*Stats Avg: ([^ ]+)
   [[ "$stderr" == *'--spectral on needs spectra of all: --emit Lid is three numbers'* ]]
 }
 
+@test "guess takes the smoothest spectrum for what states none, and says for what" {
+  run --separate-stderr render-osmesa $box --part Lid=paints.xml#bare --emit Walls=A --emit Lid=1,1,1 --spectral guess \
+    --tolerance 2 --report r.json -o a.exr
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *'the paint bare: it has no spectrum'* ]]
+  [ "$(result "['spectral']['bands']")" = 31 ]
+  [ "$(result "['spectral']['lacks']")" = '[]' ]
+  [ "$(result "['spectral']['guessed']")" = "['the paint bare: it has no spectrum', '--emit Lid is three numbers']" ]
+  # A colored lamp alone has its color; red paint in it is red by the overlap of the two spectra, not by --operator.
+  cyan="--mesh box.obj --emit Lid=0,1,1 --spectral guess --camera 0,0,0,0,-1,-0.6,60 --size 8x8 --samples 1 --bounces 1 --tolerance 2"
+  render-osmesa -q $cyan --paint paints.xml#bare -o cyan.exr
+  read -r red green _ <<<"$(mean cyan.exr)"
+  holds "$red > 0.02 * $green"
+  run --separate-stderr render-osmesa $box --emit Walls=A --env "$TESTDATA/studio.exr" --spectral guess -o none.exr
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'--spectral guess needs spectra of all: the environment has three channels'* ]]
+}
+
 @test "auto draws in bands and says so; three numbers alone say nothing" {
   run --separate-stderr render-osmesa $box --emit Walls=A --tolerance 2 --explain --report r.json -o a.exr
   [ "$status" -eq 0 ]

@@ -182,7 +182,7 @@ Result<Options> stream_options(const Options& options) {
       {"split", !options.split.empty()},        {"turntable", options.turntable > 0},
       {"light-sweep", options.light_sweep > 0}, {"check", options.check > 0},
       {"aov", !options.aovs.empty()},           {"print-shader", options.print_shader},
-      {"emit", !options.emissions.empty()},     {"spectral on", options.spectral == "on"}};
+      {"emit", !options.emissions.empty()},     {"spectral", options.needs_bands()}};
   for (const auto& [name, is_given] : given)
     if (is_given)
       return usage_error("--{} is for pictures of one paint: leave it out, or choose a paint by FILE#NAME", name);

@@ -30,6 +30,7 @@ struct Options {
   bool rays_are_refused = false;  // whether --effects says so, in a stream, whose effects are others
   std::string reflection = color::kDefaultOperator;
   std::string spectral = "auto";
+  bool needs_bands() const { return spectral == "on" || spectral == "guess"; }
   std::string critical_angle = "slide";
   std::vector<std::string> textures;
   std::string texture_maps = "cubes";
