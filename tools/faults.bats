@@ -26,7 +26,7 @@ paint-convert -q many.xml --to csv
 paint-edit -q many.xml --hue-shift 90
 paint-stats -q many.xml
 fit-paint -q -b $TESTDATA/b5.basis.xml many.xml
-fit-basis -q --lobes 2 --starts 1 --angles 12 many.xml
+fit-basis -q --lobes 2 --starts 1 many.xml
 prefilter-envmap -q $TESTDATA/studio.exr --exponents 6,70 -s 8
 render-osmesa -q $scene --env sky.env.exr
 goniogeom-index -q one.xml --lights 30,45 --views as15,as45
@@ -340,7 +340,7 @@ paint-convert -q tiny.xml --to csv
 paint-edit -q tiny.xml --hue-shift 90
 paint-stats -q tiny.xml
 fit-paint -q -b $TESTDATA/b5.basis.xml tiny.xml
-fit-basis -q --lobes 2 --starts 1 --angles 12 tiny.xml
+fit-basis -q --lobes 2 --starts 1 tiny.xml
 goniogeom-index -q tiny.xml --lights 30,45 --views as15,as45
 trompe-fit -q tiny.xml --angle 2
 colorsnap -q -l many.xml -k 3 tiny.xml

@@ -409,7 +409,7 @@ csv paint-convert -q $TESTDATA/paints.paints.xml --to csv
 xml paint-edit -q one.xml --hue-shift 90
 tsv paint-stats -q one.xml
 xml fit-paint -q -b $TESTDATA/b5.basis.xml one.xml
-xml fit-basis -q --lobes 1 --starts 1 --angles 8 one.xml
+xml fit-basis -q --lobes 1 --starts 1 one.xml
 exr prefilter-envmap -q $TESTDATA/studio.exr -e 6,70 -s 8
 exr prefilter-envmap -q p.ppm -e 6 -s 4
 exr relight -q --from D65 --to A $TESTDATA/outdoor.exr

@@ -11,41 +11,66 @@
 #include "base/angles.h"
 #include "base/clock.h"
 #include "brdf/gloss.h"
+#include "brdf/lobe_model.h"
 #include "fit/ceres_options.h"
 #include "fit/internal/basis_errors.h"
 #include "fit/internal/flake_fit.h"
+#include "fit/internal/target_rows.h"
 #include "math/cosine_power.h"
+#include "math/elementary.h"
 #include "math/least_squares.h"
 
 namespace goniochrome::fit {
 
 namespace {
 
-constexpr double kPolishGain = 1e-5;
+constexpr double kPolishGain = 1e-4;
 
 double row_weight(const BasisTargetOptions& options, double lightness) {
   return options.perceptual_weights ? color::lightness_slope(lightness) : 1;
 }
 
+// The weight of a coat's shares of light at each view. A share F of white light comes on top of the base, whose
+// reflectance factor is `base`, and a view counts by the part of a sphere's picture that is seen at it.
+std::array<double, kCoatErrorViews_deg.size()> coat_weights(const BasisTargetOptions& options, const color::Rgb& base,
+                                                            const color::Xyz& white) {
+  std::array<double, kCoatErrorViews_deg.size()> weights{};
+  double within = 0;
+  for (std::size_t v = 0; v < weights.size(); ++v) {
+    const double view_deg = kCoatErrorViews_deg[v];
+    const double end_deg = v + 1 < weights.size() ? (view_deg + kCoatErrorViews_deg[v + 1]) / 2 : 90;
+    const double area = math::sin(end_deg * kDegree) * math::sin(end_deg * kDegree);
+    const double fresnel = brdf::fresnel_dielectric(math::cos(view_deg * kDegree), brdf::kCoatIndex);
+    const color::Rgb shown = base + color::Rgb{fresnel, fresnel, fresnel};
+    weights[v] = std::sqrt(area - within) * fresnel * row_weight(options, color::lab_from_rgb(shown, white).L);
+    within = area;
+  }
+  return weights;
+}
+
 }  // namespace
 
 Result<BasisTarget> basis_target(const paint::Paint& paint, const BasisTargetOptions& options) {
-  GONIO_ASSIGN(const paint::TargetCurve curve, paint::TargetCurve::make(paint, options.target));
   GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(paint)));
-  const auto& known = curve.known_angles_deg();
-  const double first = std::max(known.front(), kGlareAngle_deg), last = std::min(known.back(), 110.0);
-  if (last <= first) return input_error("paint \"{}\" has one angle: a basis needs at least two", paint.name);
+  GONIO_ASSIGN(const double index, brdf::coat_index_of(paint.gloss));
+  const double passages_index = paint.coat_index == paint::kNoCoat ? paint::kNoCoat : index;
+  GONIO_ASSIGN(const Target fitted, target_rows(paint, options.target, white, {}, passages_index));
 
   BasisTarget target{.name = paint.name, .rows = {}};
-  for (int i = 0; i < options.angles; ++i) {
-    const double angle = first + (last - first) * i / (options.angles - 1);
-    const color::Lab lab = curve.at(angle);
-    target.rows.push_back({angle, non_negative(color::rgb_from_lab(lab, white)), row_weight(options, lab.L)});
+  double importance = 0;
+  for (const TargetRow& row : fitted.rows) {
+    if (row.angle_deg < fitted.first_deg) continue;
+    target.rows.push_back({row.angle_deg, row.reflectance_factor,
+                           std::sqrt(row.importance) * row.passages * row_weight(options, row.lightness),
+                           row.passages});
+    importance += row.importance;
   }
-  GONIO_ASSIGN(const double index, brdf::coat_index_of(paint.gloss));
+  if (target.rows.size() < 2) return input_error("paint \"{}\" has one angle: a basis needs at least two", paint.name);
+  std::ranges::sort(target.rows, {}, &BasisRow::angle_deg);
+  const double mean_importance = importance / static_cast<double>(target.rows.size());
+  for (BasisRow& row : target.rows) row.weight /= std::sqrt(mean_importance);
   GONIO_ASSIGN(target.coat, brdf::rough_coat_of(paint.gloss, brdf::mirror_index(index)));
-  target.coat_weight = target.rows.back().weight;
-  target.mirror = options.mirror;
+  target.coat_weights = coat_weights(options, target.rows.back().passages * target.rows.back().value, white);
   return target;
 }
 
@@ -91,7 +116,8 @@ double basis_de00(const std::vector<double>& exponents, const BasisTarget& targe
   const color::Xyz white = *color::white_point({"D65", 2});
   double worst = 0;
   for (std::size_t r = 0; r < fitted.size(); ++r)
-    worst = std::max(worst, color_difference(target.rows[r].value, fitted[r], white));
+    worst = std::max(worst, color_difference(target.rows[r].passages * target.rows[r].value,
+                                             target.rows[r].passages * fitted[r], white));
   return worst;
 }
 
@@ -330,7 +356,25 @@ double sharpest_seen(const std::vector<BasisTarget>& targets) {
   return std::log(kSeenPart) / math::log_cosine(first_deg * kDegree);
 }
 
+// The exponents of a domain, [low, high] in log E, that are regular in log space.
+std::vector<double> regular_exponents(double low, double high, int count) {
+  std::vector<double> exponents;
+  for (int j = 0; j < count; ++j) exponents.push_back(std::exp(low + (high - low) * (j + 0.5) / count));
+  return exponents;
+}
+
 }  // namespace
+
+void set_floors(std::vector<BasisTarget>& targets) {
+  constexpr int kDense = 32;
+  const BasisSearchOptions domain;
+  for (BasisTarget& target : targets) target.floor = 0;
+  const double high = std::max(2 * domain.low, std::min(domain.high, sharpest_seen(targets)));
+  std::vector<double> dense = regular_exponents(std::log(domain.low), std::log(high), kDense);
+  dense.insert(dense.begin(), domain.low), dense.push_back(high);
+  const std::vector<SquaredError> errors = squared_basis_errors(dense, targets, false);
+  for (std::size_t i = 0; i < targets.size(); ++i) targets[i].floor = std::sqrt(errors[i].value);
+}
 
 double basis_error(const std::vector<double>& exponents, const BasisTarget& target) {
   return basis_error(exponents, std::vector{target}).max;
@@ -354,10 +398,7 @@ class Chosen {
       errors_.emplace(all);
       return;
     }
-    constexpr int kProbe = 5;
-    std::vector<double> probe;
-    for (int j = 0; j < kProbe; ++j) probe.push_back(std::exp(low + (high - low) * (j + 0.5) / kProbe));
-    const std::vector<double> each = basis_error(probe, all).each;
+    const std::vector<double> each = basis_error(regular_exponents(low, high, 5), all).each;
     std::vector<std::size_t> order(all.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return each[i]; });
@@ -464,8 +505,15 @@ class Search {
     }
     std::ranges::sort(best.logs);
     smaller_ = best.logs;
-    search_.sets.push_back({exponents_of(best.logs), std::move(error), static_cast<int>(starts.size()), evaluations,
-                            static_cast<int>(chosen_.size()), clock.elapsed_s()});
+    constexpr double kAtBound = 1e-3;
+    search_.sets.push_back({.exponents = exponents_of(best.logs),
+                            .error = std::move(error),
+                            .starts = static_cast<int>(starts.size()),
+                            .evaluations = evaluations,
+                            .looked_at = static_cast<int>(chosen_.size()),
+                            .at_low = best.logs.front() < low_ + kAtBound,
+                            .at_high = best.logs.back() > high_ - kAtBound,
+                            .time_s = clock.elapsed_s()});
   }
 
   // Of a search on some of the targets: the worst of the others join until none has a larger error than these, and the

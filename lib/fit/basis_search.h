@@ -3,6 +3,7 @@
 // BASIS.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,38 +21,44 @@ namespace goniochrome::fit {
 // One paint or measured BRDF as the search sees it.
 struct BasisRow {
   double angle_deg = 0;  // aspecular, 0..90 and more
-  color::Rgb value;      // reflectance factor, channels >= 0
+  color::Rgb value;      // reflectance factor, channels >= 0, of the base where there is a coat
   double weight = 1;     // of the error of each channel
+  double passages = 1;   // what a coat leaves of the base's light there, see brdf::coat_passages()
 };
+// The angles of the viewer at which a coat is compared with the lobes of its gloss.
+inline constexpr std::array<double, 5> kCoatErrorViews_deg = {20, 45, 60, 75, 85};
 struct BasisTarget {
   std::string name;
   std::vector<BasisRow> rows;                // by ascending angle
   std::optional<brdf::RoughCoat> coat = {};  // whose gloss the basis is to hold, with a gray lobe of any weight each
-  double coat_weight = 1;                    // of a share of what a smooth coat reflects
-  bool mirror = false;                       // beside the lobes, for the coat alone
+  std::array<double, kCoatErrorViews_deg.size()> coat_weights = {1, 1, 1, 1, 1};  // of its share of light, by view
+  bool mirror = false;  // beside the lobes, for the coat alone
+  double floor = 0;     // the error that no lobes mend, see set_floors()
 };
 
 struct BasisTargetOptions {
   paint::TargetCurve::Kind target = paint::TargetCurve::Kind::kMeasured;
-  int angles = 40;                 // sample angles of a paint, evenly from the first known angle to the last
   bool perceptual_weights = true;  // rows weighted by dL*/dY, as fit-paint does
-  bool mirror = false;             // the basis gets a mirror lobe, which takes part in the gloss of rough coats
 };
 
-// The reflectance factors of a paint at evenly spaced aspecular angles, and the rough coat that its readings of gloss
-// ask for (see brdf::rough_coat_of(); what the base adds to a reading is neglected). A smooth coat asks for a mirror
-// and not for lobes. Error: the paint has neither rows beyond glare
-// nor an appearance, it has one angle only, or its illuminant is unknown.
+// The rows that fit-paint fits from the first reading on, under the coat that it gives the paint: readings, and with a
+// tenth of their importance the curve between them. The rough coat is the one that the readings of gloss ask for (see
+// brdf::rough_coat_of(); the search neglects what the base adds to a reading). A smooth coat asks for a mirror and not
+// for lobes. Error: the paint has neither rows beyond glare nor an appearance, it has one angle only, or its illuminant
+// is unknown.
 Result<BasisTarget> basis_target(const paint::Paint& paint, const BasisTargetOptions& options);
 
 // The means of a measured BRDF over all directions up to 75 deg from the normal, in steps of 2.5 deg of the aspecular
 // angle from 10 to 110. Error: fewer than two steps hold a direction.
 Result<BasisTarget> basis_target(const BrdfTarget& brdf, const BasisTargetOptions& options);
 
-// The weighted RMS error over all angles and channels of a target after the non-negative fit of a constant and lobes of
-// these exponents; of a target with a coat the root of the sum of its square and of the mean square error of the light
-// within rings around the mirror direction, at 20, 45, 60, 75 and 85 deg, with the lobes and, where the target says so,
-// the mirror.
+// Sets the floor of every target: its error with a dense series of exponents over the whole domain. Readings
+// that contradict each other or grow away from specular leave such an error with any basis.
+void set_floors(std::vector<BasisTarget>& targets);
+
+// The root of the weighted mean square error over all angles and channels of a target, after the non-negative fit of a
+// constant and lobes of these exponents, beyond the floor of the target. A coat adds the mean square error of the light
+// within rings around the mirror direction, with the lobes and, where the target says so, the mirror.
 double basis_error(const std::vector<double>& exponents, const BasisTarget& target);
 
 // The square of that error and its gradient by log E_j, for every target.
@@ -96,8 +103,9 @@ struct FoundBasis {
   std::vector<double> exponents;  // ascending
   BasisError error;
   int starts = 0;
-  int evaluations = 0;  // of the objective
-  int looked_at = 0;    // targets that the search looked at; `error` is that of all
+  int evaluations = 0;                   // of the objective
+  int looked_at = 0;                     // targets that the search looked at; `error` is that of all
+  bool at_low = false, at_high = false;  // an exponent lies at that end of the domain
   double time_s = 0;
 };
 

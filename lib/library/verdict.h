@@ -12,13 +12,18 @@ namespace goniochrome::library {
 double signed_hue_shift(double hue_shift_index, double hue_travel_deg);
 
 struct VerdictLimits {
-  double outside = 10;    // mean difference
-  double off_radial = 5;  // difference of hue shifts
+  double outside = 10;         // mean difference
+  double off_radial = 5;       // difference of hue shifts
+  double hue_travel_deg = 30;  // difference of hue travels
 };
 
 struct Verdict {
-  double hue_shift = 0, matched_hue_shift = 0;  // NaN where there is none
+  double hue_shift = 0, matched_hue_shift = 0;            // NaN where there is none
+  double hue_travel_deg = 0, matched_hue_travel_deg = 0;  // NaN where there is none
   bool outside = false, off_radial = false;
+  // The hue turns from face to flop by an angle that is not that of the match; one without a hue does not turn. A turn
+  // by half a circle leaves the flop on the hue line of the face, where off_radial does not see it.
+  bool turns = false;
 };
 
 // `match` is the nearest paint of the index, and mean_de the mean of its color differences from `query`.

@@ -93,7 +93,7 @@ assert {row["study"] for row in rows} == {"Nearest paint", "Choosing a basis"}
 for row in rows:
     times = [float(s) for s in row["all_times_s"].split()]
     assert times and abs(min(times) / float(row["time_s"]) - 1) < 1e-4, row
-assert sum(int(row["default"]) for row in rows if row["figure"] == "basis-angles") == 1
+assert sum(int(row["default"]) for row in rows if row["figure"] == "basis-starts") == 1
 for name in {row["figure"] for row in rows}:
     assert (out / f"{name}.svg").read_text() in text, name
 PY

@@ -16,7 +16,7 @@ from .study import Run
 # The studies in the order of the page. Each is a module beside this one with study(run) -> Study.
 STUDIES = {
     "prefilter": "prefiltering: tolerance and size against the exact sum",
-    "basis": "choosing a basis: starts, sample angles and method against what its lobes can do",
+    "basis": "choosing a basis: starts, method and number of lobes against what its lobes can do",
     "fit": "fitting: method, lobes and target against the measured colors",
     "lobes": "fewer lobes: smaller bases, the best lobes of a basis, and pruning, against the time of shading",
     "render": "rendering: effects, engine, textures and brushes against the reference integrator",

@@ -15,7 +15,7 @@ def bases(run, sizes):
     """{number of lobes: a basis of so many lobes that fit-basis chose for the library}, made once for all studies."""
     if "bases" not in run.kept:
         most = 7 if run.quick else 11
-        run.tool("fit-basis", run.paints, "--lobes", f"1..{most}", "--starts", 2 if run.quick else 4, "--mirror",
+        run.tool("fit-basis", run.paints, "--lobes", f"1..{most}", "--starts", 2 if run.quick else 4, "--mirror", "yes",
                  "--each", run.work / "lobes-", "-o", run.work / "largest.xml")
         run.kept["bases"] = True
     return {size: run.work / f"lobes-{size}.basis.xml" for size in sizes}

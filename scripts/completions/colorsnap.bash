@@ -11,6 +11,7 @@ _colorsnap() {
     --method) COMPREPLY=($(compgen -W "auto tree scan" -- "$word")); return ;;
     --threshold) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --off-radial) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --hue-travel) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --format|-f) COMPREPLY=($(compgen -W "auto tsv json paints" -- "$word")); return ;;
     --cloud) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -19,7 +20,7 @@ _colorsnap() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--library --filter --count --formula --geometry --weight --illuminant --mix-observers --method --threshold --off-radial --output --format --cloud --assign --keep-going --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--library --filter --count --formula --geometry --weight --illuminant --mix-observers --method --threshold --off-radial --hue-travel --output --format --cloud --assign --keep-going --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -8,7 +8,7 @@ _fit_basis() {
     --visible) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --target|-t) COMPREPLY=($(compgen -W "measured curve" -- "$word")); return ;;
     --weights|-w) COMPREPLY=($(compgen -W "perceptual plain" -- "$word")); return ;;
-    --angles) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --mirror) COMPREPLY=($(compgen -W "auto yes no" -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --name) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --each) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -21,7 +21,7 @@ _fit_basis() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--lobes --method --starts --representatives --visible --target --weights --angles --output --name --mirror --each --table --plot --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--lobes --method --starts --representatives --visible --target --weights --mirror --output --name --each --table --plot --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -187,14 +187,28 @@ column() {
   [ "$status" -eq 2 ]
 }
 
+@test "a hue that turns by half a circle is told, though its flop is on the face's hue line" {
+  paint flip 60,40,0 40,1,-1 20,-40,1 | sed "s|^|$head|; s|\$|</paints>|" >flip.xml
+  run --separate-stderr colorsnap -l lib.xml -k 1 flip.xml --threshold 100 --off-radial 50 --report r.json
+  [ "$status" -eq 0 ]
+  [ "$(column status <<<"$output")" = hue_travel ]
+  [[ "$stderr" == *'paint "flip" turns its hue by '* ]]
+  jq -e '.results.hue_travel == 1 and (.results.queries[0].hue_travel_deg | fabs > 150)' r.json
+  # The distance from the hue line alone does not see it.
+  jq -e '.results.queries[0].hue_shift | fabs < 5' r.json
+  [ "$(colorsnap -q -l lib.xml -k 1 flip.xml --threshold 100 --off-radial 50 --hue-travel 200 | column status)" = ok ]
+  [ "$(colorsnap -q -l lib.xml -k 1 flip.xml --off-radial 0 | column status)" = outside,off_radial,hue_travel ]
+}
+
 @test "a design of off-radial travel is told" {
   paint turning 99,60,30 50,40,20 20,10,22 | sed "s|^|$head|; s|\$|</paints>|" >turning.xml
   run --separate-stderr colorsnap -l lib.xml -k 1 turning.xml --report r.json
   [ "$status" -eq 0 ]
-  [ "$(column status <<<"$output")" = off_radial ]
+  [ "$(column status <<<"$output")" = off_radial,hue_travel ]
   [[ "$stderr" == *'paint "turning" travels off-radially'* ]]
   jq -e '.results.queries[0] | .hue_shift > 10 and .matched_hue_shift == 0' r.json
-  [ "$(colorsnap -q -l lib.xml -k 1 turning.xml --off-radial 50 | column status)" = ok ]
+  [ "$(colorsnap -q -l lib.xml -k 1 turning.xml --hue-travel 50 | column status)" = off_radial ]
+  [ "$(colorsnap -q -l lib.xml -k 1 turning.xml --off-radial 50 --hue-travel 50 | column status)" = ok ]
   run colorsnap -l lib.xml wish.xml --off-radial x
   [ "$status" -eq 2 ]
 }
@@ -355,13 +369,18 @@ column() {
   [[ "$stderr" == *"6 of 6 library paints have no spectra"* || "$stderr" == *"5 of 5 library paints have no spectra"* ]]
 }
 
-@test "--cloud draws the library in two projections, with the queries in it" {
+@test "--cloud draws the library at face, 45 deg and flop, with the travel of query and matches" {
   run --separate-stderr colorsnap -l lib.xml wish.xml --cloud cloud.svg -o near.tsv
   [ "$status" -eq 0 ]
   xmllint --noout cloud.svg
-  grep -q '>from above: 5 of 5 paints at 45as45, 1 of 1 queries<' cloud.svg
-  grep -q '>from the side: 5 of 5 paints at 45as45, 1 of 1 queries<' cloud.svg
-  [ "$(grep -o '<circle' cloud.svg | wc -l)" -eq 12 ] # five paints and a ring, twice
+  for angle in 15 45 110; do
+    grep -q ">from above: 5 of 5 paints at 45as$angle, 1 of 1 queries<" cloud.svg
+    grep -q ">from the side: 5 of 5 paints at 45as$angle, 1 of 1 queries<" cloud.svg
+  done
+  [ "$(grep -o '<circle' cloud.svg | wc -l)" -eq 42 ] # five paints and two rings, six times
+  # The travel of the design and of its five matches, each a line of three points, in both projections of each angle.
+  grep -q '>design, face to flop<' cloud.svg
+  grep -q '>matches, face to flop<' cloud.svg
   run --separate-stderr colorsnap -l lib.xml wish.xml --cloud cloud.png
   [ "$status" -eq 2 ]
   [[ "$stderr" == *'--cloud is "cloud.png": give a name that ends in .svg'* ]]

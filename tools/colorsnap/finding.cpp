@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/clock.h"
+#include "base/text.h"
 
 namespace goniochrome::tool {
 
@@ -30,8 +31,11 @@ Neighbor neighbor_of(library::LibraryMatch match, const std::vector<library::Sea
 
 std::string Finding::status() const {
   if (no_match()) return "no_match";
-  if (outside) return off_radial ? "outside,off_radial" : "outside";
-  return off_radial ? "off_radial" : "ok";
+  std::vector<std::string> held;
+  if (outside) held.emplace_back("outside");
+  if (off_radial) held.emplace_back("off_radial");
+  if (turns) held.emplace_back("hue_travel");
+  return held.empty() ? "ok" : joined(held, ",");
 }
 
 Result<QueryPlan> Searched::plan(const paint::Paint& query) const {
@@ -68,13 +72,15 @@ Finding finding_of(const paint::Paint& query, QueryPlan plan, const Searched& li
   finding.search_s = searching.elapsed_s();
   finding.plan = std::move(plan.plan);
   finding.hue_shift = finding.matched_hue_shift = paint::PaintMetrics::kNone;
+  finding.hue_travel_deg = finding.matched_hue_travel_deg = paint::PaintMetrics::kNone;
   if (finding.no_match()) return finding;
 
   const Neighbor& nearest = finding.neighbors.front();
   const library::Verdict verdict =
       library::verdict(query, library.index(), nearest.match.paint, nearest.mean_de, limits);
   finding.hue_shift = verdict.hue_shift, finding.matched_hue_shift = verdict.matched_hue_shift;
-  finding.outside = verdict.outside, finding.off_radial = verdict.off_radial;
+  finding.hue_travel_deg = verdict.hue_travel_deg, finding.matched_hue_travel_deg = verdict.matched_hue_travel_deg;
+  finding.outside = verdict.outside, finding.off_radial = verdict.off_radial, finding.turns = verdict.turns;
   return finding;
 }
 

@@ -24,13 +24,14 @@ struct Neighbor {
 struct Finding {
   std::string query;
   library::SearchPlan plan;
-  std::vector<Neighbor> neighbors;              // nearest first
-  double hue_shift = 0, matched_hue_shift = 0;  // NaN where there is none
-  bool outside = false, off_radial = false;
+  std::vector<Neighbor> neighbors;                        // nearest first
+  double hue_shift = 0, matched_hue_shift = 0;            // NaN where there is none
+  double hue_travel_deg = 0, matched_hue_travel_deg = 0;  // the same
+  bool outside = false, off_radial = false, turns = false;
   double search_s = 0;
 
   bool no_match() const { return neighbors.empty(); }
-  // "ok", or "outside", "off_radial", "outside,off_radial", "no_match".
+  // "ok", "no_match", or those of "outside", "off_radial" and "hue_travel" that hold, joined by commas.
   std::string status() const;
 };
 

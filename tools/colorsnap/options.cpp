@@ -115,6 +115,9 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("off-radial", "DE", "3", &o.off_radial, "difference of hue shifts beyond which a design is off-radial")
       .from(0)
       .in("CIELAB units");
+  spec.option("hue-travel", "DEG", "15", &o.hue_travel, "difference of hue travels beyond which a design turns")
+      .from(0)
+      .in("degrees");
   spec.heading = "input and output";
   add_table_options(spec, o.output, o.format,
                     "the matched paints themselves, each once, in the order in which they were first met, with every "
@@ -152,10 +155,12 @@ void add_report(cli::ToolSpec& spec) {
        "hand a design over with the code of the paint nearest to it"}};
   spec.report = {
       {"queries[].name", "name of the query"},
-      {"queries[].status", "one of ok, outside, off_radial and no_match"},
+      {"queries[].status", "ok, no_match, or those of outside, off_radial and hue_travel that hold, joined by commas"},
       {"queries[].geometries[]", "geometries at which it was compared"},
       {"queries[].hue_shift, matched_hue_shift",
        "signed distance of the flop from the face's hue line, for the query and for the nearest paint"},
+      {"queries[].hue_travel_deg, matched_hue_travel_deg",
+       "angle by which the hue turns from face to flop, for the query and for the nearest paint"},
       {"queries[].matches[]",
        "name, code, class, distance, mean_de, dL, dC, dH, de_by_geometry{}; with --illuminant also illuminant"},
       {"library_size", "number of paints in the library"},
@@ -168,7 +173,7 @@ void add_report(cli::ToolSpec& spec) {
       {"query_us", "mean time of a search on one core"},
       {"queries_per_s", "searches a second on all threads, without reading and writing"},
       {"searched", "number of queries that were answered"},
-      {"outside, off_radial, no_match", "number of queries with this status"},
+      {"outside, off_radial, hue_travel, no_match", "number of queries with this status"},
       {"left_out", "number of queries that --keep-going left out"},
       {"warnings[]", "the warnings of the run"}};
   spec.see_also = {"paint-stats(1)", "paint-edit(1)", "paint-convert(1)"};
@@ -199,7 +204,12 @@ cli::ToolSpec tool_spec(Options& o) {
       "The status tells which designs cannot be made from the library. outside: the nearest paint is farther away than "
       "--threshold, so that the design lies outside the library's gamut; dL, dC and dH say to which side, and the exit "
       "status is 1. off_radial: the flop leaves the face's hue line on another side than that of the nearest paint "
-      "does, or farther, so that its hue shift is not captured; a paint chemist has to be asked. no_match: the filters "
+      "does, or farther, so that its hue shift is not captured; a paint chemist has to be asked. hue_travel: the hue "
+      "turns from face "
+      "to flop by another angle than that of the nearest paint, by more than --hue-travel; a turn by half a circle "
+      "ends "
+      "on the hue line of the face and is not off_radial. A design with several of these has all of them, joined by "
+      "commas. no_match: the filters "
       "leave no paint, and the exit status is 1."};
   spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
                  &o.inputs};

@@ -123,8 +123,9 @@ class Run {
     std::vector<std::optional<Finding>> findings(batch.size());
     parallel_for(queries.size(), 4, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        findings[queries[i].first] = finding_of(batch[queries[i].first], std::move(queries[i].second), library_,
-                                                metric_, {options_.threshold, options_.off_radial});
+        findings[queries[i].first] =
+            finding_of(batch[queries[i].first], std::move(queries[i].second), library_, metric_,
+                       {options_.threshold, options_.off_radial, options_.hue_travel});
     });
     wall_s_ += searching.elapsed_s();
     for (const auto& finding : findings)
@@ -138,6 +139,7 @@ class Run {
     search_s_ += finding.search_s;
     outside_ += finding.outside;
     off_radial_ += finding.off_radial;
+    turns_ += finding.turns;
     no_match_ += finding.no_match();
     session_.add("queries", [&] { return finding_json(finding, index_); });
     if (finding.status() == "ok" || ++problems_ > kWarningsShown) return;
@@ -155,6 +157,12 @@ class Run {
           fmt::format("paint \"{}\" travels off-radially: its flop lies {:+.1f} off the face's hue line, that "
                       "of the nearest, \"{}\", {:+.1f}",
                       finding.query, finding.hue_shift, name, finding.matched_hue_shift));
+    if (finding.turns)
+      session_.warn(fmt::format("paint \"{}\" turns its hue by {:+.0f} deg from face to flop, the nearest, \"{}\", {}",
+                                finding.query, finding.hue_travel_deg, name,
+                                std::isnan(finding.matched_hue_travel_deg)
+                                    ? "has no hue to turn"
+                                    : fmt::format("by {:+.0f}", finding.matched_hue_travel_deg)));
   }
 
   // Tells of library paints that are left out and of conditions that are mixed, once for each set of geometries.
@@ -217,6 +225,7 @@ class Run {
     results["searched"] = searched_;
     results["outside"] = outside_;
     results["off_radial"] = off_radial_;
+    results["hue_travel"] = turns_;
     results["no_match"] = no_match_;
     results["left_out"] = left_out_;
     for (const auto& [geometry, weight] : weights_)
@@ -229,6 +238,7 @@ class Run {
     std::string line = fmt::format("{}: {} paints against {}", session_.tool(), searched_, index_.size());
     if (outside_ > 0) line += fmt::format(", {} outside", outside_);
     if (off_radial_ > 0) line += fmt::format(", {} off-radial", off_radial_);
+    if (turns_ > 0) line += fmt::format(", {} of another hue travel", turns_);
     if (no_match_ > 0) line += fmt::format(", {} without a match", no_match_);
     if (left_out_ > 0) line += fmt::format(", {} left out", left_out_);
     session_.say(line);
@@ -244,7 +254,7 @@ class Run {
   const library::LibrarySearch& search_;
   Cloud cloud_;
   std::set<std::string> told_, compared_;
-  std::size_t searched_ = 0, outside_ = 0, off_radial_ = 0, no_match_ = 0, left_out_ = 0, problems_ = 0;
+  std::size_t searched_ = 0, outside_ = 0, off_radial_ = 0, turns_ = 0, no_match_ = 0, left_out_ = 0, problems_ = 0;
   double search_s_ = 0, wall_s_ = 0;
 };
 

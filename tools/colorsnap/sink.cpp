@@ -62,6 +62,8 @@ Json finding_json(const Finding& finding, const library::LibraryIndex& index) {
           {"geometries", geometries},
           {"hue_shift", json_number(finding.hue_shift)},
           {"matched_hue_shift", json_number(finding.matched_hue_shift)},
+          {"hue_travel_deg", json_number(finding.hue_travel_deg)},
+          {"matched_hue_travel_deg", json_number(finding.matched_hue_travel_deg)},
           {"matches", matches}};
 }
 

@@ -24,6 +24,7 @@ struct Options {
   std::string method = "auto";
   double threshold = 10;
   double off_radial = 5;
+  double hue_travel = 30;
   bool mix_observers = false;
   bool keep_going = false;
   bool assign = false;

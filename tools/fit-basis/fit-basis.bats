@@ -2,10 +2,10 @@
 
 setup() { cd "$BATS_TEST_TMPDIR"; }
 
-quick=(--lobes 2 --starts 1 --angles 12)
+quick=(--lobes 2 --starts 1)
 
 @test "a basis comes out, ascending, and fit-paint takes it" {
-  run fit-basis "${quick[@]}" --mirror "$TESTDATA/paints.paints.xml" -o b.basis.xml
+  run fit-basis "${quick[@]}" "$TESTDATA/paints.paints.xml" -o b.basis.xml
   [ "$status" -eq 0 ]
   grep -q '<basis [^>]*name="b2"' b.basis.xml
   [ "$(grep -c '<exponent>' b.basis.xml)" -eq 2 ]
@@ -14,7 +14,7 @@ quick=(--lobes 2 --starts 1 --angles 12)
 }
 
 @test "a range writes every set, the table and the plot" {
-  run fit-basis --lobes 1..3 --starts 1 --angles 12 --each set- --table sets.csv --plot sets.svg --report r.json \
+  run fit-basis --lobes 1..3 --starts 1 --each set- --table sets.csv --plot sets.svg --report r.json \
     "$TESTDATA/paints.paints.xml" -o b.basis.xml
   [ "$status" -eq 0 ]
   [ -e set-1.basis.xml ] && [ -e set-2.basis.xml ] && [ -e set-3.basis.xml ]
@@ -33,7 +33,7 @@ quick=(--lobes 2 --starts 1 --angles 12)
 
 @test "the same seed gives the same basis for any number of threads" {
   for threads in 1 2 7; do
-    fit-basis --lobes 2 --starts 4 --angles 12 --seed 9 --threads $threads --quiet "$TESTDATA/paints.paints.xml" -o $threads.xml
+    fit-basis --lobes 2 --starts 4 --seed 9 --threads $threads --quiet "$TESTDATA/paints.paints.xml" -o $threads.xml
   done
   diff 1.xml 2.xml && diff 1.xml 7.xml
 }
@@ -81,7 +81,7 @@ quick=(--lobes 2 --starts 1 --angles 12)
 @test "--explain says what is done and left out" {
   run fit-basis "${quick[@]}" --explain "$TESTDATA/paints.paints.xml" -o b.basis.xml
   [ "$status" -eq 0 ]
-  [[ "$output" == *"gloss: the rough coats of "[1-9]*" paints take part; a smooth coat asks for a mirror"* ]]
+  [[ "$output" == *"gloss: the rough coats of "[1-9]*" paints take part, with the mirror; a smooth coat asks for a mirror"* ]]
   [[ "$output" == *"left out: directions out of plane"* ]]
 }
 
@@ -98,7 +98,7 @@ gloss() {
   gloss 40 satin.xml
   gloss 90 smooth.xml
   for library in satin smooth; do
-    fit-basis --quiet --lobes 4 --starts 1 --mirror --name b $library.xml -o $library.basis.xml
+    fit-basis --quiet --lobes 4 --starts 1 --name b $library.xml -o $library.basis.xml
     sed -n 's/.*<exponent>\(.*\)<.exponent>/\1/p' $library.basis.xml >$library.txt
   done
   run diff -q satin.txt smooth.txt
@@ -107,8 +107,40 @@ gloss() {
   awk 'END { exit !($1 < 500) }' smooth.txt
 }
 
+@test "a mirror is part of the search where paints state gloss, and can be asked for or left out" {
+  gloss 40 satin.xml
+  sed 's|<gloss.*</gloss>||' satin.xml >plain.xml
+  mirror_of() { fit-basis "${quick[@]}" --quiet "$@" -o b.basis.xml && grep -c '<mirror/>' b.basis.xml; }
+  [ "$(mirror_of satin.xml)" = 1 ]
+  [ "$(mirror_of plain.xml)" = 0 ]
+  [ "$(mirror_of --mirror no satin.xml)" = 0 ]
+  [ "$(mirror_of --mirror yes plain.xml)" = 1 ]
+  # Without it the lobes have to stand for the image in the coat.
+  fit-basis --quiet --lobes 3 --starts 1 satin.xml -o b.basis.xml --report with.json
+  fit-basis --quiet --lobes 3 --starts 1 --mirror no satin.xml -o b.basis.xml --report without.json
+  jq -se '(.[0].results | .sets[0].max_error + .floor_max) < (.[1].results | .sets[0].max_error + .floor_max)' with.json without.json
+}
+
+@test "an exponent at its bound is told" {
+  gloss 75 glossy.xml
+  run fit-basis "${quick[@]}" --mirror no glossy.xml -o b.basis.xml --report r.json
+  [ "$status" -eq 0 ]
+  [[ "$output" == *"the sharpest of 2 lobes is at its bound: "*"--mirror yes"* ]]
+  jq -e '.results.sets[0].at_bound' r.json
+  run fit-basis "${quick[@]}" glossy.xml -o b.basis.xml --report r.json
+  [[ "$output" != *"at its bound"* ]]
+  jq -e '.results.sets[0].at_bound | not' r.json
+}
+
+@test "seven lobes for the library beat those made by hand" {
+  fit-basis --quiet --lobes 7 --starts 1 "$TESTDATA/paints.paints.xml" -o b.basis.xml
+  fit-paint --quiet --basis b.basis.xml "$TESTDATA/paints.paints.xml" -o f.xml --report found.json
+  fit-paint --quiet --basis "$TESTDATA/b7.basis.xml" "$TESTDATA/paints.paints.xml" -o f.xml --report by-hand.json
+  jq -se '.[0].results.de00_mean < 0.95 * .[1].results.de00_mean' found.json by-hand.json
+}
+
 @test "wrong values are refused by name" {
-  for wrong in "--lobes 0" "--lobes 3..1" "--lobes x" "--lobes 25" "--starts 0" "--angles 2" "--method best" "--target lab" \
+  for wrong in "--lobes 0" "--lobes 3..1" "--lobes x" "--lobes 25" "--starts 0" "--mirror maybe" "--method best" "--target lab" \
     "--weights heavy" "--visible -1" "--seed x" "--time-limit x"; do
     run fit-basis $wrong "$TESTDATA/paints.paints.xml" -o b.basis.xml
     [ "$status" -eq 2 ]

@@ -7,8 +7,10 @@ cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec{.name = "fit-basis", .summary = "choose the lobe exponents that serve a whole paint library best"};
   spec.description = {
       "fit-basis reads paints and searches, for each number of lobes, the exponents that serve the library best: every "
-      "paint is fitted to them, and the largest error plus the mean error over the library is made least. The "
-      "exponents are chosen once. After that, fit-paint(1) fits single paints to them in microseconds, and "
+      "paint is fitted to them as fit-paint(1) fits it, under its coat, and the largest error plus the mean error over "
+      "the library is made least. An error is what a paint has beyond the error that a dense series of lobes leaves, "
+      "since readings that contradict each other are met by no basis. The exponents are chosen once. After that, "
+      "fit-paint(1) fits single paints to them in microseconds, and "
       "prefilter-envmap(1) filters an environment once for all of them.",
       "The search adds one lobe at a time to the best smaller set, from several starts, so that the error never rises "
       "with the number of lobes. A large library is searched on paints that represent it; see --representatives.",
@@ -40,12 +42,13 @@ cli::ToolSpec tool_spec(Options& o) {
       .from(0);
   spec.heading = "what is fitted";
   add_target_options(spec, o.target, o.weights);
-  spec.option("angles", "N", "60", &o.angles, "number of sample angles of each paint").from(3, 1000);
+  spec.option("mirror", "WHICH", "yes", &o.mirror, "whether the basis has a mirror lobe, for clear coats")
+      .one_of({"auto", "yes", "no"})
+      .more("auto gives it one where a paint states gloss. The lobes then need not stand for the image in the coat.");
   spec.heading = "output";
   spec.option("output,o", "FILE", "my.basis.xml", &o.output,
               "where the basis with the most lobes goes; - is standard output");
   spec.option("name", "NAME", "car", &o.name, "name of the basis; b and the number of lobes if not given");
-  spec.flag("mirror", &o.mirror, "give the basis a mirror lobe, for clear coats");
   spec.option("each", "PREFIX", "set-", &o.each, "write every set too, as PREFIX<number>.basis.xml");
   spec.option("table", "FILE", "sets.csv", &o.table, "write exponents and errors of every set as CSV");
   spec.option("plot", "FILE", "sets.svg", &o.plot, "draw exponents and errors against the number of lobes as SVG");
@@ -59,7 +62,8 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.report = {
       {"sets[].lobes", "number of lobes"},
       {"sets[].exponents", "the exponents, ascending"},
-      {"sets[].max_error", "largest weighted RMS error of a paint, in L* if the weights are perceptual"},
+      {"sets[].max_error",
+       "largest weighted RMS error of a paint beyond its floor, in L* if the weights are perceptual"},
       {"sets[].mean_error", "mean of this error over the paints"},
       {"sets[].objective", "the sum max_error + mean_error, which the search makes least"},
       {"sets[].de00_max", "largest color difference of any paint at any sample angle"},
@@ -70,6 +74,10 @@ cli::ToolSpec tool_spec(Options& o) {
       {"sets[].starts", "number of starting points that were tried"},
       {"sets[].evaluations", "number of evaluations of the objective"},
       {"sets[].searched_paints", "number of paints that the search looked at; the errors are those of all paints"},
+      {"sets[].at_bound", "whether an exponent lies at the low or the high end of the domain"},
+      {"floor_max, floor_mean",
+       "the errors that a dense series of lobes leaves, the largest and the mean of the paints"},
+      {"mirror", "whether the basis has a mirror lobe"},
       {"paints", "number of paints"},
       {"enough_lobes", "the number beyond which no paint changes by the color difference of --visible"}};
   spec.see_also = {"fit-paint(1)", "prefilter-envmap(1)"};

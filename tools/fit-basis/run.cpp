@@ -31,10 +31,15 @@ Result<Range> lobe_range(const std::string& text) {
   return Range{static_cast<int>(*first), static_cast<int>(*last)};
 }
 
+bool states_gloss(const paint::Paint& paint) {
+  return std::ranges::any_of(paint.gloss, [](const paint::GlossReading& reading) { return reading.gloss_units > 0; });
+}
+
+// The targets with their floors. All have a mirror beside the lobes, or none has.
 Result<std::vector<fit::BasisTarget>> read_targets(const Options& options, cli::Session& session) {
-  const fit::BasisTargetOptions target_options{target_kind(options.target), options.angles,
-                                               options.weights == "perceptual", options.mirror};
+  const fit::BasisTargetOptions target_options{target_kind(options.target), options.weights == "perceptual"};
   std::vector<fit::BasisTarget> targets;
+  bool mirror = options.mirror == "yes";
   for (const std::string& path : options.paints.empty() ? std::vector<std::string>{"-"} : options.paints) {
     GONIO_ASSIGN(FitInput input, FitInput::open(path));
     if (input.measured) {
@@ -47,6 +52,7 @@ Result<std::vector<fit::BasisTarget>> read_targets(const Options& options, cli::
     for (;;) {
       GONIO_ASSIGN(const std::optional<paint::Paint> paint, input.reader->next());
       if (!paint) break;
+      mirror = mirror || (options.mirror == "auto" && states_gloss(*paint));
       auto target = fit::basis_target(*paint, target_options);
       if (target.ok())
         targets.push_back(std::move(*target));
@@ -55,6 +61,8 @@ Result<std::vector<fit::BasisTarget>> read_targets(const Options& options, cli::
     }
   }
   if (targets.empty()) return input_error("no paint to choose a basis for: give a library with at least one");
+  for (fit::BasisTarget& target : targets) target.mirror = mirror;
+  fit::set_floors(targets);
   return targets;
 }
 
@@ -138,11 +146,10 @@ std::string each_name(const Options& options, std::size_t lobes) {
   return fmt::format("{}{}.basis.xml", options.each, lobes);
 }
 
-formats::Basis basis_of(const Options& options, const fit::BasisSearch& search, const fit::FoundBasis& found) {
-  formats::Basis basis{options.name.empty() ? fmt::format("b{}", found.exponents.size()) : options.name,
-                       found.exponents,
-                       options.mirror,
-                       {}};
+formats::Basis basis_of(const Options& options, bool mirror, const fit::BasisSearch& search,
+                        const fit::FoundBasis& found) {
+  formats::Basis basis{
+      options.name.empty() ? fmt::format("b{}", found.exponents.size()) : options.name, found.exponents, mirror, {}};
   for (const fit::FoundBasis& each : search.sets)
     basis.sets.push_back(
         {static_cast<int>(each.exponents.size()), each.error.max, each.error.mean, each.error.objective()});
@@ -166,12 +173,40 @@ void report(const fit::BasisSearch& search, const std::vector<fit::BasisTarget>&
                     {"time_s", set.time_s},
                     {"starts", set.starts},
                     {"evaluations", set.evaluations},
+                    {"at_bound", set.at_low || set.at_high},
                     {"searched_paints", set.looked_at}});
     session.say(fmt::format("{:2} lobes: largest {:.3g}, mean {:.3g}, dE00 {:.2f}, {:.2f} s: {}", set.exponents.size(),
                             set.error.max, set.error.mean, de00[i], set.time_s, list(set.exponents)));
   }
   session.results()["sets"] = sets;
+  double floor_max = 0, floor_mean = 0;
+  for (const fit::BasisTarget& target : targets) {
+    floor_max = std::max(floor_max, target.floor);
+    floor_mean += target.floor / static_cast<double>(targets.size());
+  }
+  session.results()["floor_max"] = json_number(floor_max);
+  session.results()["floor_mean"] = json_number(floor_mean);
+  session.results()["mirror"] = targets.front().mirror;
   session.results()["paints"] = targets.size();
+}
+
+// Warns of exponents at an end of their domain, once for each end.
+void warn_of_bounds(const fit::BasisSearch& search, bool mirror, cli::Session& session) {
+  const auto sets_at = [&](bool fit::FoundBasis::*end) {
+    std::vector<std::string> lobes;
+    for (const fit::FoundBasis& set : search.sets)
+      if (set.*end) lobes.push_back(fmt::format("{}", set.exponents.size()));
+    return joined(lobes, ", ");
+  };
+  if (const std::string lobes = sets_at(&fit::FoundBasis::at_high); !lobes.empty())
+    session.warn(fmt::format("the sharpest of {} lobes is at its bound: {}", lobes,
+                             mirror ? "some coats ask for a lobe between it and the mirror"
+                                    : "colors read nearer to specular, or --mirror yes, leave it less to meet"));
+  if (const std::string lobes = sets_at(&fit::FoundBasis::at_low); !lobes.empty())
+    session.warn(
+        fmt::format("the broadest of {} lobes is at its bound of {:g}: a still broader one would show an edge "
+                    "where light grazes; readings beyond 75 deg ask for it",
+                    lobes, fit::BasisSearchOptions().low));
 }
 
 }  // namespace
@@ -182,6 +217,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     for (int lobes = range.first; lobes <= range.last; ++lobes)
       GONIO_TRY(can_be_written(each_name(options, static_cast<std::size_t>(lobes))));
   GONIO_ASSIGN(const std::vector<fit::BasisTarget> targets, read_targets(options, session));
+  const bool mirror = targets.front().mirror;
   fit::BasisSearchOptions search_options;
   search_options.method = options.method == "lm" ? fit::BasisMethod::kLevenbergMarquardt : fit::BasisMethod::kPowerMean;
   search_options.first = range.first, search_options.last = range.last;
@@ -190,13 +226,13 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   search_options.seed = options.common.seed;
   search_options.time_limit_s = options.common.time_limit_s;
   session.explain(
-      fmt::format("{} paints at {} angles; {} starts for each of {} to {} "
+      fmt::format("{} paints; {} starts for each of {} to {} "
                   "lobes, method {}\n"
                   "gloss: the rough coats of {} paints take part{}; a smooth coat asks for a mirror and for no lobe\n"
                   "left out: directions out of plane\n",
-                  targets.size(), options.angles, options.starts, range.first, range.last, options.method,
+                  targets.size(), options.starts, range.first, range.last, options.method,
                   std::ranges::count_if(targets, [](const fit::BasisTarget& t) { return t.coat.has_value(); }),
-                  options.mirror ? ", with the mirror" : ""));
+                  mirror ? ", with the mirror" : ""));
 
   const std::size_t most = search_options.representatives;
   if (most > 0 && targets.size() > 2 * most)
@@ -208,6 +244,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   const fit::BasisSearch search = fit::search_basis(targets, search_options);
   const std::vector<double> de00 = visible_errors(search, targets);
   report(search, targets, de00, session);
+  warn_of_bounds(search, mirror, session);
   const int enough = enough_lobes(search, de00, options.visible_de00);
   session.results()["enough_lobes"] = enough ? Json(enough) : Json(nullptr);
   if (search.sets.size() > 1)
@@ -219,8 +256,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.plot.empty()) GONIO_TRY(write_file(options.plot, plot_svg(search, de00)));
   if (!options.each.empty())
     for (const fit::FoundBasis& set : search.sets)
-      GONIO_TRY(formats::write_basis(each_name(options, set.exponents.size()), basis_of(options, search, set)));
-  GONIO_TRY(formats::write_basis(options.output, basis_of(options, search, search.sets.back())));
+      GONIO_TRY(formats::write_basis(each_name(options, set.exponents.size()), basis_of(options, mirror, search, set)));
+  GONIO_TRY(formats::write_basis(options.output, basis_of(options, mirror, search, search.sets.back())));
   return search.stopped ? cli::Verdict::kStopped : cli::Verdict::kDone;
 }
 

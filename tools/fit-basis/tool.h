@@ -17,11 +17,10 @@ struct Options {
   std::string method = "power-mean";
   std::string target = "measured";
   std::string weights = "perceptual";
+  std::string mirror = "auto";
   std::string each, table, plot;
   int starts = 6, representatives = 400;
-  int angles = 40;
   double visible_de00 = 0.5;
-  bool mirror = false;
 };
 
 cli::ToolSpec tool_spec(Options& options);

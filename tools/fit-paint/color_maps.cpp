@@ -31,6 +31,13 @@ Result<fit::ColorMapFit> fitted(const paint::Paint& paint, const brdf::MeasuredB
   return fit::fit_color_map(*paint.measurement, options);
 }
 
+// The left-out readings tell which model is better.
+bool is_sure(const fit::ColorMapFit& fit) {
+  constexpr double kSure = 2;  // standard errors
+  return fit.difference_error_de76 &&
+         std::abs(fit.isolines_de76 - fit.aspecular_de76) >= kSure * *fit.difference_error_de76;
+}
+
 }  // namespace
 
 ColorMaps::ColorMaps(const Options& options, cli::Session& session) : options_(options), session_(session) {}
@@ -51,9 +58,9 @@ std::string ColorMaps::file_name(const std::string& paint) {
   return name + ".exr";
 }
 
-Result<std::optional<brdf::ColorMap>> ColorMaps::add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf,
-                                                     const std::string& where) {
-  if (options_.color_map.empty()) return std::optional<brdf::ColorMap>();
+Result<std::optional<MadeMap>> ColorMaps::add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf,
+                                              const std::string& where) {
+  if (options_.color_map.empty()) return std::optional<MadeMap>();
   fit::ColorMapOptions asked;
   if (options_.color_map_model == "isolines") asked.model = fit::ColorMapModel::kIsolines;
   if (options_.color_map_model == "aspecular") asked.model = fit::ColorMapModel::kAspecular;
@@ -62,7 +69,7 @@ Result<std::optional<brdf::ColorMap>> ColorMaps::add(paint::Paint& paint, const 
   if (!fit.ok()) {
     if (++without_ <= kMapWarningsShown)
       session_.warn(fmt::format("{}: paint \"{}\" gets no color map: {}", where, paint.name, fit.error().message));
-    return std::optional<brdf::ColorMap>();
+    return std::optional<MadeMap>();
   }
   const std::string name = file_name(paint.name);
   const std::string path = (std::filesystem::path(options_.color_map) / name).string();
@@ -93,22 +100,20 @@ Result<std::optional<brdf::ColorMap>> ColorMaps::add(paint::Paint& paint, const 
                 {"held_out_de76", json_number(fit->held_out_de76)},
                 {"negative_share", fit->negative_share}};
   });
-  return std::optional<brdf::ColorMap>(fit->map);
+  return std::optional(MadeMap{fit->map, options_.color_map_model == "isolines" || is_sure(*fit)});
 }
 
 // Which model the map of a paint has, and how sure it is that this is the better one.
 void ColorMaps::tell_model(const fit::ColorMapFit& fit, const std::string& name) {
   if (++told_ > kModelsTold) return;
-  constexpr double kSure = 2;  // standard errors
   const double apart = std::abs(fit.isolines_de76 - fit.aspecular_de76);
-  const bool sure = fit.difference_error_de76 && apart >= kSure * *fit.difference_error_de76;
   session_.say(fmt::format(
       "{}: the map goes by {}: {} readings are predicted to {:.2f} dE76 by isolines and to {:.2f} by the aspecular "
       "angle, which differ by {:.2f}{}{}",
       name, fit.map.aspecular ? "the aspecular angle" : "isolines", fit.compared_rows, fit.isolines_de76,
       fit.aspecular_de76, apart,
       fit.difference_error_de76 ? fmt::format(" with a standard error of {:.2f}", *fit.difference_error_de76) : "",
-      sure ? "" : ": they do not tell which is better"));
+      is_sure(fit) ? "" : ": they do not tell which is better"));
 }
 
 void ColorMaps::finish() {

@@ -12,6 +12,11 @@
 
 namespace goniochrome::tool {
 
+struct MadeMap {
+  brdf::ColorMap map;
+  bool supported = true;  // isolines were asked for, or predict left-out readings better by two standard errors
+};
+
 class ColorMaps {
  public:
   ColorMaps(const Options& options, cli::Session& session);
@@ -22,8 +27,7 @@ class ColorMaps {
   // Makes the map of a paint from its readings or, where it has one, from its measured BRDF, and names it in the paint.
   // A paint that cannot have one is left as it is, and a warning says so. Returns the map, if one was made. Error: the
   // file cannot be written.
-  Result<std::optional<brdf::ColorMap>> add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf,
-                                            const std::string& where);
+  Result<std::optional<MadeMap>> add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf, const std::string& where);
 
   // Puts the number of maps into the report and the summary.
   void finish();

@@ -77,7 +77,11 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.heading = "output";
   spec.option("output,o", "FILE", "fitted.paints.xml", &o.output, "where the paints go; - is standard output");
   spec.option("color-map", "FOLDER", "maps", &o.color_map, "also make color maps, as FOLDER/name.exr")
-      .more("Every paint that was read at two or more angles of incidence gets a map, and the paint written names it.");
+      .more(
+          "A paint gets a map if its readings meet flakes at two or more angles of incidence, a degree apart within "
+          "the "
+          "coat, and the paint written names the map. Several views under one light do so: light at 45 degrees meets "
+          "the flakes that show it at 15 and at 110 degrees from specular at different angles.");
   spec.option("color-map-model", "MODEL", "isolines", &o.color_map_model, "what carries readings to other directions")
       .one_of({"better", "isolines", "aspecular"})
       .more(
@@ -91,7 +95,9 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "A paint that has a color map by isolines also gets tilted lobes, by which pictures under image light come "
           "close to the map. Each number makes a set that takes so many look-ups of prefiltered maps at a point; more "
           "look-ups are closer and slower, and render-osmesa chooses between the sets. A number that hardly helps "
-          "makes no set. A paint gets none where its lobes are within a visible difference of the map.");
+          "makes no set. A paint gets none where its lobes are within a visible difference of the map, nor where its "
+          "left-out readings do not tell, by two standard errors, that isolines are better than the aspecular angle, "
+          "unless --color-map-model asks for isolines. A fit takes seconds.");
   cli::add_common_options(spec, o.common, {.explain = true});
 }
 
@@ -183,6 +189,7 @@ void add_report(cli::ToolSpec& spec) {
       {"color_maps[].compared_rows",
        "number of readings behind these figures; they are measured, and none of them is interpolated from others"},
       {"color_maps[].negative_share", "share of the map that is outside the working space"},
+      {"without_tilts", "number of paints without tilted lobes because their readings do not support the map"},
       {"tilts[].name", "paint with a color map, unless --tilts is none"},
       {"tilts[].lobes_de00",
        "mean color difference between its lobes and the map, in lamps of several sizes all around"},

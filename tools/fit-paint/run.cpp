@@ -114,7 +114,7 @@ class Run {
         tally_.add_failure(batch[i], fmt::format("{}:{}", name, lines[i]), results[i].error().message);
       }
       const std::string where = fmt::format("{}:{}", name, lines[i]);
-      GONIO_ASSIGN(const std::optional<brdf::ColorMap> map, maps_.add(batch[i], nullptr, where));
+      GONIO_ASSIGN(const std::optional<MadeMap> map, maps_.add(batch[i], nullptr, where));
       if (results[i].ok()) tilts_.add(batch[i], map, name, where);
       GONIO_TRY(writer_.write(batch[i]));
     }
@@ -156,7 +156,7 @@ class Run {
     } else {
       tally_.add_failure(target.paint, input.name, fit.error().message);
     }
-    GONIO_ASSIGN(const std::optional<brdf::ColorMap> map, maps_.add(target.paint, target.source.get(), input.name));
+    GONIO_ASSIGN(const std::optional<MadeMap> map, maps_.add(target.paint, target.source.get(), input.name));
     tilts_.add(target.paint, map, input.name, input.name);
     return writer_.write(target.paint);
   }

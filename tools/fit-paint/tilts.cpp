@@ -31,10 +31,15 @@ Result<void> Tilts::begin() {
   return {};
 }
 
-void Tilts::add(paint::Paint& paint, const std::optional<brdf::ColorMap>& made, const std::string& input,
+void Tilts::add(paint::Paint& paint, const std::optional<MadeMap>& made, const std::string& input,
                 const std::string& where) {
   if (lookups_.empty() || !paint.lobes || !paint.color_map) return;
-  std::optional<brdf::ColorMap> map = made;
+  if (made && !made->supported) {
+    ++unsupported_;
+    return;
+  }
+  std::optional<brdf::ColorMap> map;
+  if (made) map = made->map;
   if (!map) {
     const std::string path = (std::filesystem::path(input).parent_path() / paint.color_map->href).string();
     auto read = image::read_color_map(path);
@@ -62,6 +67,12 @@ void Tilts::add(paint::Paint& paint, const std::optional<brdf::ColorMap>& made, 
 }
 
 void Tilts::finish() {
+  if (unsupported_ > 0)
+    session_.say(
+        fmt::format("{}: no tilted lobes for {} paints, as left-out readings do not tell that their maps are "
+                    "better than the aspecular angle; --color-map-model isolines makes them",
+                    session_.tool(), unsupported_));
+  session_.results()["without_tilts"] = unsupported_;
   if (maps_ == 0) return;
   session_.say(fmt::format("{}: tilted lobes for {} of {} paints with color maps, {:.2f} s each", session_.tool(),
                            tilted_, maps_, time_s_ / maps_));

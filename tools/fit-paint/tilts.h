@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "brdf/color_map.h"
 #include "cli/tool.h"
+#include "color_maps.h"
 #include "formats/basis.h"
 #include "paint/paint.h"
 #include "tool.h"
@@ -25,9 +25,8 @@ class Tilts {
 
   // Fits the tilted lobes of a paint that has lobes: to the map that was made for it in this run or, where there is
   // none, to the one that the paint names, which lies beside the file `input`. A map that cannot be read is told by a
-  // warning, and the paint gets no tilted lobes.
-  void add(paint::Paint& paint, const std::optional<brdf::ColorMap>& made, const std::string& input,
-           const std::string& where);
+  // warning, and the paint gets no tilted lobes. Nor does one whose new map its readings do not support.
+  void add(paint::Paint& paint, const std::optional<MadeMap>& made, const std::string& input, const std::string& where);
 
   // Puts the number of paints with tilted lobes into the summary.
   void finish();
@@ -37,7 +36,7 @@ class Tilts {
   const formats::Basis& basis_;
   cli::Session& session_;
   std::vector<int> lookups_;
-  int maps_ = 0, tilted_ = 0;
+  int maps_ = 0, tilted_ = 0, unsupported_ = 0;
   double time_s_ = 0;
 };
 

@@ -16,8 +16,19 @@ namespace goniochrome::fit {
 
 namespace {
 
-constexpr std::array<std::size_t, 5> kViews = {1, 3, 5, 8, 11};  // 20, 45, 60, 75, 85 deg
-constexpr std::size_t kMostKept = 4096;                          // targets whose coats' rings are kept: 2 kB each
+constexpr std::array<std::size_t, kCoatErrorViews_deg.size()> kViews = {1, 3, 5, 8, 11};  // among brdf::kCoatViews_deg
+static_assert(brdf::kCoatViews_deg[kViews[0]] == kCoatErrorViews_deg[0] &&
+              brdf::kCoatViews_deg[kViews[4]] == kCoatErrorViews_deg[4]);
+constexpr std::size_t kMostKept = 4096;  // targets whose coats' rings are kept: 2 kB each
+
+// Rings within the width of the sun, the smallest light of an environment, are not told apart in a picture.
+constexpr double kSun_deg = 0.53;
+
+// The first ring that counts.
+int first_ring() {
+  const std::span<const double> rings = brdf::ring_angles_rad();
+  return static_cast<int>(std::ranges::lower_bound(rings, kSun_deg * kDegree) - rings.begin());
+}
 
 // Rows of equal length, one behind the other, so that loops over a row run over neighbors in memory.
 struct RowMajor {
@@ -82,6 +93,20 @@ std::vector<double> lobes_at(const std::vector<double>& angles_deg, const std::v
   return values;
 }
 
+// The shares of a coat's light within the rings that count.
+std::vector<double> wanted_of(const brdf::RoughCoat& coat, std::size_t view) {
+  std::vector<double> within = brdf::coat_within(coat, view);
+  within.erase(within.begin(), within.begin() + first_ring());
+  return within;
+}
+
+// Leaves the part e of an error e + floor: its square, and the gradient of that.
+void leave_out(double floor, SquaredError& error) {
+  const double whole = std::sqrt(error.value), rest = std::max(whole - floor, 0.0);
+  error.value = rest * rest;
+  for (double& slope : error.gradient) slope *= whole > 0 ? rest / whole : 0;
+}
+
 struct Workspace {
   RowMajor a;
   std::vector<double> sums, gradient;
@@ -93,7 +118,7 @@ struct Workspace {
 // -E log(cos psi) cos^(E+1) psi. The columns are the same for all coats.
 struct BasisErrors::CoatShape {
   CoatShape(const std::vector<double>& exponents, bool mirror) {
-    const std::span<const double> rings = brdf::ring_angles_rad();
+    const std::span<const double> rings = brdf::ring_angles_rad().subspan(static_cast<std::size_t>(first_ring()));
     const int rows = static_cast<int>(rings.size()), lobes = static_cast<int>(exponents.size());
     const int pivots = lobes + (mirror ? 1 : 0);
     within.resize(rows, pivots);
@@ -139,7 +164,7 @@ BasisErrors::BasisErrors(const std::vector<BasisTarget>& targets) : targets_(tar
   parallel_for(targets.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t v = 0; targets[i].coat && v < kViews.size(); ++v)
-        wanted_[i].push_back(brdf::coat_within(*targets[i].coat, kViews[v]));
+        wanted_[i].push_back(wanted_of(*targets[i].coat, kViews[v]));
   });
 }
 
@@ -150,12 +175,9 @@ void BasisErrors::add_coat_error(std::size_t i, const std::vector<double>& expon
   const int rows = shape.within.rows, columns = shape.within.columns, lobes = static_cast<int>(exponents.size());
   std::vector<double> right(static_cast<std::size_t>(shape.turned.columns));
   for (std::size_t v = 0; v < kViews.size(); ++v) {
-    const double weight =
-        target.coat_weight *
-        brdf::fresnel_dielectric(std::cos(brdf::kCoatViews_deg[kViews[v]] * kDegree), brdf::kCoatIndex);
-    const double scale = weight * weight / (static_cast<double>(kViews.size()) * rows);
+    const double scale = target.coat_weights[v] * target.coat_weights[v] / rows;
     std::vector<double> made;
-    if (wanted_.empty()) made = brdf::coat_within(*target.coat, kViews[v]);
+    if (wanted_.empty()) made = wanted_of(*target.coat, kViews[v]);
     const std::vector<double>& wanted = wanted_.empty() ? made : wanted_[i][v];
     std::ranges::fill(right, 0.0);
     for (int k = 0; k < rows; ++k)
@@ -236,6 +258,7 @@ std::vector<SquaredError> BasisErrors::at(const std::vector<double>& exponents, 
     for (std::size_t i = begin; i < end; ++i) {
       errors[i] = squared_error(i, exponents, lobes_at_angles[shape_of_[i]], with_gradient);
       if (targets_[i].coat) add_coat_error(i, exponents, *coats[targets_[i].mirror], with_gradient, errors[i]);
+      if (targets_[i].floor > 0) leave_out(targets_[i].floor, errors[i]);
     }
   });
   return errors;

@@ -27,7 +27,7 @@ std::vector<BasisTarget> targets(int count) {
       target.rows.push_back({angle, {value, value * unit(random), 0.1 * unit(random)}, 0.2 + unit(random)});
     }
     if (i % 3 == 0) target.coat = *brdf::rough_coat_of({{60, 30 + 10.0 * (i % 5)}}, brdf::kCoatIndex);
-    target.coat_weight = 0.5, target.mirror = i % 2 == 0;
+    target.coat_weights = {.1, .2, .2, .3, .2}, target.mirror = i % 2 == 0;
     all.push_back(target);
   }
   return all;
