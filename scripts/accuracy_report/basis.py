@@ -17,7 +17,7 @@ def reading(run, method, starts):
 
 
 def by_number(run):
-    """Rows (basis, lobes, exponents, largest and mean error, mean dE00) of the sets of 1 to 11 lobes and of the basis made by hand."""
+    """Rows (basis, lobes, exponents, largest and mean error, mean dE00) of the sets of 1 to 11 lobes and of the one made by hand."""
     most = 7 if run.quick else 11
     found, _ = run.tool("fit-basis", run.paints, "--lobes", f"1..{most}", "--each", run.work / "each-", "-o",
                         run.work / "most.basis.xml")

@@ -483,6 +483,15 @@ cornell() {
   [[ "$output" == *"give one, and run once for each"* ]]
 }
 
+@test "a map that six readings do not support gets no tilted lobes, unless isolines are asked for" {
+  fit-paint -q -b "$basis" "$TESTDATA/paints.paints.xml#candy_red" -o out.xml --color-map maps --tilts 2 --report r.json
+  run ! grep -q '<tilts' out.xml
+  jq -e '.results.without_tilts == 1 and (.results.color_maps[0].model == "isolines")' r.json
+  fit-paint -q -b "$basis" "$TESTDATA/paints.paints.xml#candy_red" -o out.xml --color-map maps --tilts 2 \
+    --color-map-model isolines --report r.json
+  jq -e '.results.without_tilts == 0 and (.results.tilts | length == 1)' r.json
+}
+
 @test "--tilts makes sets of tilted lobes where a color map travels; missing and wrong counts are refused" {
   fit-paint -q -b "$basis" "$TESTDATA/travel.paints.xml" -o out.xml --color-map maps --tilts 6,10 --report r.json
   [ "$(grep -c '<tilts xmlns="urn:goniochrome:tilts:1">' out.xml)" -eq 2 ]
