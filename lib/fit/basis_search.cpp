@@ -42,7 +42,7 @@ Result<BasisTarget> basis_target(const paint::Paint& paint, const BasisTargetOpt
     const color::Lab lab = curve.at(angle);
     target.rows.push_back({angle, non_negative(color::rgb_from_lab(lab, white)), row_weight(options, lab.L)});
   }
-  GONIO_ASSIGN(const double index, brdf::coat_index_of(paint.gloss));
+  GONIO_ASSIGN(const double index, brdf::coat_index_of_paint(paint));
   GONIO_ASSIGN(target.coat, brdf::rough_coat_of(paint.gloss, brdf::mirror_index(index)));
   target.coat_weight = target.rows.back().weight;
   target.mirror = options.mirror;
