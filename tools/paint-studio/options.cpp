@@ -27,7 +27,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "those of paint-edit(1), the lobes are fitted as fit-paint(1) does by default, distances are those of "
       "colorsnap(1), and the picture is drawn by the programs of the engine gl of render-osmesa(1). The page shows "
       "the command line that makes the same paint from the same library. It hands the paint over as paint XML, as "
-      "CSV, and as CxF with the code of the nearest paint. It opens paint XML files, and saves sessions.",
+      "CSV, and as CxF with the code of the nearest paint. It opens paint XML files, and saves sessions, which hold "
+      "the pictures of the boards.",
       "All parts of the mesh wear the design, but for those that nobody paints, such as glass and tires: these are "
       "told by their names, as in render-osmesa. Beside the traced views of --transport, the page shows no shadows and "
       "no light from one part to another, and the ground of the environment lies below the mesh as render-osmesa lays "
@@ -39,7 +40,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "The compiled library lies in ../lib/goniochrome beside the program, as the files studio.wasm and "
       "studio.html, or in $GONIOCHROME_MODULE_PATH. Where the compiler for WebAssembly was missing when the tools "
       "were built, paint-studio says which packages it takes, and the exit status is 3."};
-  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+  spec.inputs = {"PAINTS",
+                 "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.paints};
   spec.heading = "what the page holds";
   spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh,
