@@ -246,6 +246,6 @@ refused() {
   paint-sbrdf -q worn.sbrdf.exr --tile 2x1 -o named.exr
   oiiotool piped.exr named.exr --fail 0 --diff
   paint-sbrdf -q "$wood" | paint-sbrdf -q - p.xml#dark --mix 0.5 -o mixed.exr
-  paint-sbrdf -q -- -#light --size 1x1 -o light.exr <p.xml
+  paint-sbrdf -q --size 1x1 -o light.exr -- "-#light" <p.xml
   [ "$(channel light.exr diffuse.R 0 0)" = 0.250000000 ]
 }
