@@ -110,7 +110,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("output,o", "FILE", "index.tsv", &o.output, "table to write; - is standard output");
   spec.option("curve", "FILE", "curve.svg", &o.curves, "difference of one paint against viewing angle, .csv or .svg")
       .more(
-          "There is a curve for each light and misalignment. The name - writes the CSV to standard output, as for "
+          "There is a curve for each light and misalignment, which breaks within glare. The name - writes the CSV to "
+          "standard output, as for "
           "draw-plot(1).");
   spec.option("misalignments", "LIST", "1,2,3,5", &o.misalignments_deg, "angles of --curve, positive toward the light")
       .from(-90, 90)
