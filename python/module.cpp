@@ -15,6 +15,7 @@
 #include "envmap/prefiltered.h"
 #include "fit/paint_fit.h"
 #include "formats/basis.h"
+#include "formats/paint_source.h"
 #include "formats/xml.h"
 #include "paint/curve.h"
 #include "paint/metrics.h"
@@ -225,7 +226,14 @@ void add_paints(py::module_& module) {
         return view_of(exponents.data(), {static_cast<py::ssize_t>(exponents.size())}, self);
       });
   module.def(
-      "read_paints", [](const std::string& path) { return value_of(formats::read_paints(path)); }, py::arg("path"));
+      "read_paints",
+      [](const std::string& path) {
+        std::vector<std::string> warnings;
+        auto paints = value_of(formats::read_paints(path, &warnings));
+        for (const std::string& warning : warnings) py::module_::import("warnings").attr("warn")(warning);
+        return paints;
+      },
+      py::arg("path"));
   module.def("write_paints", write_paints, py::arg("path"), py::arg("paints"));
   module.def(
       "read_basis", [](const std::string& path) { return value_of(formats::read_basis(path)); }, py::arg("path"));

@@ -7,7 +7,7 @@
 #include "base/file.h"
 #include "brdf/measured.h"
 #include "cli/options.h"
-#include "formats/xml.h"
+#include "formats/paint_source.h"
 #include "paint/curve.h"
 
 namespace goniochrome::tool {
@@ -32,7 +32,7 @@ inline paint::TargetCurve::Kind target_kind(const std::string& target) {
 // A file of paints, open, or a measured BRDF, to be read when its turn comes.
 struct FitInput {
   std::string name;
-  std::optional<formats::PaintReader> reader;
+  formats::PaintSourcePointer paints;
   std::optional<InputFile> measured;
 
   // `reference` is FILE, or FILE#NAMES for some of its paints. Error: the file cannot be opened.
@@ -43,12 +43,10 @@ struct FitInput {
     GONIO_ASSIGN(const std::string_view head, file.peek());
     if (brdf::looks_measured(path, head)) {
       if (names) return input_error("{}: is one measured BRDF without names: leave out #{}", name, *names);
-      return FitInput{name, std::nullopt, std::move(file)};
+      return FitInput{name, nullptr, std::move(file)};
     }
-    std::optional<formats::NameChoice> choice;
-    if (names) choice.emplace(std::move(*names));
-    formats::PaintReader reader(std::move(file), std::move(choice));
-    return FitInput{name, std::move(reader), std::nullopt};
+    GONIO_ASSIGN(formats::PaintSourcePointer paints, formats::open_paints(std::move(file), std::move(names)));
+    return FitInput{name, std::move(paints), std::nullopt};
   }
 };
 

@@ -19,9 +19,9 @@ struct Prolog {
   std::vector<formats::Processing> processing;
   std::vector<std::string> foreign;
 
-  // Appends what a PaintReader, PaintBatches or another Prolog has.
+  // Appends what a PaintSource, PaintReader, PaintBatches or another Prolog has.
   template <class Source>
-  void take(const Source& source) {
+  void take(Source& source) {
     const auto& steps = source.processing();
     const auto& others = source.foreign();
     processing.insert(processing.end(), steps.begin(), steps.end());
@@ -62,12 +62,30 @@ inline Result<void> write_paints(const std::string& output, const std::vector<pa
   return writer.finish();
 }
 
+// Tells what sources found in their files.
+inline void tell_warnings(const std::vector<std::string>& warnings, cli::Session& session) {
+  for (const std::string& warning : warnings) session.warn(warning);
+}
+
+// All paints of a file, whose warnings are told.
+inline Result<std::vector<paint::Paint>> all_paints(formats::PaintSource& source, cli::Session& session) {
+  std::vector<std::string> warnings;
+  auto paints = formats::read_paints(source, &warnings);
+  tell_warnings(warnings, session);
+  return paints;
+}
+inline Result<std::vector<paint::Paint>> all_paints(const std::string& reference, cli::Session& session) {
+  GONIO_ASSIGN(const formats::PaintSourcePointer source, formats::open_paints(reference));
+  return all_paints(*source, session);
+}
+
 // Hands the paints to `take` in batches until they end. `left_out` is that of PaintBatches::next().
 template <class Take>
-Result<void> for_each_batch(formats::PaintBatches& paints, const cli::Session& session, Take&& take,
+Result<void> for_each_batch(formats::PaintBatches& paints, cli::Session& session, Take&& take,
                             const std::function<void(const Error&)>& left_out = {}) {
   for (std::size_t count = 0;;) {
     GONIO_ASSIGN(const std::vector<paint::Paint> batch, paints.next(left_out));
+    tell_warnings(paints.take_warnings(), session);
     if (batch.empty()) return {};
     GONIO_TRY(take(batch));
     count += batch.size();
@@ -78,7 +96,7 @@ Result<void> for_each_batch(formats::PaintBatches& paints, const cli::Session& s
 // The whole way from inputs to output: `take` gets a batch and the writer for what it makes of it.
 template <class Take>
 Result<void> stream_paints(const std::vector<std::string>& inputs, const std::vector<std::string>& only,
-                           const std::string& output, const cli::Session& session, Take&& take) {
+                           const std::string& output, cli::Session& session, Take&& take) {
   GONIO_ASSIGN(formats::PaintBatches paints, formats::PaintBatches::open(inputs, only));
   Prolog prolog;
   prolog.take(paints);

@@ -321,6 +321,12 @@ Result<double> coat_index_of(const std::vector<paint::GlossReading>& readings) {
   return index;
 }
 
+Result<double> coat_index_of_paint(const paint::Paint& paint, const std::vector<paint::GlossReading>& assumed) {
+  if (paint.coat_index == paint::kNoCoat) return paint::kNoCoat;
+  GONIO_ASSIGN(const double asked, coat_index_of(paint.gloss.empty() ? assumed : paint.gloss));
+  return std::max(asked, paint.coat_index.value_or(paint::kNoCoat));
+}
+
 double gloss_units(const GlossTable& table, const GlossColumns& meter, const paint::LobeFit& fit, double gloss_deg) {
   const double cosine = math::cos(meter.angle_deg * kDegree), base = coat_passages(fit.coat_index, cosine, cosine);
   const double fresnel = gloss_deg == meter.angle_deg ? 1 : coat_fresnel(cosine, gloss_deg);

@@ -53,6 +53,10 @@ Result<double> smooth_gloss(double angle_deg, double coat_index);
 // above 0. Error: an angle that no meter has.
 Result<double> coat_index_of(const std::vector<paint::GlossReading>& readings);
 
+// The index of the coat of a paint: what it states or, where its gloss asks for more, what that asks for. A paint that
+// states kNoCoat has none. `assumed` are the readings of a paint that states no gloss. Error: as above.
+Result<double> coat_index_of_paint(const paint::Paint& paint, const std::vector<paint::GlossReading>& assumed = {});
+
 // The index, from kCoatIndex to kBlackGlassIndex, of the smooth coat whose mirror image is `brighter` times that of
 // kCoatIndex, at an incidence of that cosine.
 double coat_index_of_mirror(double brighter, double cosine);

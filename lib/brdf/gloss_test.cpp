@@ -240,6 +240,22 @@ TEST(Gloss, TheIndexOfACoatIsWhatItsGlossAsksFor) {
     }
 }
 
+TEST(Gloss, TheCoatOfAPaintIsWhatItStatesOrItsGlossAsksFor) {
+  const auto index = [](std::optional<double> stated, const std::vector<paint::GlossReading>& gloss,
+                        const std::vector<paint::GlossReading>& assumed = {}) {
+    paint::Paint paint;
+    paint.coat_index = stated, paint.gloss = gloss;
+    return *coat_index_of_paint(paint, assumed);
+  };
+  EXPECT_EQ(index({}, {}), paint::kNoCoat);
+  EXPECT_EQ(index({}, {{60, 40}}), kCoatIndex);
+  EXPECT_EQ(index(1.6, {{60, 40}}), 1.6);
+  EXPECT_NEAR(index(kCoatIndex, {{60, 100}}), kBlackGlassIndex, 1e-9);
+  EXPECT_EQ(index(paint::kNoCoat, {{60, 100}}), paint::kNoCoat) << "a paint may say that it has none";
+  EXPECT_EQ(index({}, {}, {{60, 40}}), kCoatIndex);
+  EXPECT_EQ(index({}, {{60, 0}}, {{60, 40}}), paint::kNoCoat) << "readings go before those assumed";
+}
+
 // The base is read through the coat.
 TEST(Gloss, ACoatTakesFromWhatTheBaseReads) {
   paint::LobeFit white = empty_fit();

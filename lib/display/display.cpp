@@ -62,7 +62,8 @@ ocio::ConfigRcPtr built_in_config() {
 
 // Working space -> CIE XYZ (D65) -> ACES2065-1, the space that every configuration of version 2 can be entered by ->
 // display.
-ocio::ConstCPUProcessorRcPtr processor(const ocio::ConstConfigRcPtr& config, const char* display, const char* view) {
+ocio::ConstCPUProcessorRcPtr processor(const ocio::ConstConfigRcPtr& config, const char* display, const char* view,
+                                       ocio::TransformDirection direction) {
   auto matrix = ocio::MatrixTransform::Create();
   const color::Xyz r = color::xyz_d65_from_rgb({1, 0, 0}), g = color::xyz_d65_from_rgb({0, 1, 0}),
                    b = color::xyz_d65_from_rgb({0, 0, 1});
@@ -76,12 +77,16 @@ ocio::ConstCPUProcessorRcPtr processor(const ocio::ConstConfigRcPtr& config, con
   group->appendTransform(matrix);
   group->appendTransform(builtin(kApToXyz, ocio::TRANSFORM_DIR_INVERSE));
   group->appendTransform(to_display);
-  return config->getProcessor(group)->getDefaultCPUProcessor();
+  return config->getProcessor(group, direction)->getDefaultCPUProcessor();
 }
 
 struct Choice {
   std::string display, view;
 };
+
+std::string full_name(const Choice& choice) {
+  return choice.display + " / " + choice.view;
+}
 
 std::vector<Choice> choices(const ocio::ConstConfigRcPtr& config) {
   std::vector<Choice> all;
@@ -102,7 +107,7 @@ Result<Choice> find_view(const std::vector<Choice>& all, const std::string& want
   std::string known;
   for (const Choice& choice : all) {
     const std::string full = choice.display + "/" + choice.view;
-    if (lower(wanted) == lower(full)) return choice;
+    if (lower(wanted) == lower(full) || lower(wanted) == lower(full_name(choice))) return choice;
     if (lower(wanted) == lower(choice.view)) return choice;  // the default display's come first
     known += (known.empty() ? "\"" : ", \"") + (choice.display == all.front().display ? choice.view : full) + "\"";
   }
@@ -136,7 +141,9 @@ std::optional<image::SignalCode> signal_of(const std::string& color_space) {
 struct Display::State {
   std::string name;
   std::optional<image::SignalCode> signal = image::SignalCode{};
-  ocio::ConstCPUProcessorRcPtr processor;  // none: the view "Paint", which needs no OpenColorIO
+  ocio::ConstConfigRcPtr config;           // none: the view "Paint", which needs no OpenColorIO
+  ocio::ConstCPUProcessorRcPtr processor;  // of that
+  Choice choice;
 };
 
 Display::Display(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -151,9 +158,12 @@ Result<Display> Display::make(const std::string& view) {
   const char* path = std::getenv("OCIO");
   const bool own = path != nullptr && *path != '\0';
   const std::string wanted = lower(view);
-  if (!own && (wanted.empty() || wanted == lower(kPaint) || wanted == lower(std::string(kSrgb) + "/" + kPaint))) {
+  const bool is_paint = wanted.empty() || wanted == lower(kPaint) ||
+                        wanted == lower(std::string(kSrgb) + "/" + kPaint) ||
+                        wanted == lower(full_name({kSrgb, kPaint}));
+  if (!own && is_paint) {
     auto state = std::make_unique<State>();
-    state->name = std::string(kSrgb) + " / " + kPaint;
+    state->name = full_name({kSrgb, kPaint});
     return Display(std::move(state));
   }
   try {
@@ -164,10 +174,11 @@ Result<Display> Display::make(const std::string& view) {
     if (all.empty()) return input_error("{}: the OpenColorIO configuration of $OCIO has no displays", path);
     GONIO_ASSIGN(const Choice choice, find_view(all, view));
     auto state = std::make_unique<State>();
-    state->name = choice.display + " / " + choice.view;
+    state->name = full_name(choice);
     const std::string space = config->getDisplayViewColorSpaceName(choice.display.c_str(), choice.view.c_str());
     state->signal = signal_of(space.empty() || space == "<USE_DISPLAY_NAME>" ? choice.display : space);
-    state->processor = processor(config, choice.display.c_str(), choice.view.c_str());
+    state->processor = processor(config, choice.display.c_str(), choice.view.c_str(), ocio::TRANSFORM_DIR_FORWARD);
+    state->config = config, state->choice = choice;
     return Display(std::move(state));
   } catch (const ocio::Exception& refused) {
     if (!own) return Error{ErrorKind::kBug, fmt::format("OpenColorIO: {}", refused.what())};
@@ -190,11 +201,16 @@ color::Rgb painted(const float* rgba, double gain) {
   return paint_view(color::rec709_from_rec2020(over_backdrop(rgba, gain)));
 }
 
+// The inverse of srgb_signal().
+double srgb_light(double signal) {
+  return signal <= 12.92 * 0.0031308 ? signal / 12.92 : std::pow((signal + 0.055) / 1.055, 2.4);
+}
+
 // The codes of an 8-bit sRGB display: code k is shown from the light on whose signal is (k - 1/2)/255.
 class SrgbCodes {
  public:
   SrgbCodes() {
-    for (std::size_t k = 0; k < 255; ++k) ends_[k] = light_of((static_cast<double>(k) + 0.5) / 255);
+    for (std::size_t k = 0; k < 255; ++k) ends_[k] = srgb_light((static_cast<double>(k) + 0.5) / 255);
     ends_[255] = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0, k = 0; i < kSteps; ++i) {
       while (ends_[k] <= static_cast<double>(i) / kSteps) ++k;
@@ -213,11 +229,6 @@ class SrgbCodes {
 
  private:
   static constexpr std::size_t kSteps = 4096;
-  // The inverse of srgb_signal().
-  static double light_of(double signal) {
-    return signal <= 12.92 * 0.0031308 ? signal / 12.92 : std::pow((signal + 0.055) / 1.055, 2.4);
-  }
-
   double ends_[256];
   std::uint8_t first_[kSteps];  // the code of the lower end of each step
 };
@@ -276,6 +287,32 @@ Result<image::Image> Display::image(const image::Image& picture, double stops) c
     return input_error("OpenColorIO: {}", refused.what());
   }
   return shown;
+}
+
+Result<void> Display::undo(image::Image& signals) const {
+  const std::size_t pixels = static_cast<std::size_t>(signals.width) * static_cast<std::size_t>(signals.height);
+  if (!state_->processor) {
+    parallel_for(pixels, 1 << 12, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        float* p = &signals.data[3 * i];
+        const color::Rgb light =
+            color::rec2020_from_rec709(paint_view_undone({srgb_light(p[0]), srgb_light(p[1]), srgb_light(p[2])}));
+        for (int c = 0; c < 3; ++c) p[c] = static_cast<float>(light[c]);
+      }
+    });
+    return {};
+  }
+  try {
+    const auto inverse = processor(state_->config, state_->choice.display.c_str(), state_->choice.view.c_str(),
+                                   ocio::TRANSFORM_DIR_INVERSE);
+    parallel_for(pixels, 1 << 12, [&](std::size_t begin, std::size_t end) {
+      ocio::PackedImageDesc run(&signals.data[3 * begin], static_cast<long>(end - begin), 1, 3);
+      inverse->apply(run);
+    });
+  } catch (const ocio::Exception& refused) {
+    return input_error("the view \"{}\" cannot be undone: OpenColorIO: {}", state_->name, refused.what());
+  }
+  return {};
 }
 
 }  // namespace goniochrome::display

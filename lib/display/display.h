@@ -18,8 +18,8 @@ namespace goniochrome::display {
 // its default display, and "Display/View" one of any display.
 class Display {
  public:
-  // An empty `view` is the default one. Upper and lower case are the same. Error: there is no such view, and the
-  // message lists those there are.
+  // An empty `view` is the default one. Upper and lower case are the same, and name() names a view too. Error: there is
+  // no such view, and the message lists those there are.
   static Result<Display> make(const std::string& view);
   Display(Display&&) noexcept;
   ~Display();
@@ -31,6 +31,10 @@ class Display {
   // The same as 8 bits, rounded to the nearest, into `shown`, whose memory is used again. The view "Paint" is exact
   // here and takes 10 ns a pixel. `shown.signal` is that of the display, or none where its name does not tell.
   Result<void> show(const image::Image& picture, double stops, image::ByteImage& shown) const;
+
+  // Brings the signals of the display, R G B in 0..1, back to light in the working space, exposed as it was shown, by
+  // the exact inverse of Paint and the inverse that OpenColorIO has of other views. Error: it has none.
+  Result<void> undo(image::Image& signals) const;
 
   // "sRGB / Paint"
   const std::string& name() const;

@@ -46,6 +46,30 @@ TEST(Display, BuiltInViewsShowTheirSignalsAndOthersAreRefused) {
               HasSubstr("no view \"filmic\": there are \"Paint\", \"Un-tone-mapped\", \"ACES SDR\""));
 }
 
+// Light that a view shows in gamut comes back. The control takes the signals for those of Paint.
+TEST(Display, UndoBringsBackTheLightOfEveryBuiltInView) {
+  unsetenv("OCIO");
+  for (const char* view : {"Paint", "sRGB / Paint", "Un-tone-mapped", "sRGB / ACES SDR"}) {
+    const auto display = Display::make(view);
+    ASSERT_TRUE(display.ok()) << display.error().message;
+    double control = 0;
+    for (const color::Rgb& rec709 :
+         {color::Rgb{0.18, 0.18, 0.18}, {0.5, 0.1, 0.05}, {0.05, 0.3, 0.6}, {0.02, 0.02, 0.01}}) {
+      const color::Rgb light = color::rec2020_from_rec709(rec709);
+      auto signals = display->image(one_pixel(light), 0);
+      ASSERT_TRUE(signals.ok());
+      image::Image as_paint = *signals;
+      ASSERT_TRUE(display->undo(*signals).ok());
+      ASSERT_TRUE(Display::make("Paint")->undo(as_paint).ok());
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(signals->data[static_cast<std::size_t>(c)], light[c], 0.01 * light[c] + 1e-3) << view;
+        control = std::max(control, std::abs(as_paint.data[static_cast<std::size_t>(c)] / light[c] - 1));
+      }
+    }
+    EXPECT_EQ(control > 0.2, std::string(view) == "sRGB / ACES SDR") << view;
+  }
+}
+
 // Every code, half a code on both sides of each end, and what lies outside of 0..1.
 TEST(Display, BytesOfThePaintViewAreTheNearestCodes) {
   unsetenv("OCIO");

@@ -52,9 +52,8 @@ std::array<double, kCoatErrorViews_deg.size()> coat_weights(const BasisTargetOpt
 
 Result<BasisTarget> basis_target(const paint::Paint& paint, const BasisTargetOptions& options) {
   GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(paint)));
-  GONIO_ASSIGN(const double index, brdf::coat_index_of(paint.gloss));
-  const double passages_index = paint.coat_index == paint::kNoCoat ? paint::kNoCoat : index;
-  GONIO_ASSIGN(const Target fitted, target_rows(paint, options.target, white, {}, passages_index));
+  GONIO_ASSIGN(const double index, brdf::coat_index_of_paint(paint));
+  GONIO_ASSIGN(const Target fitted, target_rows(paint, options.target, white, {}, index));
 
   BasisTarget target{.name = paint.name, .rows = {}};
   double importance = 0;

@@ -16,7 +16,7 @@
 #include "fit/internal/target_rows.h"
 #include "fit/paint_fit.h"
 #include "formats/csv.h"
-#include "formats/xml.h"
+#include "formats/paint_source.h"
 
 namespace goniochrome::fit::coated_readings_test {
 namespace {

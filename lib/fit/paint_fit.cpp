@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
+#include "fit/highlight_end.h"
 #include "fit/internal/brdf_fit.h"
 #include "fit/internal/coat_readings.h"
 #include "fit/internal/flake_fit.h"
@@ -203,13 +204,8 @@ const char* fit_status_name(FitStatus status) {
 PaintFitter::PaintFitter(formats::Basis basis, FitOptions options)
     : basis_(std::move(basis)), options_(std::move(options)), gloss_(basis_.exponents) {}
 
-// Of a paint with these readings of gloss.
-Result<double> PaintFitter::coat_index(const paint::Paint& paint,
-                                       const std::vector<paint::GlossReading>& readings) const {
-  if (options_.coat_index) return *options_.coat_index;
-  if (paint.coat_index == paint::kNoCoat) return paint::kNoCoat;
-  GONIO_ASSIGN(const double asked, brdf::coat_index_of(readings));
-  return std::max(asked, paint.coat_index.value_or(paint::kNoCoat));
+Result<double> PaintFitter::coat_index(const paint::Paint& paint) const {
+  return options_.coat_index ? *options_.coat_index : brdf::coat_index_of_paint(paint, options_.assumed_gloss);
 }
 
 // Every lobe of the basis without weight.
@@ -302,7 +298,7 @@ std::string PaintFitter::limit(const std::vector<paint::LabReading>& readings, c
 Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint, const Deadline& deadline) const {
   const Stopwatch clock;
   const std::vector<paint::GlossReading>& readings = paint.gloss.empty() ? options_.assumed_gloss : paint.gloss;
-  GONIO_ASSIGN(const double coat, coat_index(paint, readings));
+  GONIO_ASSIGN(const double coat, coat_index(paint));
   PaintFit out = started(coat);
   GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(paint)));
   GONIO_ASSIGN(const Target target, target_rows(paint, options_.target, white, basis_.exponents, coat));

@@ -41,9 +41,8 @@ struct FitOptions {
   bool perceptual_weights = true;                       // rows weighted by dL*/dY of the target
   std::vector<paint::GlossReading> assumed_gloss = {};  // for paints that state no gloss
   int most_lobes = 0;                                   // flake lobes to use, the best subset of the basis; 0: all
-  // Of the coat of every paint. None: what the paint states or, where it states nothing, what its gloss asks for, see
-  // brdf::coat_index_of(). A coat that is stated is taken with the index that its gloss asks for where that is higher.
-  // Measured BRDFs have no coat unless one is told here.
+  // Of the coat of every paint. None: that of brdf::coat_index_of_paint(). Measured BRDFs have no coat unless one is
+  // told here.
   std::optional<double> coat_index = {};
   double prune_de00 = 0;               // --prune: lobes that move no color by more are dropped; 0: none are
   std::vector<double> views_deg = {};  // weights at these angles of the viewer too; empty: those of `view_sets`
@@ -179,7 +178,7 @@ class PaintFitter {
   const FitOptions& options() const { return options_; }
 
  private:
-  Result<double> coat_index(const paint::Paint& paint, const std::vector<paint::GlossReading>& readings) const;
+  Result<double> coat_index(const paint::Paint& paint) const;
   PaintFit started(double coat_index) const;
   Result<FiveAngleFigures> from_five_angles(const BrdfTarget& brdf, const Deadline& deadline) const;
   void finish(const std::vector<paint::LabReading>& readings, const color::Xyz& white, PaintFit& fit) const;

@@ -12,7 +12,7 @@
 #include "base/parallel.h"
 #include "base/testdata_for_test.h"
 #include "base/text.h"
-#include "formats/xml.h"
+#include "formats/paint_source.h"
 #include "math/cosine_power.h"
 #include "math/least_squares.h"
 

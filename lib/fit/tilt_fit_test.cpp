@@ -13,7 +13,7 @@
 #include "brdf/tilted_lobes.h"
 #include "fit/color_map_fit.h"
 #include "fit/paint_fit.h"
-#include "formats/xml.h"
+#include "formats/paint_source.h"
 
 namespace goniochrome::fit::tilt_fit_test {
 namespace {

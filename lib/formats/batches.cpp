@@ -1,6 +1,7 @@
 #include "formats/batches.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "base/clock.h"
 
@@ -19,23 +20,23 @@ Result<PaintBatches> PaintBatches::open(std::vector<std::string> paths, const st
   batches.only_ = {only.begin(), only.end()};
   for (const std::string& name : batches.only_) batches.unmet_.emplace(name, WantedName(name));
   for (const std::string& path : paths) {
-    GONIO_ASSIGN(PaintReader reader, PaintReader::open(path));
-    batches.readers_.push_back(std::move(reader));
+    GONIO_ASSIGN(PaintSourcePointer source, open_paints(path));
+    const std::vector<std::string> warnings = source->warnings();
+    batches.warnings_.insert(batches.warnings_.end(), warnings.begin(), warnings.end());
+    batches.sources_.push_back(std::move(source));
   }
-  for (PaintReader& reader : batches.readers_) reader.read_prolog();
   return batches;
 }
 
 std::vector<Processing> PaintBatches::processing() const {
   std::vector<Processing> all;
-  for (const PaintReader& reader : readers_)
-    all.insert(all.end(), reader.processing().begin(), reader.processing().end());
+  for (const PaintSourcePointer& source : sources_) std::ranges::move(source->processing(), std::back_inserter(all));
   return all;
 }
 
 std::vector<std::string> PaintBatches::foreign() const {
   std::vector<std::string> all;
-  for (const PaintReader& reader : readers_) all.insert(all.end(), reader.foreign().begin(), reader.foreign().end());
+  for (const PaintSourcePointer& source : sources_) std::ranges::move(source->foreign(), std::back_inserter(all));
   return all;
 }
 
@@ -48,15 +49,15 @@ bool PaintBatches::is_wanted(const std::string& name) {
 Result<std::vector<paint::Paint>> PaintBatches::next(const std::function<void(const Error&)>& left_out) {
   const Stopwatch filling;
   std::vector<paint::Paint> batch;
-  while (batch.size() < size_ && current_ < readers_.size()) {
-    auto paint = readers_[current_].next();
+  while (batch.size() < size_ && current_ < sources_.size()) {
+    auto paint = sources_[current_]->next();
     if (!paint.ok()) {
       if (!left_out) return paint.error();
       left_out(paint.error());
     } else if (paint->has_value()) {
       if (is_wanted((*paint)->name)) batch.push_back(std::move(**paint));
     } else {
-      ++current_;
+      std::ranges::move(sources_[current_++]->closing_warnings(), std::back_inserter(warnings_));
     }
   }
   if (batch.empty() && !unmet_.empty()) return input_error("{}", unmet_.begin()->second.not_found());

@@ -5,17 +5,18 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
+#include "formats/paint_source.h"
 #include "formats/reference.h"
-#include "formats/xml.h"
 
 namespace goniochrome::formats {
 
 class PaintBatches {
  public:
-  // Opens all inputs (`-`, or no input at all, is standard input) and reads each as far as its first paint. If `only`
+  // Opens all inputs, in any format that open_paints() reads (`-`, or no input at all, is standard input). If `only`
   // has names, paints of other names are passed over. Error: the first input that cannot be opened.
   static Result<PaintBatches> open(std::vector<std::string> paths, const std::vector<std::string>& only = {});
 
@@ -28,10 +29,14 @@ class PaintBatches {
   // goes on behind it; without it, such a paint is the error. Error at the end: a name of `only` that no paint has.
   Result<std::vector<paint::Paint>> next(const std::function<void(const Error&)>& left_out = {});
 
+  // What the sources had to say since it was asked last.
+  std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
+
  private:
   bool is_wanted(const std::string& name);
 
-  std::vector<PaintReader> readers_;
+  std::vector<PaintSourcePointer> sources_;
+  std::vector<std::string> warnings_;
   std::set<std::string> only_;
   std::map<std::string, WantedName> unmet_;
   std::size_t current_ = 0, size_ = 1;

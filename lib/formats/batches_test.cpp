@@ -51,6 +51,22 @@ TEST_F(PaintBatchesTest, GiveAllPaintsOfAllInputsInOrder) {
   EXPECT_EQ(all.error, "");
 }
 
+TEST_F(PaintBatchesTest, GiveThePaintsOfTablesTooAndTellTheirWarnings) {
+  const std::string table = folder_.file("3.csv", "sample,L15,a15,b15,odd\ne,50,1,2,x\n");
+  auto batches = PaintBatches::open({first_, table});
+  ASSERT_TRUE(batches.ok()) << batches.error().message;
+  std::vector<std::string> names, warnings;
+  for (;;) {
+    const auto batch = batches->next();
+    ASSERT_TRUE(batch.ok()) << batch.error().message;
+    for (const std::string& warning : batches->take_warnings()) warnings.push_back(warning);
+    if (batch->empty()) break;
+    for (const paint::Paint& paint : *batch) names.push_back(paint.name);
+  }
+  EXPECT_THAT(names, ElementsAre("a", "b", "e"));
+  EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("odd")));
+}
+
 TEST_F(PaintBatchesTest, GiveOnlyThePaintsOfTheNamesAsked) {
   const Outcome some = read_all({first_, second_}, {"d", "b", "d"});
   EXPECT_THAT(some.names, ElementsAre("b", "d"));

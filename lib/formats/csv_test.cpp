@@ -7,7 +7,7 @@
 
 #include "base/testdata_for_test.h"
 #include "formats/internal/csv_for_test.h"
-#include "formats/xml.h"
+#include "formats/paint_source.h"
 
 namespace goniochrome::formats::csv_test {
 namespace {

@@ -203,6 +203,11 @@ PaintSourcePointer named_paints(std::string file, PaintSourcePointer all, NameCh
 Result<PaintSourcePointer> open_paints(const std::string& reference, const ImportOptions& options) {
   auto [path, names] = paint_reference(reference);
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
+  return open_paints(std::move(input), std::move(names), options);
+}
+
+Result<PaintSourcePointer> open_paints(InputFile input, std::optional<std::string> names,
+                                       const ImportOptions& options) {
   GONIO_ASSIGN(const std::string head, head_of(input));
   const auto format =
       std::ranges::find_if(paint_formats(), [&](const PaintFormat& candidate) { return candidate.looks(head); });
@@ -211,9 +216,28 @@ Result<PaintSourcePointer> open_paints(const std::string& reference, const Impor
         "{}: is neither paint XML nor a table, CxF, CGATS, workbook or file of an instrument: convert it by "
         "paint-convert",
         input.name());
+  std::string name = input.name();
   GONIO_ASSIGN(PaintSourcePointer source, format->open(std::move(input), options));
   if (!names) return source;
-  return named_paints(path, std::move(source), NameChoice(std::move(*names)));
+  return named_paints(std::move(name), std::move(source), NameChoice(std::move(*names)));
+}
+
+Result<std::vector<paint::Paint>> read_paints(const std::string& reference, std::vector<std::string>* warnings) {
+  GONIO_ASSIGN(const PaintSourcePointer source, open_paints(reference));
+  return read_paints(*source, warnings);
+}
+
+Result<std::vector<paint::Paint>> read_paints(PaintSource& source, std::vector<std::string>* warnings) {
+  std::vector<paint::Paint> paints;
+  for (;;) {
+    GONIO_ASSIGN(std::optional<paint::Paint> paint, source.next());
+    if (!paint) break;
+    paints.push_back(std::move(*paint));
+  }
+  if (warnings)
+    for (const auto& lines : {source.warnings(), source.closing_warnings()})
+      warnings->insert(warnings->end(), lines.begin(), lines.end());
+  return paints;
 }
 
 }  // namespace goniochrome::formats

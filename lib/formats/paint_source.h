@@ -53,7 +53,15 @@ Result<std::string> head_of(InputFile& input);
 // The paints of a source that have certain names. `file` is what errors call it.
 PaintSourcePointer named_paints(std::string file, PaintSourcePointer all, NameChoice choice);
 
-// Opens FILE, or FILE#NAMES for some of its paints. Error: the file cannot be read, or has none of the formats.
+// Opens FILE, or FILE#NAMES for some of its paints; or goes on with an open file, from which `names` are wanted. Error:
+// the file cannot be read, or has none of the formats.
 Result<PaintSourcePointer> open_paints(const std::string& reference, const ImportOptions& options = {});
+Result<PaintSourcePointer> open_paints(InputFile input, std::optional<std::string> names,
+                                       const ImportOptions& options = {});
+
+// All paints of a file, for tools that need them at once. `warnings`, if given, gets those of the source.
+Result<std::vector<paint::Paint>> read_paints(const std::string& reference,
+                                              std::vector<std::string>* warnings = nullptr);
+Result<std::vector<paint::Paint>> read_paints(PaintSource& source, std::vector<std::string>* warnings = nullptr);
 
 }  // namespace goniochrome::formats

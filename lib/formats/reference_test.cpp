@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/scratch_for_test.h"
+#include "formats/paint_source.h"
 #include "formats/xml.h"
 
 namespace goniochrome::formats::reference_test {

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "base/scratch_for_test.h"
+#include "formats/paint_source.h"
 #include "formats/xml.h"
 
 namespace goniochrome::formats::tilts_xml_test {

@@ -70,7 +70,4 @@ class PaintWriter {
   bool is_stream_;
 };
 
-// All paints of a file, for tools that need them at once.
-Result<std::vector<paint::Paint>> read_paints(const std::string& path);
-
 }  // namespace goniochrome::formats

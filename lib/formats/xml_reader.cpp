@@ -564,14 +564,4 @@ const std::vector<std::string>& PaintReader::foreign() const {
   return state_->handler.foreign;
 }
 
-Result<std::vector<paint::Paint>> read_paints(const std::string& path) {
-  GONIO_ASSIGN(PaintReader reader, PaintReader::open(path));
-  std::vector<paint::Paint> paints;
-  for (;;) {
-    GONIO_ASSIGN(std::optional<paint::Paint> paint, reader.next());
-    if (!paint) return paints;
-    paints.push_back(std::move(*paint));
-  }
-}
-
 }  // namespace goniochrome::formats

@@ -173,6 +173,8 @@ Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::st
   file.parts = names_of(attributes, "goniochrome:parts");
   file.materials = names_of(attributes, "goniochrome:materials");
   file.materials.resize(file.parts.size());
+  for (const Json& number : Json::parse(text("goniochrome:trim"), nullptr, false))
+    if (number.is_number_integer()) file.trim.push_back(number.get<int>());
   take_plan(text("goniochrome:plan"), file);
   file.transport = text("goniochrome:transport");
   file.image = std::move(read.front().image);

@@ -38,6 +38,7 @@ struct AovFile {
   std::optional<Vec3> eye;   // where the rays begin; files of earlier versions do not tell it
   Vec3 corner, right, down;  // the ray through x, y (pixels from the upper left) is corner + x right + y down
   std::vector<std::string> parts, materials;  // one material for each part, "" where the mesh named none
+  std::vector<int> trim;                      // numbers, from 1, of the parts that --trim dressed
   std::string command;                        // the command that made the file
   std::vector<std::string> drawn;             // the effects that the picture shows, by render-osmesa's names
   std::vector<std::string> left_out;          // the effects that the scene has and the picture does not show

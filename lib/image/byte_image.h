@@ -37,4 +37,8 @@ void put_bytes(const Image& image, ByteImage& bytes);
 // compressed on all cores, and it is the same on any number of them.
 std::string png_content(const ByteImage& image, const Attributes& text = {});
 
+// The entry of a PNG that names the display and the view of its picture, "sRGB / ACES SDR"; read_image() keeps it as an
+// attribute.
+inline constexpr const char* kViewAttribute = "goniochrome:view";
+
 }  // namespace goniochrome::image

@@ -11,6 +11,7 @@
 #include "base/child.h"
 #include "base/file.h"
 #include "base/paths.h"
+#include "image/byte_image.h"
 #include "image/exr.h"
 #include "image/hdr.h"
 #include "image/image.h"
@@ -203,6 +204,8 @@ Result<ImagePart> read_image(const std::string& path, Inks inks) {
   if (colors.contains("oiio:ColorSpace")) part.attributes.erase("ICCProfile");
   if (colors.empty() && text_attribute(part, "ICCProfile").empty()) colors = stated_colors(content, format);
   for (auto& [name, value] : colors) part.attributes[name] = std::move(value);
+  if (std::string view = format == "png" ? png_text(content, kViewAttribute) : ""; !view.empty())
+    part.attributes[kViewAttribute] = std::move(view);
   Image& image = part.image;
   const Turn turn = exif_turn(exif_orientation(content, format));
   if (turn.any()) image.data = upright(image.data, image.width, image.height, image.channels, turn);

@@ -16,17 +16,25 @@ std::uint32_t number_at(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-// The chunks before the pixels, by their types.
-std::map<std::string, std::string_view, std::less<>> chunks_of(std::string_view content) {
+// Hands the chunks to `take`, with their types, until that returns false.
+template <class Take>
+void for_chunks(std::string_view content, Take&& take) {
   constexpr std::size_t kMark = 8, kAround = 12;
-  std::map<std::string, std::string_view, std::less<>> chunks;
   for (std::size_t at = kMark; at + kAround <= content.size();) {
     const std::size_t size = number_at(content, at);
-    const std::string type(content.substr(at + 4, 4));
-    if (type == "IDAT" || size > content.size() - at - kAround) break;
-    chunks.try_emplace(type, content.substr(at + 8, size));
+    if (size > content.size() - at - kAround || !take(content.substr(at + 4, 4), content.substr(at + 8, size))) return;
     at += kAround + size;
   }
+}
+
+// The chunks before the pixels, by their types.
+std::map<std::string, std::string_view, std::less<>> chunks_of(std::string_view content) {
+  std::map<std::string, std::string_view, std::less<>> chunks;
+  for_chunks(content, [&](std::string_view type, std::string_view data) {
+    if (type == "IDAT") return false;
+    chunks.try_emplace(std::string(type), data);
+    return true;
+  });
   return chunks;
 }
 
@@ -89,6 +97,28 @@ Attributes png_colors(std::string_view content) {
   attributes["chromaticities"] =
       std::vector<float>{value(2), value(3), value(4), value(5), value(6), value(7), value(0), value(1)};
   return attributes;
+}
+
+// An entry iTXt is keyword, 0, two flags, of which the first is 0 where the text is not compressed, a language, 0, the
+// translated keyword, 0, and the text.
+std::string png_text(std::string_view content, std::string_view keyword) {
+  std::string text;
+  for_chunks(content, [&](std::string_view type, std::string_view data) {
+    if (!data.starts_with(keyword) || data.substr(keyword.size()).substr(0, 1) != std::string_view("\0", 1))
+      return true;
+    std::string_view rest = data.substr(keyword.size() + 1);
+    if (type == "tEXt") text = rest;
+    if (type != "iTXt" || rest.size() < 2 || rest[0] != 0) return type != "tEXt";
+    rest.remove_prefix(2);
+    for (int i = 0; i < 2; ++i) {
+      const std::size_t end = rest.find('\0');
+      if (end == std::string_view::npos) return true;
+      rest.remove_prefix(end + 1);
+    }
+    text = rest;
+    return false;
+  });
+  return text;
 }
 
 }  // namespace goniochrome::image

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "image/exr.h"
 
 namespace goniochrome::image {
 
@@ -234,7 +235,14 @@ bool halves_do(const brdf::SbrdfTexture& texture) {
 }  // namespace
 
 Result<brdf::SbrdfTexture> read_sbrdf(const std::string& path) {
-  GONIO_ASSIGN(const std::vector<ImagePart> parts, read_exr(path));
+  GONIO_ASSIGN(InputFile input, InputFile::open(path));
+  return read_sbrdf(std::move(input));
+}
+
+Result<brdf::SbrdfTexture> read_sbrdf(InputFile input) {
+  const std::string path = input.name();
+  GONIO_ASSIGN(const std::string content, input.rest(std::string::npos));
+  GONIO_ASSIGN(const std::vector<ImagePart> parts, decoded_exr(content, path));
   GONIO_TRY(check_working_space(parts, path));
   GONIO_ASSIGN(const Image image, joined(parts, path));
   brdf::SbrdfTexture texture{image.width, image.height, 0, {}};

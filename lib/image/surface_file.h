@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file.h"
 #include "base/result.h"
 #include "brdf/color_map.h"
 #include "brdf/sbrdf.h"
@@ -27,6 +28,7 @@ Result<void> write_color_map(const std::string& path, const brdf::ColorMap& map,
 // is negative, whose alpha is not 0 to 1 or which holds a value that is not finite; a lobe that reflects but has
 // axes of length 0.
 Result<brdf::SbrdfTexture> read_sbrdf(const std::string& path);
+Result<brdf::SbrdfTexture> read_sbrdf(InputFile input);
 
 // Writes a texture with `attributes` (provenance), and after it the parts `beside`. It is stored in half precision
 // unless that would change an exponent, for which maps were filtered, or the strength of a lobe by more than 1/256,

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -18,8 +19,8 @@
 #include "base/json.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "formats/paint_source.h"
 #include "formats/reference.h"
-#include "formats/xml.h"
 #include "paint/curve.h"
 
 namespace goniochrome::library {
@@ -71,6 +72,12 @@ Result<Guard> guard_of(const std::string& path) {
     return input_error("{}: is no plain file: a library is kept with its index beside it, so give a file", path);
   return Guard{static_cast<std::uint64_t>(info.st_size),
                static_cast<std::int64_t>(info.st_mtim.tv_sec) * 1'000'000'000 + info.st_mtim.tv_nsec};
+}
+
+std::vector<std::string> warnings_of(const formats::PaintSource& source) {
+  std::vector<std::string> lines = source.warnings();
+  std::ranges::move(source.closing_warnings(), std::back_inserter(lines));
+  return lines;
 }
 
 }  // namespace
@@ -415,8 +422,9 @@ Result<LibraryIndex> LibraryIndex::open(const std::string& library_path,
                                         const std::function<void(std::size_t)>& progress, const std::string& version) {
   const Stopwatch mapping;
   if (formats::paint_reference(library_path).name) {
-    GONIO_ASSIGN(auto reader, formats::PaintReader::open(library_path));
-    GONIO_ASSIGN(LibraryIndex index, from_paints([&] { return reader.next(); }));
+    GONIO_ASSIGN(const formats::PaintSourcePointer source, formats::open_paints(library_path));
+    GONIO_ASSIGN(LibraryIndex index, from_paints([&] { return source->next(); }));
+    index.warnings_ = warnings_of(*source);
     index.note_ = "it holds some paints of a file";
     return Result(std::move(index));
   }
@@ -437,11 +445,11 @@ Result<LibraryIndex> LibraryIndex::open(const std::string& library_path,
     }
   }
 
-  GONIO_ASSIGN(auto reader, formats::PaintReader::open(library_path));
+  GONIO_ASSIGN(const formats::PaintSourcePointer source, formats::open_paints(library_path));
   const Stopwatch summing;
   GONIO_ASSIGN(const std::uint64_t sum, checksum(library_path));
   const double summing_s = summing.elapsed_s();
-  GONIO_ASSIGN(Built built, build([&] { return reader.next(); },
+  GONIO_ASSIGN(Built built, build([&] { return source->next(); },
                                   {{"program", version},
                                    {"library_bytes", guard.bytes},
                                    {"library_modified_ns", guard.modified_ns},
@@ -450,6 +458,7 @@ Result<LibraryIndex> LibraryIndex::open(const std::string& library_path,
   const Stopwatch writing;
   const auto written = write_file(path, built.bytes);
   GONIO_ASSIGN(LibraryIndex index, view_of(std::make_unique<Bytes>(std::move(built.bytes))));
+  index.warnings_ = warnings_of(*source);
   index.origin_ = written.ok() ? Origin::kBuilt : Origin::kInMemory;
   index.note_ = written.ok() ? why : written.error().message;
   index.read_s_ = built.read_s;

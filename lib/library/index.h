@@ -38,11 +38,12 @@ class LibraryIndex {
   // How an index came to be.
   enum class Origin { kMapped, kBuilt, kInMemory };
 
-  // The index of the paint file `library_path`. The file `<library_path>.snapindex` is mapped if it belongs to this
-  // state of the library: size and time of modification agree, or size and checksum, and a program of the same
-  // `version` made it. Otherwise the library is read, and the index is written there, whole or not at all. If that
-  // cannot be done, it stays in memory and note() says why; so does that of FILE#NAMES, some paints of a file.
-  // `progress` is told the number of paints read so far. Error: the library cannot be read, or it is a stream.
+  // The index of the paint file `library_path`, in any format that formats::open_paints() reads. The file
+  // `<library_path>.snapindex` is mapped if it belongs to this state of the library: size and time of modification
+  // agree, or size and checksum, and a program of the same `version` made it. Otherwise the library is read, and the
+  // index is written there, whole or not at all. If that cannot be done, it stays in memory and note() says why; so
+  // does that of FILE#NAMES, some paints of a file. `progress` is told the number of paints read so far. Error: the
+  // library cannot be read, or it is no plain file.
   static Result<LibraryIndex> open(const std::string& library_path,
                                    const std::function<void(std::size_t)>& progress = {},
                                    const std::string& version = "");
@@ -68,6 +69,7 @@ class LibraryIndex {
 
   Origin origin() const { return origin_; }
   const std::string& note() const { return note_; }  // why it was built, or not kept; empty when mapped
+  const std::vector<std::string>& warnings() const { return warnings_; }  // of the file, where it was read
   std::size_t bytes() const;
   double read_s() const { return read_s_; }    // reading the library; 0 when mapped
   double build_s() const { return build_s_; }  // metrics, trees and writing, or mapping
@@ -87,6 +89,7 @@ class LibraryIndex {
   std::vector<LibrarySection> sections_;
   Origin origin_ = Origin::kInMemory;
   std::string note_;
+  std::vector<std::string> warnings_;
   double read_s_ = 0, build_s_ = 0;
 };
 

@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "base/scratch_for_test.h"
+#include "formats/paint_source.h"
 #include "formats/xml.h"
 #include "library/internal/random_paints_for_test.h"
 #include "library/search.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "formats/xml.h"
+#include "formats/paint_source.h"
 #include "paint/spectra.h"
 
 namespace goniochrome::library {
@@ -26,14 +26,24 @@ Result<paint::Paint> lit_by(const paint::Paint& paint, const std::string& illumi
 Result<LightsSearch> LightsSearch::open(const std::string& library_path, std::vector<std::string> illuminants,
                                         LibrarySearchOptions options,
                                         const std::function<void(std::size_t)>& progress) {
+  GONIO_ASSIGN(const formats::PaintSourcePointer source, formats::open_paints(library_path));
+  GONIO_ASSIGN(LightsSearch search,
+               from_paints([&] { return source->next(); }, std::move(illuminants), std::move(options), progress));
+  for (const auto& lines : {source->warnings(), source->closing_warnings()})
+    search.warnings_.insert(search.warnings_.end(), lines.begin(), lines.end());
+  return Result(std::move(search));
+}
+
+Result<LightsSearch> LightsSearch::from_paints(const std::function<Result<std::optional<paint::Paint>>()>& next_paint,
+                                               std::vector<std::string> illuminants, LibrarySearchOptions options,
+                                               const std::function<void(std::size_t)>& progress) {
   LightsSearch result;
   result.illuminants_ = std::move(illuminants);
   result.options_ = std::move(options);
   result.rows_.resize(result.illuminants_.size() - 1);
-  GONIO_ASSIGN(auto reader, formats::PaintReader::open(library_path));
   std::size_t read = 0;
   const auto next = [&]() -> Result<std::optional<paint::Paint>> {
-    GONIO_ASSIGN(std::optional<paint::Paint> paint, reader.next());
+    GONIO_ASSIGN(std::optional<paint::Paint> paint, next_paint());
     if (!paint) return paint;
     if (++read % 1000 == 0 && progress) progress(read);
     const bool known = paint->measurement && !paint->measurement->spectra.empty();

@@ -29,11 +29,16 @@ class LightsSearch {
   // light. Error: the library cannot be read.
   static Result<LightsSearch> open(const std::string& library_path, std::vector<std::string> illuminants,
                                    LibrarySearchOptions options, const std::function<void(std::size_t)>& progress = {});
+  // The same of the paints that `next_paint` gives until it gives none.
+  static Result<LightsSearch> from_paints(const std::function<Result<std::optional<paint::Paint>>()>& next_paint,
+                                          std::vector<std::string> illuminants, LibrarySearchOptions options,
+                                          const std::function<void(std::size_t)>& progress = {});
 
   const LibraryIndex& index() const { return *index_; }
   const LibrarySearch& first() const { return *search_; }
   const std::vector<std::string>& illuminants() const { return illuminants_; }
   std::size_t without_spectra() const { return without_spectra_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }  // of the file of the library
 
   // Error: as LibrarySearch::plan(), and a query without spectra.
   Result<LightsPlan> plan(const paint::Paint& query) const;
@@ -52,6 +57,7 @@ class LightsSearch {
   std::unique_ptr<LibrarySearch> search_;                          // of that index
   std::vector<std::vector<std::vector<paint::LabReading>>> rows_;  // in each later light, of each paint
   std::size_t without_spectra_ = 0;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace goniochrome::library

@@ -141,8 +141,9 @@ Result<GeometryList> geometry_list(const GeometryTexts& texts) {
   }
   if (list.pairs.empty())
     return usage_error(
-        "no pair of light and viewer is left: {} within {} deg of the mirror direction, where gloss is seen, and {} "
-        "below the horizon: change --lights or --views",
+        "no pair of light and viewer is left: {} within {} deg of the mirror direction, where gloss covers the color "
+        "of "
+        "any paint, and {} below the horizon: move the viewers, as by --views as20; a solid paint shows the same there",
         list.glare, kIndexGlare_deg, list.below_horizon);
   return list;
 }

@@ -5,6 +5,10 @@
 
 #include "base/angles.h"
 #include "brdf/coat.h"
+#include "brdf/gloss.h"
+#include "fit/highlight_end.h"
+#include "fit/paint_fit.h"
+#include "formats/default_basis.h"
 #include "panels/internal/shading.h"
 
 namespace goniochrome::panels {
@@ -56,6 +60,10 @@ double shading_reach(const color::Lab& reflectance, double least_k) {
 constexpr double kStretch = 2.5;
 constexpr double kOppositeStep_deg = 0.02;
 
+bool is_beyond_glare(const paint::LabReading& row) {
+  return paint::aspecular_angle_deg(row.geometry) >= fit::kGlareAngle_deg;
+}
+
 bool may_be_opposite(const color::Lab& x, const color::Lab& y) {
   return x.a * y.a + x.b * y.b < 0;
 }
@@ -93,40 +101,65 @@ FlakeCurve::FlakeCurve(const paint::Appearance& appearance) {
 }
 
 Result<FlakeCurve> FlakeCurve::make(const paint::Paint& paint, paint::TargetCurve::Kind kind) {
-  GONIO_ASSIGN(FlakeCurve curve, bare(paint, kind));
-  curve.coat_index_ = paint.coat_index.value_or(paint::kNoCoat);
+  GONIO_ASSIGN(const double coat_index, brdf::coat_index_of_paint(paint));
+  const bool is_measured = kind == paint::TargetCurve::Kind::kMeasured && paint.measurement &&
+                           std::ranges::any_of(paint.measurement->rows, is_beyond_glare);
+  GONIO_ASSIGN(FlakeCurve curve, is_measured ? measured(paint, coat_index) : of_appearance(paint));
+  curve.coat_index_ = coat_index;
   return curve;
 }
 
-Result<FlakeCurve> FlakeCurve::bare(const paint::Paint& paint, paint::TargetCurve::Kind kind) {
-  if (kind == paint::TargetCurve::Kind::kMeasured && paint.measurement && !paint.measurement->rows.empty()) {
-    GONIO_ASSIGN(const paint::TargetCurve target, paint::TargetCurve::make(paint, kind));
-    if (target.kind() == paint::TargetCurve::Kind::kMeasured) {
-      FlakeCurve curve;
-      const std::vector<double>& knots = target.known_angles_deg();
-      const auto constant = [&](double until, double at) {
-        Piece piece{until, at, {}, false};
-        const auto value = channels(target.at(at));
-        for (int c = 0; c < 3; ++c) piece.coefficients[c] = {value[c], 0, 0, 0};
-        curve.pieces_.push_back(piece);
-      };
-      constant(knots.front(), knots.front());
-      for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-        const double place = paint::curve_place(knots[i]), width = paint::curve_place(knots[i + 1]) - place;
-        Piece piece{knots[i + 1], knots[i], {}, true};
-        std::array<std::array<double, 3>, 4> y;
-        for (int k = 0; k < 4; ++k)
-          y[k] = channels(target.at(k == 3 ? knots[i + 1] : paint::angle_of_place_deg(place + k * width / 3)));
-        for (int c = 0; c < 3; ++c) piece.coefficients[c] = cubic_through({y[0][c], y[1][c], y[2][c], y[3][c]}, width);
-        curve.pieces_.push_back(piece);
-      }
-      constant(180, knots.back());
-      curve.tabulate_slopes();
-      return curve;
-    }
-  }
+Result<FlakeCurve> FlakeCurve::of_appearance(const paint::Paint& paint) {
   GONIO_ASSIGN(const paint::Appearance appearance, appearance_of(paint));
   return FlakeCurve(appearance);
+}
+
+Result<FlakeCurve> FlakeCurve::measured(const paint::Paint& paint, double coat_index) {
+  GONIO_ASSIGN(const paint::TargetCurve target, paint::TargetCurve::make(paint, paint::TargetCurve::Kind::kMeasured));
+  GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(paint)));
+  FlakeCurve curve;
+  const std::vector<double>& known = target.known_angles_deg();
+  const std::vector<double> knots(std::ranges::lower_bound(known, fit::kGlareAngle_deg), known.end());
+  curve.add_highlight(target, white, coat_index, knots.front());
+  for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+    const double place = paint::curve_place(knots[i]), width = paint::curve_place(knots[i + 1]) - place;
+    Piece piece{knots[i + 1], knots[i], {}, true};
+    std::array<std::array<double, 3>, 4> y;
+    for (int k = 0; k < 4; ++k)
+      y[k] = channels(target.at(k == 3 ? knots[i + 1] : paint::angle_of_place_deg(place + k * width / 3)));
+    for (int c = 0; c < 3; ++c) piece.coefficients[c] = cubic_through({y[0][c], y[1][c], y[2][c], y[3][c]}, width);
+    curve.pieces_.push_back(piece);
+  }
+  Piece plateau{180, knots.back(), {}, false};
+  const auto last = channels(target.at(knots.back()));
+  for (int c = 0; c < 3; ++c) plateau.coefficients[c] = {last[c], 0, 0, 0};
+  curve.pieces_.push_back(plateau);
+  curve.tabulate_slopes();
+  return curve;
+}
+
+// Cubics of one degree stay within 0.003 of the highlight that fit-paint continues, for the steepest one there is.
+void FlakeCurve::add_highlight(const paint::TargetCurve& target, const color::Xyz& white, double coat_index,
+                               double first_deg) {
+  static const std::vector<double> kExponents = formats::default_basis().exponents;
+  const auto passages = [&](double t) {
+    return brdf::coat_passages(coat_index, std::cos(45 * kDegree), std::cos(brdf::instrument_view_deg(t) * kDegree));
+  };
+  const auto base = [&](double t) { return (1 / passages(t)) * color::rgb_from_lab(target.at(t), white); };
+  const fit::HighlightEnd end{first_deg, first_deg + 10, base(first_deg), base(first_deg + 10)};
+  const color::Rgb exponents = fit::highlight_exponents(end, fit::steepest_seen(kExponents, first_deg * kDegree));
+  const auto count = static_cast<int>(std::ceil(first_deg));
+  const double width = first_deg / count;
+  for (int i = 0; i < count; ++i) {
+    Piece piece{(i + 1) * width, i * width, {}, false};
+    std::array<std::array<double, 3>, 4> y;
+    for (int k = 0; k < 4; ++k) {
+      const double t = (i + k / 3.0) * width;
+      y[k] = channels(color::lab_from_rgb(passages(t) * fit::highlight_at(end, exponents, t), white));
+    }
+    for (int c = 0; c < 3; ++c) piece.coefficients[c] = cubic_through({y[0][c], y[1][c], y[2][c], y[3][c]}, width);
+    pieces_.push_back(piece);
+  }
 }
 
 double FlakeCurve::Piece::x(double aspecular_deg) const {
@@ -138,11 +171,11 @@ double FlakeCurve::Piece::steepest_x(double from_deg) const {
 }
 
 color::Lab FlakeCurve::at(double aspecular_deg) const {
-  std::size_t i = 0;
-  while (i + 1 < pieces_.size() && aspecular_deg >= pieces_[i].until_deg) ++i;
-  const double x = pieces_[i].x(aspecular_deg);
+  const Piece& piece = *std::upper_bound(pieces_.begin(), pieces_.end() - 1, aspecular_deg,
+                                         [](double angle, const Piece& p) { return angle < p.until_deg; });
+  const double x = piece.x(aspecular_deg);
   const auto value = [&](const std::array<double, 4>& c) { return c[0] + x * (c[1] + x * (c[2] + x * c[3])); };
-  const auto& c = pieces_[i].coefficients;
+  const auto& c = piece.coefficients;
   return {value(c[0]), value(c[1]), value(c[2])};
 }
 

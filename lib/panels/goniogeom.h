@@ -21,14 +21,15 @@ class FlakeCurve {
   explicit FlakeCurve(const paint::Appearance& appearance);
 
   // The curve of `paint`. kCurve is the clamped quadratic of the appearance that the paint states, or else of the one
-  // nearest to its rows; kMeasured is the monotone curve through the rows, or the quadratic where there are none.
-  // Error: the paint has no color, or a travel outside its domain.
+  // nearest to its rows; kMeasured is the monotone curve through the rows beyond glare, or the quadratic where there
+  // are none. Below its first row the measured curve is the highlight that fit-paint continues, see
+  // fit/highlight_end.h. Error: the paint has no color, an unknown illuminant, or a travel outside its domain.
   static Result<FlakeCurve> make(const paint::Paint& paint, paint::TargetCurve::Kind kind);
 
   // Lab at an unsigned aspecular angle (deg, 0..180).
   color::Lab at(double aspecular_deg) const;
 
-  // Of the coat that the paint states, or paint::kNoCoat: the curve holds where an instrument reads.
+  // brdf::coat_index_of_paint(): the curve holds where an instrument reads.
   double coat_index() const { return coat_index_; }
 
   // The largest dE00 between the curve and the rows it was fitted to, where that is known.
@@ -50,7 +51,9 @@ class FlakeCurve {
     double steepest_x(double from_deg) const;
   };
   FlakeCurve() = default;
-  static Result<FlakeCurve> bare(const paint::Paint& paint, paint::TargetCurve::Kind kind);
+  static Result<FlakeCurve> of_appearance(const paint::Paint& paint);
+  static Result<FlakeCurve> measured(const paint::Paint& paint, double coat_index);
+  void add_highlight(const paint::TargetCurve& target, const color::Xyz& white, double coat_index, double first_deg);
   void tabulate_slopes();
 
   static constexpr int kCells = 180;  // of one degree

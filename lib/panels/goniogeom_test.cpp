@@ -42,6 +42,13 @@ double difference_by_vectors(const FlakeCurve& curve, const Vec3& light, const V
   return difference(metric, color(normal), color(turned(normal, axis, b)));
 }
 
+// The share that a coat of that index lets through at that cosine, from the amplitudes of both polarizations.
+double let_through(double cosine, double index) {
+  const double c = std::clamp(cosine, 0.0, 1.0), t = std::sqrt(1 - (1 - c * c) / (index * index));
+  const double s = (c - index * t) / (c + index * t), p = (index * c - t) / (index * c + t);
+  return 1 - (s * s + p * p) / 2;
+}
+
 TEST(PanelColor, IsTheScaledStimulusForAnyWhiteAndBothBranches) {
   const color::Xyz white = *color::white_point({"A", 2});
   int dark = 0, light = 0;
@@ -73,7 +80,9 @@ TEST(FlakeCurve, IsTheCurveItStandsFor) {
   const FlakeCurve curve = *FlakeCurve::make(paint, paint::TargetCurve::Kind::kCurve);
   const paint::Appearance appearance = *appearance_of(paint);
   for (double t = 0; t <= 180; t += 0.37) {
-    EXPECT_LT(color::delta_e_76(measured.at(t), target.at(t)), 1e-11) << t;
+    if (t >= 15) {
+      EXPECT_LT(color::delta_e_76(measured.at(t), target.at(t)), 1e-11) << t;
+    }
     EXPECT_LT(color::delta_e_76(curve.at(t), paint::lab_at(appearance, t)), 1e-11) << t;
   }
   for (const FlakeCurve& any : {measured, curve}) {
@@ -81,6 +90,41 @@ TEST(FlakeCurve, IsTheCurveItStandsFor) {
       const double slope = color::delta_e_76(any.at(t), any.at(t + 1e-3)) / 1e-3;
       EXPECT_LE(slope, any.steepest(t, t + 1e-3) * (1 + 1e-6) + 1e-9) << t;
     }
+  }
+}
+
+// The same highlight by hand: f(t) = f(15) (cos t / cos 15)^e with the exponent between 15 and 25 deg, of the base
+// under the coat. The control holds the curve constant below its first reading.
+TEST(FlakeCurve, ContinuesTheHighlightBelowItsFirstReading) {
+  const color::Xyz white = *color::white_point({"D65", 10});
+  for (const double gloss : {0.0, 90.0}) {
+    paint::Paint paint;
+    paint.measurement.emplace();
+    paint.measurement->rows = {{{.aspecular_deg = 5}, {99, 0, 0}},  // glare, which no flake shows
+                               {{.aspecular_deg = 15}, {80, 5, -9}},
+                               {{.aspecular_deg = 25}, {66, 4, -8}},
+                               {{.aspecular_deg = 45}, {41, 6, -2}}};
+    paint.gloss = {{60, gloss}};
+    const FlakeCurve curve = *FlakeCurve::make(paint, paint::TargetCurve::Kind::kMeasured);
+    EXPECT_EQ(curve.coat_index() == paint::kNoCoat, gloss == 0) << "gloss implies a coat";
+    const auto passages = [&](double t) {
+      return gloss == 0 ? 1
+                        : let_through(std::sqrt(0.5), curve.coat_index()) *
+                              let_through(std::cos((45 - t) * kDegree), curve.coat_index());
+    };
+    const color::Rgb at_15 = (1 / passages(15)) * color::rgb_from_lab({80, 5, -9}, white),
+                     at_25 = (1 / passages(25)) * color::rgb_from_lab({66, 4, -8}, white);
+    double control = 0;
+    for (double t = 0; t <= 15; t += 0.1) {
+      color::Rgb wanted;
+      for (int c = 0; c < 3; ++c) {
+        const double e = std::log(at_15[c] / at_25[c]) / std::log(std::cos(15 * kDegree) / std::cos(25 * kDegree));
+        wanted[c] = passages(t) * at_15[c] * std::pow(std::cos(t * kDegree) / std::cos(15 * kDegree), e);
+      }
+      EXPECT_LT(color::delta_e_76(curve.at(t), color::lab_from_rgb(wanted, white)), 1e-4) << t;
+      control = std::max(control, color::delta_e_76({80, 5, -9}, color::lab_from_rgb(wanted, white)));
+    }
+    EXPECT_GT(control, 5);
   }
 }
 
@@ -272,13 +316,6 @@ TEST(FirstCrossing, StretchOfDe00IsWithinItsBound) {
   }
   EXPECT_LT(most, 2.5);
   EXPECT_GT(most, 1) << "dE00 is steeper than dE76 somewhere: the stretch is needed";
-}
-
-// What a coat of that index lets through at that cosine, from the amplitudes of both polarizations.
-double let_through(double cosine, double index) {
-  const double c = std::clamp(cosine, 0.0, 1.0), t = std::sqrt(1 - (1 - c * c) / (index * index));
-  const double s = (c - index * t) / (c + index * t), p = (index * c - t) / (index * c + t);
-  return 1 - (s * s + p * p) / 2;
 }
 
 // The differences through a coat by vectors: each reading is taken through the coat at 45 deg and at the angle of its

@@ -9,7 +9,7 @@
 #include "base/testdata_for_test.h"
 #include "brdf/lobe_model.h"
 #include "fit/paint_fit.h"
-#include "formats/xml.h"
+#include "formats/paint_source.h"
 #include "render/cpu/cpu_engine.h"
 #include "render/exact.h"
 #include "render/path/lobe_columns.h"

@@ -13,7 +13,7 @@
 #include "fit/color_map_fit.h"
 #include "fit/paint_fit.h"
 #include "fit/tilt_fit.h"
-#include "formats/xml.h"
+#include "formats/paint_source.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 

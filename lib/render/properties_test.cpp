@@ -12,6 +12,7 @@
 #include "brdf/lobe_model.h"
 #include "brdf/ward.h"
 #include "fit/paint_fit.h"
+#include "formats/paint_source.h"
 #include "formats/xml.h"
 #include "prefilter/prefilter.h"
 #include "render/exact.h"

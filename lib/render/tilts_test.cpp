@@ -8,7 +8,7 @@
 #include "fit/color_map_fit.h"
 #include "fit/paint_fit.h"
 #include "fit/tilt_fit.h"
-#include "formats/xml.h"
+#include "formats/paint_source.h"
 #include "prefilter/prefilter.h"
 #include "render/cpu/cpu_engine.h"
 #include "render/exact.h"

@@ -4,8 +4,11 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/text.h"
+#include "display/display.h"
 #include "display/paint_view.h"
 #include "image/aov_file.h"
+#include "image/byte_image.h"
 #include "image/color_space.h"
 #include "image/icc.h"
 
@@ -89,10 +92,42 @@ void tag_untagged(image::ImagePart& part, bool integer, bool is_exr) {
                                                            : "lin_rec709_scene");
 }
 
+// Brings the picture back to light through the view that it names. The signals of an sRGB display are found again where
+// the file has a profile.
+Result<void> undo_view(const std::string& view, const image::ImagePart& part, const std::string& name,
+                       Picture& picture) {
+  auto display = display::Display::make(view);
+  if (!display.ok())
+    return input_error(
+        "{}: was drawn by the view \"{}\": {}; set $OCIO as it was, or draw the picture by the view Paint", name, view,
+        display.error().message);
+  const bool is_srgb = display->name().starts_with("sRGB");
+  if (!is_srgb && !image::text_attribute(part, "ICCProfile").empty())
+    return input_error(
+        "{}: was drawn by the view \"{}\" and has an ICC profile, behind which the signals of that display are not "
+        "known: save it without a profile",
+        name, view);
+  if (is_srgb || part.image.channels < 3) {
+    for_pixels(picture.rgb, [](float* pixel) {
+      const color::Rgb shown = color::rec709_from_rec2020({pixel[0], pixel[1], pixel[2]});
+      for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(display::srgb_signal(shown[c]));
+    });
+  } else {
+    const auto channels = static_cast<std::size_t>(part.image.channels);
+    for (std::size_t i = 0; i < picture.rgb.data.size() / 3; ++i)
+      std::copy_n(&part.image.data[i * channels], 3, &picture.rgb.data[3 * i]);
+  }
+  if (auto undone = display->undo(picture.rgb); !undone.ok())
+    return input_error("{}: {}: draw the picture by the view Paint", name, undone.error().message);
+  picture.space = display->name();
+  return {};
+}
+
 }  // namespace
 
-Result<Picture> read_picture(const std::string& path, PictureView view) {
+Result<Picture> read_picture(const std::string& path, PictureView view, const std::string& named) {
   GONIO_ASSIGN(image::ImagePart part, image::read_image(path, image::Inks::kKept));
+  if (!named.empty()) part.attributes[image::kViewAttribute] = named;
   return picture_of(std::move(part), path == "-" ? "standard input" : path, view);
 }
 
@@ -123,7 +158,11 @@ Result<Picture> picture_of(image::ImagePart part, const std::string& name, Pictu
     picture.space = integer ? "sRGB" : "linear light";
     if (const auto id = image::text_attribute(part, "colorInteropID"); !id.empty()) picture.space = id;
   }
-  if (integer && view == PictureView::kPaint)
+  const std::string named = image::text_attribute(part, image::kViewAttribute);
+  const bool by_paint = lower(named) == "paint" || lower(named) == "srgb / paint";  // whatever $OCIO says
+  if (integer && view != PictureView::kShown && !named.empty() && !by_paint) {
+    GONIO_TRY(undo_view(named, part, name, picture));
+  } else if (integer && view != PictureView::kShown && (by_paint || view == PictureView::kPaint))
     for_pixels(picture.rgb, [](float* pixel) {
       const color::Rgb shown = color::rec709_from_rec2020({pixel[0], pixel[1], pixel[2]});
       if (std::max({shown.x, shown.y, shown.z}) <= display::kKnee) return;

@@ -13,10 +13,12 @@
 
 namespace goniochrome::sketch {
 
-// What the numbers of a display picture went through on the way from light.
+// The way from light that the numbers of a display picture went. A view that the picture names is undone, see
+// image::kViewAttribute; this is the way of a picture that names none.
 enum class PictureView {
-  kPaint,  // render-osmesa's default, display::paint_view(), which is undone here
+  kPaint,  // render-osmesa's default, display::paint_view(), which is undone
   kPlain,  // nothing but the display's own curve, as in a photograph or a drawing
+  kShown,  // that too, and a view that the picture names is kept: what a display shows
 };
 
 struct Picture {
@@ -37,8 +39,9 @@ struct Picture {
 // Reads any image. Tagged files are what they say (ICC profile, color space, chromaticities); untagged whole numbers
 // are sRGB, untagged EXR is in the working space as render-osmesa writes it, other floats linear Rec.709. Inks of a
 // CMYK picture without a profile are converted by a rule of thumb, and a warning says so. Error, with the remedy: not
-// an image, a damaged profile or one of other channels, or an unknown color space.
-Result<Picture> read_picture(const std::string& path, PictureView view);
+// an image, a damaged profile or one of other channels, an unknown color space, or a view that cannot be undone.
+// `named`, where it has a name, is the view in place of the one that the picture names.
+Result<Picture> read_picture(const std::string& path, PictureView view, const std::string& named = "");
 // The same of an image that was read with Inks::kKept, or of a piece of one; `name` is what errors call it.
 Result<Picture> picture_of(image::ImagePart part, const std::string& name, PictureView view);
 

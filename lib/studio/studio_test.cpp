@@ -11,7 +11,7 @@
 #include "base/scratch_for_test.h"
 #include "fit/paint_fit.h"
 #include "formats/cxf.h"
-#include "formats/xml.h"
+#include "formats/paint_source.h"
 #include "library/index.h"
 #include "paint/curve.h"
 #include "paint/edit.h"

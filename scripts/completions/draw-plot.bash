@@ -1,6 +1,10 @@
 _draw_plot() {
   local word=${COMP_WORDS[COMP_CWORD]}
   case ${COMP_WORDS[COMP_CWORD-1]} in
+    --series) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --x) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --y) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --style) COMPREPLY=($(compgen -W "line points both dashed rings" -- "$word")); return ;;
     --title) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --x-label) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --y-label) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -13,7 +17,7 @@ _draw_plot() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--title --x-label --y-label --logarithmic --width --height --output --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--series --x --y --style --title --x-label --y-label --logarithmic --width --height --output --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -3,7 +3,7 @@ _sketch_fit() {
   case ${COMP_WORDS[COMP_CWORD-1]} in
     --image|-i) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --buffers|-b) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --view) COMPREPLY=($(compgen -W "paint plain" -- "$word")); return ;;
+    --view) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --exposure) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --shift) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --register) COMPREPLY=($(compgen -W "auto always never" -- "$word")); return ;;

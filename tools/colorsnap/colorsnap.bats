@@ -95,9 +95,12 @@ column() {
   run --separate-stderr colorsnap -l none.xml wish.xml
   [ "$status" -eq 3 ]
   [[ "$stderr" == *"none.xml: cannot be read"* ]]
-  run --separate-stderr colorsnap -l /dev/null wish.xml
+  run --separate-stderr colorsnap -l . wish.xml
   [ "$status" -eq 3 ]
   [[ "$stderr" == *"no plain file"* ]]
+  run --separate-stderr colorsnap -l - <lib.xml
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *"--library - takes standard input"* ]]
   echo '<paints xmlns="urn:goniochrome:paint:1" version="1"/>' >empty.xml
   run --separate-stderr colorsnap -l empty.xml wish.xml
   [ "$status" -eq 3 ]
@@ -395,4 +398,19 @@ column() {
   done
   run colorsnap -l "$TESTDATA/paints.paints.xml" --formula cie2 "$TESTDATA/paints.paints.xml"
   [ "$status" -eq 2 ]
+}
+
+@test "a library comes through a pipe, in any format, and gives the same answers" {
+  colorsnap -q -l lib.xml wish.xml -o file.tsv
+  colorsnap -q -l lib.xml wish.xml --format paints -o file.xml
+  paint-convert -q lib.xml --to wide --columns all -o lib.csv
+  for library in lib.xml lib.csv; do
+    colorsnap -q -l - wish.xml <"$library" | diff file.tsv -
+    colorsnap -q -l <(cat "$library") wish.xml | diff file.tsv -
+    colorsnap -q -l - wish.xml --format paints <"$library" | diff <(grep '<lab' file.xml) <(grep '<lab' -)
+    [ ! -e -.snapindex ]
+  done
+  colorsnap -q -l lib.csv wish.xml | diff file.tsv -
+  [ -s lib.csv.snapindex ]
+  colorsnap -q -l lib.xml <lib.csv | cut -f 1 | uniq | diff <(printf 'query\nR1\nR2\nG1\nB1\nR1again\n') -
 }

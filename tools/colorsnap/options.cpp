@@ -81,9 +81,13 @@ namespace {
 
 void add_options(cli::ToolSpec& spec, Options& o) {
   spec.heading = "library";
-  spec.option("library,l", "FILE", "testdata/paints.paints.xml", &o.library, "paint XML file to search, a plain file")
+  spec.option("library,l", "FILE", "testdata/paints.paints.xml", &o.library,
+              "paints to search, in any format that paint-convert(1) reads")
       .needed()
-      .more("FILE#NAMES searches some of its paints, for which an index is made in memory.");
+      .more(
+          "FILE#NAMES searches some of its paints. For these, and for a library that comes through a pipe (- is "
+          "standard "
+          "input), an index is made in memory.");
   spec.option("filter", "NAME=LOW:HIGH", "flop_index=3:10", &o.filters, "consider only library paints in this range")
       .more(
           "NAME is a metric of paint-stats(1). Either end of the range may be left out. class=solid,metallic picks "
@@ -211,7 +215,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "on the hue line of the face and is not off_radial. A design with several of these has all of them, joined by "
       "commas. no_match: the filters "
       "leave no paint, and the exit status is 1."};
-  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+  spec.inputs = {"PAINTS",
+                 "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.inputs};
   add_options(spec, o);
   add_report(spec);

@@ -1,5 +1,6 @@
 #include "tool.h"
 
+#include <algorithm>
 #include <functional>
 #include <set>
 
@@ -11,6 +12,7 @@
 #include "formats/reference.h"
 #include "illuminants.h"
 #include "sink.h"
+#include "streamed_library.h"
 
 namespace goniochrome::tool {
 
@@ -40,11 +42,13 @@ const char* origin_name(library::LibraryIndex::Origin origin) {
 // One run, which turns a stream of queries into findings.
 class Run {
  public:
+  // `streamed` is the library where it is no file.
   Run(const Options& options, cli::Session& session, const Searched& library,
-      const library::LibrarySearchOptions& search)
+      const std::optional<StreamedLibrary>& streamed, const library::LibrarySearchOptions& search)
       : options_(options),
         session_(session),
         library_(library),
+        streamed_(streamed),
         index_(library.index()),
         metric_(search.metric),
         weights_(search.weights),
@@ -65,7 +69,7 @@ class Run {
       return sink.flush();
     };
     GONIO_TRY(for_each_batch(batches, session_, take, left_out()));
-    GONIO_TRY(sink.finish(options_.library, session_));
+    GONIO_TRY(sink.finish(options_.library, streamed_, session_));
     if (!options_.cloud.empty()) GONIO_TRY(cloud_.write(options_.cloud, index_));
     return finish();
   }
@@ -248,6 +252,7 @@ class Run {
   const Options& options_;
   cli::Session& session_;
   const Searched& library_;
+  const std::optional<StreamedLibrary>& streamed_;
   const library::LibraryIndex& index_;
   const color::DifferenceFormula& metric_;
   std::vector<std::pair<paint::Geometry, double>> weights_;
@@ -264,20 +269,24 @@ Result<void> check_library(const library::LibraryIndex& index, const std::string
 }
 
 // The search under several illuminants.
-Result<cli::Verdict> run_under_lights(const Options& options, const library::LibrarySearchOptions& search,
-                                      cli::Session& session) {
+Result<cli::Verdict> run_under_lights(const Options& options, const std::optional<StreamedLibrary>& streamed,
+                                      const library::LibrarySearchOptions& search, cli::Session& session) {
   GONIO_ASSIGN(std::vector<std::string> illuminants, illuminants_of(options.illuminants));
+  const auto progress = [&](std::size_t paints) {
+    session.progress(fmt::format("{}: reading {}: {} paints", session.tool(), options.library, paints));
+  };
   GONIO_ASSIGN(const library::LightsSearch lights,
-               library::LightsSearch::open(options.library, std::move(illuminants), search, [&](std::size_t paints) {
-                 session.progress(fmt::format("{}: reading {}: {} paints", session.tool(), options.library, paints));
-               }));
+               streamed
+                   ? library::LightsSearch::from_paints(streamed->reader(), std::move(illuminants), search, progress)
+                   : library::LightsSearch::open(options.library, std::move(illuminants), search, progress));
+  tell_warnings(lights.warnings(), session);
   GONIO_TRY(check_library(lights.index(), options.library));
   if (lights.without_spectra() > 0)
     session.warn(
         fmt::format("{} of {} library paints have no spectra and are left out: nothing tells their color in "
                     "other light",
                     lights.without_spectra(), lights.index().size()));
-  return Run(options, session, Searched(lights), search)();
+  return Run(options, session, Searched(lights), streamed, search)();
 }
 
 }  // namespace
@@ -290,20 +299,27 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     return usage_error("--assign writes paint XML: leave --format out, and end the output in .xml");
   if (!options.cloud.empty() && !options.cloud.ends_with(".svg"))
     return usage_error("--cloud is \"{}\": give a name that ends in .svg", options.cloud);
-  if (!options.illuminants.empty()) return run_under_lights(options, search, session);
+  const bool asks_input = options.inputs.empty() || std::ranges::find(options.inputs, "-") != options.inputs.end();
+  if (formats::paint_reference(options.library).file == "-" && asks_input)
+    return usage_error("--library - takes standard input: name the paints to look for as files");
+  GONIO_ASSIGN(const std::optional<StreamedLibrary> streamed, StreamedLibrary::open(options.library, session));
+  if (!options.illuminants.empty()) return run_under_lights(options, streamed, search, session);
   const auto progress = [&](std::size_t paints) {
     session.progress(fmt::format("{}: indexing {}: {} paints", session.tool(), options.library, paints));
   };
   GONIO_ASSIGN(const library::LibraryIndex index,
-               library::LibraryIndex::open(options.library, progress, cli::Session::version()));
+               streamed ? library::LibraryIndex::from_paints(streamed->reader())
+                        : library::LibraryIndex::open(options.library, progress, cli::Session::version()));
+  tell_warnings(index.warnings(), session);
   if (index.origin() == library::LibraryIndex::Origin::kBuilt && index.note() != "there was none")
     session.say(
         fmt::format("{}: {}: made anew, {}", session.tool(), library::index_path(options.library), index.note()));
-  if (index.origin() == library::LibraryIndex::Origin::kInMemory && !formats::paint_reference(options.library).name)
+  if (!streamed && index.origin() == library::LibraryIndex::Origin::kInMemory &&
+      !formats::paint_reference(options.library).name)
     session.warn(fmt::format("the index stays in memory and is made again by every run: {}", index.note()));
   GONIO_TRY(check_library(index, options.library));
   const library::LibrarySearch all(index, search);
-  return Run(options, session, Searched(index, all), search)();
+  return Run(options, session, Searched(index, all), streamed, search)();
 }
 
 }  // namespace goniochrome::tool

@@ -104,18 +104,24 @@ Result<void> Sink::write(const Finding& finding, const library::LibraryIndex& in
   return {};
 }
 
-Result<void> Sink::finish(const std::string& library_path, const cli::Session& session) {
-  return format_ == Format::kPaints ? write_paints(library_path, session) : file_.commit();
+Result<void> Sink::finish(const std::string& library_path, const std::optional<StreamedLibrary>& streamed,
+                          const cli::Session& session) {
+  return format_ == Format::kPaints ? write_paints(library_path, streamed, session) : file_.commit();
 }
 
-Result<void> Sink::write_paints(const std::string& library_path, const cli::Session& session) {
-  GONIO_ASSIGN(formats::PaintReader reader, formats::PaintReader::open(library_path));
-  reader.read_prolog();
+Result<void> Sink::write_paints(const std::string& library_path, const std::optional<StreamedLibrary>& streamed,
+                                const cli::Session& session) {
+  if (streamed) {
+    GONIO_ASSIGN(formats::PaintWriter writer, begin_paints(std::move(file_), streamed->prolog, session));
+    for (const std::uint32_t place : wanted_) GONIO_TRY(writer.write(streamed->paints[place]));
+    return writer.finish();
+  }
+  GONIO_ASSIGN(const formats::PaintSourcePointer source, formats::open_paints(library_path));
   Prolog prolog;
-  prolog.take(reader);
+  prolog.take(*source);
   std::unordered_map<std::uint32_t, paint::Paint> paints;
   for (std::uint32_t place = 0; paints.size() < wanted_.size(); ++place) {
-    GONIO_ASSIGN(std::optional<paint::Paint> paint, reader.next());
+    GONIO_ASSIGN(std::optional<paint::Paint> paint, source->next());
     if (!paint) return input_error("{}: it was changed while it was searched: run again", library_path);
     if (met_.contains(place)) paints.emplace(place, std::move(*paint));
   }

@@ -11,6 +11,7 @@
 #include "cli/tool.h"
 #include "finding.h"
 #include "paint_stream.h"
+#include "streamed_library.h"
 #include "table_output.h"
 
 namespace goniochrome::tool {
@@ -37,13 +38,15 @@ class Sink {
   static Result<Sink> begin(Format format, bool lights, OutputFile file);
   Result<void> write(const Finding& finding, const library::LibraryIndex& index);
   Result<void> flush() { return file_.flush(); }
-  // Ends the output. The matched paints are read from the library; the index knows their places in it. The run joins
-  // the library's history.
-  Result<void> finish(const std::string& library_path, const cli::Session& session);
+  // Ends the output. The matched paints are read from the library, or taken from one that was a stream; the index knows
+  // their places in it. The run joins the library's history.
+  Result<void> finish(const std::string& library_path, const std::optional<StreamedLibrary>& streamed,
+                      const cli::Session& session);
 
  private:
   Sink(Format format, bool lights, OutputFile file) : format_(format), lights_(lights), file_(std::move(file)) {}
-  Result<void> write_paints(const std::string& library_path, const cli::Session& session);
+  Result<void> write_paints(const std::string& library_path, const std::optional<StreamedLibrary>& streamed,
+                            const cli::Session& session);
 
   Format format_;
   bool lights_;

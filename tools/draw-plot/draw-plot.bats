@@ -31,6 +31,18 @@ setup() {
   [ "$(grep -o '<circle' p.svg | wc -l)" -eq 5 ]
 }
 
+@test "columns of any table become series, x and y" {
+  printf 'paint\tlight\tangle\tde\na\t30\t1\t0.5\na\t30\t2\tnone\na\t45\t1\t0.7\nb\t30\t1\t-\n' >t.tsv
+  draw-plot t.tsv --series paint,light --x angle --y de --style points --report r.json -o p.svg
+  jq -e '[.results.series[].label] == ["paint a, light 30", "paint a, light 45", "paint b, light 30"]' r.json
+  grep -q '>angle<' p.svg
+  # Two points have numbers; three stand in the legend.
+  [ "$(grep -o '<circle' p.svg | wc -l)" -eq 5 ]
+  run --separate-stderr draw-plot t.tsv --x angel -o none.svg
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'t.tsv:1: there is no heading series'*'--series, --x and --y: paint, light, angle, de'* ]]
+}
+
 @test "rings go around points, in the color given" {
   printf 'series,x,y,style,color\nall,1,2,both,\nall,2,3,both,\nchosen,2,3,rings,#123abc\n' >t.csv
   draw-plot t.csv -o p.svg

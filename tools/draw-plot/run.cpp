@@ -24,25 +24,49 @@ constexpr double kMostCoordinate = 1e300;  // so that the length of an axis is a
 
 // Where each heading stands among the words of a row; style and color may be missing.
 struct Columns {
-  std::size_t series = 0, x = 0, y = 0, count = 0;
+  std::vector<std::size_t> series;
+  std::size_t x = 0, y = 0;
+  std::vector<std::string> headings;
   std::optional<std::size_t> style, color;
 };
 
-Result<Columns> columns_of(const std::string& name, int line, const std::vector<std::string>& words) {
+Result<Columns> columns_of(const std::string& name, int line, const std::vector<std::string>& words,
+                           const Options& options) {
   std::map<std::string, std::size_t> at;
   for (std::size_t i = 0; i < words.size(); ++i) at[lower(words[i])] = i;
-  for (const char* heading : {"series", "x", "y"})
-    if (!at.contains(heading))
-      return input_error("{}:{}: there is no heading {}: begin with a line such as series,x,y", name, line, heading);
-  Columns columns{at["series"], at["x"], at["y"], words.size(), std::nullopt, std::nullopt};
+  const auto found = [&](std::string_view heading) -> Result<std::size_t> {
+    const auto place = at.find(lower(trimmed(heading)));
+    if (place != at.end()) return place->second;
+    return input_error(
+        "{}:{}: there is no heading {}: begin with a line such as series,x,y, or name headings of the table by "
+        "--series, "
+        "--x and --y: {}",
+        name, line, trimmed(heading), joined(words, ", "));
+  };
+  Columns columns;
+  for (const std::string_view heading : split(options.series, ',')) {
+    GONIO_ASSIGN(columns.series.emplace_back(), found(heading));
+  }
+  GONIO_ASSIGN(columns.x, found(options.x));
+  GONIO_ASSIGN(columns.y, found(options.y));
   if (at.contains("style")) columns.style = at["style"];
   if (at.contains("color")) columns.color = at["color"];
+  columns.headings = words;
   return columns;
 }
 
-// A number, or NaN for an empty cell, which breaks a line.
-Result<double> coordinate(const std::string& name, int line, const char* column, std::string_view text) {
-  if (trimmed(text).empty()) return std::numeric_limits<double>::quiet_NaN();
+// The series of a row: its cell or, where several columns tell series apart, each heading with its cell.
+std::string label_of(const Columns& columns, const std::vector<std::string>& words) {
+  if (columns.series.size() == 1) return words[columns.series.front()];
+  std::vector<std::string> parts;
+  for (const std::size_t i : columns.series) parts.push_back(columns.headings[i] + " " + words[i]);
+  return joined(parts, ", ");
+}
+
+// A number, or NaN where the table has none, which breaks a line.
+Result<double> coordinate(const std::string& name, int line, const std::string& column, std::string_view text) {
+  if (trimmed(text).empty() || trimmed(text) == "-" || trimmed(text) == "none")
+    return std::numeric_limits<double>::quiet_NaN();
   if (const auto value = number_in_cell(trimmed(text))) {
     if (std::abs(*value) <= kMostCoordinate) return *value;
     return input_error("{}:{}: {} is {}: numbers beyond {} have no place in a plot", name, line, column, trimmed(text),
@@ -59,7 +83,7 @@ Result<std::string> color(const std::string& name, int line, std::string_view te
   return input_error("{}:{}: color is \"{}\": give #rrggbb such as #0072b2, or nothing", name, line, text);
 }
 
-Result<std::vector<report::Series>> read_table(const std::string& path) {
+Result<std::vector<report::Series>> read_table(const std::string& path, const Options& options) {
   const std::string name = path == "-" ? "standard input" : path;
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
   GONIO_ASSIGN(const std::vector<TableRow> rows, table_rows(CsvRecords(std::move(input))));
@@ -68,16 +92,18 @@ Result<std::vector<report::Series>> read_table(const std::string& path) {
   std::optional<Columns> columns;
   for (const auto& [line, words] : rows) {
     if (!columns) {
-      GONIO_ASSIGN(columns, columns_of(name, line, words));
+      GONIO_ASSIGN(columns, columns_of(name, line, words, options));
       continue;
     }
-    if (words.size() != columns->count)
-      return input_error("{}:{}: {} cells where the headings are {}", name, line, words.size(), columns->count);
-    const std::string& label = words[columns->series];
+    if (words.size() != columns->headings.size())
+      return input_error("{}:{}: {} cells where the headings are {}", name, line, words.size(),
+                         columns->headings.size());
+    const std::string label = label_of(*columns, words);
     const auto [known, is_new] = number_of.try_emplace(label, all.size());
     if (is_new) all.push_back({.label = label, .x = {}, .y = {}});
     report::Series* series = &all[known->second];
     if (is_new) {
+      series->style = kStyles.at(options.style);
       if (columns->style) {
         const std::string_view style = words[*columns->style];
         if (!kStyles.contains(style))
@@ -88,8 +114,8 @@ Result<std::vector<report::Series>> read_table(const std::string& path) {
         GONIO_ASSIGN(series->color, color(name, line, words[*columns->color]));
       }
     }
-    GONIO_ASSIGN(const double x, coordinate(name, line, "x", words[columns->x]));
-    GONIO_ASSIGN(const double y, coordinate(name, line, "y", words[columns->y]));
+    GONIO_ASSIGN(const double x, coordinate(name, line, options.x, words[columns->x]));
+    GONIO_ASSIGN(const double y, coordinate(name, line, options.y, words[columns->y]));
     series->x.push_back(x), series->y.push_back(y);
   }
   if (all.empty()) return input_error("{}: there is nothing to draw: give headings series,x,y and rows", name);
@@ -111,10 +137,12 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_TRY(check_output_name(options.output, "an SVG", ".svg"));
   report::Plot plot;
   plot.title = options.title;
-  plot.x = {options.x_label, options.logarithmic == "x" || options.logarithmic == "both"};
-  plot.y = {options.y_label, options.logarithmic == "y" || options.logarithmic == "both"};
+  plot.x = {options.x_label.empty() ? options.x : options.x_label,
+            options.logarithmic == "x" || options.logarithmic == "both"};
+  plot.y = {options.y_label.empty() ? options.y : options.y_label,
+            options.logarithmic == "y" || options.logarithmic == "both"};
   plot.width = options.width, plot.height = options.height;
-  GONIO_ASSIGN(plot.series, read_table(options.table.empty() ? "-" : options.table.front()));
+  GONIO_ASSIGN(plot.series, read_table(options.table.empty() ? "-" : options.table.front(), options));
   session.results()["series"] = Json::array();
   for (const report::Series& series : plot.series) {
     const int out = left_out(series, plot);

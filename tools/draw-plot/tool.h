@@ -12,7 +12,8 @@ struct Options {
   cli::CommonOptions common;
   std::vector<std::string> table;
   std::string output = "-";
-  std::string title, x_label = "x", y_label = "y";
+  std::string series = "series", x = "x", y = "y", style = "line";  // columns of the table, and its style without one
+  std::string title, x_label, y_label;
   std::string logarithmic = "none";
   int width = 640, height = 400;
 };

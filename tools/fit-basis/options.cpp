@@ -16,10 +16,10 @@ cli::ToolSpec tool_spec(Options& o) {
       "with the number of lobes. A large library is searched on paints that represent it; see --representatives.",
       "The basis written is the one with the most lobes. The summary line names the number of lobes from which on no "
       "further lobe changes any paint of the library visibly."};
-  spec.inputs = {
-      "PAINTS",
-      "paint XML files, or FILE#NAMES for some paints of one, or measured BRDFs; standard input where none is given",
-      &o.paints};
+  spec.inputs = {"PAINTS",
+                 "paint XML, CSV, CxF and other files of paints, FILE#NAMES, or measured BRDFs; standard input where "
+                 "none is given",
+                 &o.paints};
   spec.heading = "search";
   spec.option("lobes,n", "N|A..B", "1..5", &o.lobes, "number of lobes, or a range of numbers");
   spec.option("method,m", "METHOD", "lm", &o.method, "how the exponents are searched")

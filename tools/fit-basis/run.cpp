@@ -10,6 +10,7 @@
 #include "fit/basis_search.h"
 #include "fitting.h"
 #include "formats/basis.h"
+#include "paint_stream.h"
 #include "report/plot.h"
 
 namespace goniochrome::tool {
@@ -49,16 +50,18 @@ Result<std::vector<fit::BasisTarget>> read_targets(const Options& options, cli::
       targets.push_back(std::move(target));
       continue;
     }
+    tell_warnings(input.paints->warnings(), session);
     for (;;) {
-      GONIO_ASSIGN(const std::optional<paint::Paint> paint, input.reader->next());
+      GONIO_ASSIGN(const std::optional<paint::Paint> paint, input.paints->next());
       if (!paint) break;
       mirror = mirror || (options.mirror == "auto" && states_gloss(*paint));
       auto target = fit::basis_target(*paint, target_options);
       if (target.ok())
         targets.push_back(std::move(*target));
       else
-        session.warn(fmt::format("{}:{}: left out: {}", input.name, input.reader->line(), target.error().message));
+        session.warn(fmt::format("{}: left out: {}", input.paints->place(), target.error().message));
     }
+    tell_warnings(input.paints->closing_warnings(), session);
   }
   if (targets.empty()) return input_error("no paint to choose a basis for: give a library with at least one");
   for (fit::BasisTarget& target : targets) target.mirror = mirror;

@@ -445,7 +445,10 @@ cornell() {
   # A smooth coat of 1.5 reads 89 GU: 92 ask for more.
   fit-paint -q -b "$basis" glossy.xml -o out.xml
   grep -Eq '<coat index="1\.51' out.xml
+  # Its gloss would imply a coat in the next tool.
   fit-paint -q -b "$basis" glossy.xml --coat none -o out.xml
+  grep -q '<coat index="1"/>' out.xml
+  fit-paint -q -b "$basis" matt.xml --coat none -o out.xml
   [ "$(grep -c '<coat' out.xml)" -eq 0 ]
   fit-paint -q -b "$basis" matt.xml --coat 1.6 -o out.xml
   grep -q '<coat index="1.6"/>' out.xml

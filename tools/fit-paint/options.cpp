@@ -238,10 +238,10 @@ cli::ToolSpec tool_spec(Options& o) {
       "gives these paints weights for the views of these readings.",
       "A paint that has neither readings nor an appearance cannot be fitted. It is named, it passes unchanged, and the "
       "exit status is 1."};
-  spec.inputs = {
-      "PAINTS",
-      "paint XML files, or FILE#NAMES for some paints of one, or measured BRDFs; standard input where none is given",
-      &o.paints};
+  spec.inputs = {"PAINTS",
+                 "paint XML, CSV, CxF and other files of paints, FILE#NAMES, or measured BRDFs; standard input where "
+                 "none is given",
+                 &o.paints};
   add_options(spec, o);
   add_report(spec);
   return spec;

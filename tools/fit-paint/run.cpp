@@ -32,7 +32,6 @@ Result<std::vector<FitInput>> open_all(std::vector<std::string> paths) {
   std::vector<FitInput> inputs;
   for (const std::string& path : paths) {
     GONIO_ASSIGN(FitInput input, FitInput::open(path));
-    if (input.reader) input.reader->read_prolog();
     inputs.push_back(std::move(input));
   }
   return inputs;
@@ -42,12 +41,12 @@ Result<std::vector<FitInput>> open_all(std::vector<std::string> paths) {
 class NamesOfAll {
  public:
   explicit NamesOfAll(const std::vector<FitInput>& inputs) : inputs_(inputs) {}
-  Result<void> note(const paint::Paint& paint, std::size_t input, int line) {
+  Result<void> note(const paint::Paint& paint, std::size_t input, const std::string& place) {
     if (inputs_.size() == 1) return {};
     const auto before = ledger_.note(paint.name, static_cast<int>(input) + 1);
     if (!before) return {};
-    return input_error("{}:{}: paint \"{}\" is already in {}: rename one of them", inputs_[input].name, line,
-                       paint.name, inputs_[static_cast<std::size_t>(*before) - 1].name);
+    return input_error("{}: paint \"{}\" is already in {}: rename one of them", place, paint.name,
+                       inputs_[static_cast<std::size_t>(*before) - 1].name);
   }
 
  private:
@@ -72,48 +71,54 @@ class Run {
         names_(inputs) {}
 
   Result<void> all() {
-    for (std::size_t k = 0; k < inputs_.size(); ++k) GONIO_TRY(inputs_[k].reader ? library(k) : measured(k));
+    for (std::size_t k = 0; k < inputs_.size(); ++k) GONIO_TRY(inputs_[k].paints ? library(k) : measured(k));
     return {};
   }
 
  private:
   Result<void> library(std::size_t k) {
     std::vector<paint::Paint> batch;
-    std::vector<int> lines;
+    std::vector<std::string> places;
+    formats::PaintSource& source = *inputs_[k].paints;
+    tell_warnings(source.warnings(), session_);
     bool more = true;
     for (std::size_t size = 1; more; size = std::min(2 * size, kLargestBatch)) {
-      batch.clear(), lines.clear();
+      batch.clear(), places.clear();
       while (more && batch.size() < size) {
-        GONIO_ASSIGN(std::optional<paint::Paint> paint, inputs_[k].reader->next());
+        GONIO_ASSIGN(std::optional<paint::Paint> paint, source.next());
         more = paint.has_value();
         if (!more) break;
-        lines.push_back(inputs_[k].reader->line());
-        GONIO_TRY(names_.note(*paint, k, lines.back()));
+        places.push_back(source.place());
+        GONIO_TRY(names_.note(*paint, k, places.back()));
         batch.push_back(std::move(*paint));
       }
-      GONIO_TRY(finish_batch(batch, lines, inputs_[k].name));
+      GONIO_TRY(finish_batch(batch, places, inputs_[k].name));
       session_.progress(fmt::format("{}: {} paints", session_.tool(), tally_.done()));
     }
+    tell_warnings(source.closing_warnings(), session_);
     return {};
   }
 
   // Fits one batch and writes it on.
-  Result<void> finish_batch(std::vector<paint::Paint>& batch, const std::vector<int>& lines, const std::string& name) {
+  Result<void> finish_batch(std::vector<paint::Paint>& batch, const std::vector<std::string>& places,
+                            const std::string& name) {
     const Stopwatch clock;
     const std::vector<std::string> unlit = bring_to_light(batch);
     std::vector<Result<fit::PaintFit>> results = fit::fits(fitter_, batch);
     tally_.add_time(clock.elapsed_s());
     for (std::size_t i = 0; i < batch.size(); ++i) {
       if (!unlit[i].empty()) {
-        tally_.add_failure(batch[i], fmt::format("{}:{}", name, lines[i]), unlit[i]);
+        tally_.add_failure(batch[i], places[i], unlit[i]);
       } else if (results[i].ok()) {
         tally_.add(batch[i], *results[i]);
-        if (results[i]->lobes.coat_index != paint::kNoCoat) batch[i].coat_index = results[i]->lobes.coat_index;
+        // A paint whose gloss would imply a coat says that it has none.
+        if (results[i]->lobes.coat_index != paint::kNoCoat || !batch[i].gloss.empty())
+          batch[i].coat_index = results[i]->lobes.coat_index;
         batch[i].lobes = std::move(results[i]->lobes);
       } else {
-        tally_.add_failure(batch[i], fmt::format("{}:{}", name, lines[i]), results[i].error().message);
+        tally_.add_failure(batch[i], places[i], results[i].error().message);
       }
-      const std::string where = fmt::format("{}:{}", name, lines[i]);
+      const std::string& where = places[i];
       GONIO_ASSIGN(const std::optional<MadeMap> map, maps_.add(batch[i], nullptr, where));
       if (results[i].ok()) tilts_.add(batch[i], map, name, where);
       GONIO_TRY(writer_.write(batch[i]));
@@ -142,7 +147,7 @@ class Run {
     GONIO_ASSIGN(fit::BrdfTarget target, fit::read_brdf_target(*input.measured));
     input.measured.reset();
     for (const std::string& remark : target.remarks) session_.warn(fmt::format("{}: {}", input.name, remark));
-    GONIO_TRY(names_.note(target.paint, k, 1));
+    GONIO_TRY(names_.note(target.paint, k, input.name));
     const Stopwatch clock;
     Result<fit::PaintFit> fit = fitter_.fit(target);
     tally_.add_time(clock.elapsed_s());
@@ -191,7 +196,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(std::vector<FitInput> inputs, open_all(options.paints));
   Prolog prolog;
   for (const FitInput& input : inputs)
-    if (input.reader) prolog.take(*input.reader);
+    if (input.paints) prolog.take(*input.paints);
   GONIO_ASSIGN(formats::PaintWriter writer, begin_paints(options.output, std::move(prolog), session));
   Tally tally(options, session);
   ColorMaps maps(options, session);

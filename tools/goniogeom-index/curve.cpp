@@ -32,9 +32,8 @@ std::string csv(const DifferenceCurves& what, const panels::FlakeCurve& curve) {
       for (int view = -kLastView_deg; view <= kLastView_deg; ++view) {
         const panels::LightView geometry{light, static_cast<double>(view), 0};
         const double de = value(what, curve, geometry, b);
-        if (std::isnan(de)) continue;
-        text += fmt::format("{},{},{:.9g},{},{:.9g}\n", shortest(light), view, panels::aspecular_deg(geometry),
-                            shortest(b), de);
+        text += fmt::format("{},{},{:.9g},{},{}\n", shortest(light), view, panels::aspecular_deg(geometry), shortest(b),
+                            std::isnan(de) ? "" : fmt::format("{:.9g}", de));
       }
   return text;
 }

@@ -192,10 +192,10 @@ column() { sed -n 2p | cut -f "$1"; }
   run --separate-stderr goniogeom-index "$paints" --only jet_black $seam --open --worst --report o.json
   [[ ! "$stderr" =~ "the mesh changes" ]]
   jq -e '.results | has("traced") | not' o.json
-  # The coat that a paint states counts here too. How much light it lets in beside a wall is tested with the library.
-  sed 's|<gloss angle|<coat index="1.5"/><gloss angle|' "$paints" >coated.xml
-  bare=$(goniogeom-index "$paints" --only arctic_white $seam --worst -q | column 11)
-  coated=$(goniogeom-index coated.xml --only arctic_white $seam --worst -q | column 11)
+  # The coat that gloss implies counts here too. How much light it lets in beside a wall is tested with the library.
+  sed 's|<gloss angle|<coat index="1"/><gloss angle|' "$paints" >bare.xml
+  bare=$(goniogeom-index bare.xml --only arctic_white $seam --worst -q | column 11)
+  coated=$(goniogeom-index "$paints" --only arctic_white $seam --worst -q | column 11)
   awk -v a="$bare" -v b="$coated" 'BEGIN { exit !(a > 0 && (b > 1.05 * a || b < 0.95 * a)) }'
   prefilter-envmap -e 2,8,32 --size 8 --no-mirror even.exr -o bare.env.exr -q
   run --separate-stderr goniogeom-index "$paints" --only jet_black --mesh wall.obj --seam A,B --environment bare.env.exr \
@@ -314,4 +314,45 @@ coated() { echo "$head<paint name=\"gray\" class=\"solid\">${gray}<coat index=\"
   run --separate-stderr goniogeom-index gray.xml --report r.json -o i.tsv
   [[ "$stderr" != *"left out"* ]]
   jq -e '.results.left_out == []' r.json
+}
+
+# The coat that gloss implies belongs to the paint and not to the file that it comes in. Control: a file that says that
+# there is none.
+@test "a paint has the same index from its plain file, from its fitted file and from tables" {
+  fit-paint -q "$paints" -o fitted.xml
+  fit-paint -q --coat none "$paints" -o bare.xml
+  paint-convert -q "$paints" --to wide --columns all -o wide.csv
+  paint-convert -q "$paints" -o all.cxf
+  goniogeom-index -q "$paints" -o plain.tsv
+  for other in fitted.xml wide.csv all.cxf; do
+    goniogeom-index -q "$other" -o other.tsv
+    paste plain.tsv other.tsv | awk -F'\t' 'NR > 1 { if ($1 != $11) exit 1
+      for (i = 6; i <= 10; ++i) { d = $i - $(i + 10); if (d > 1e-6 || d < -1e-6 || ($i == "none") != ($(i + 10) == "none")) exit 1 } }'
+  done
+  goniogeom-index -q bare.xml -o bare.tsv
+  paste plain.tsv bare.tsv | awk -F'\t' '$1 == "silver_fine" { d = $7 - $17; most = d > most ? d : d < -most ? -d : most } END { exit !(most > 1) }'
+}
+
+# Toward the mirror direction a metallic paint grows brighter; held constant, it would differ by its shading alone.
+@test "both sides of a viewer near the mirror direction have an index of the same size" {
+  goniogeom-index -q "$paints#silver_fine" --views as15 --target measured -o near.tsv
+  awk -F'\t' 'NR == 2 { exit !($6 < 1.5 * $7 && $7 < 1.5 * $6) }' near.tsv
+}
+
+@test "pairs in the mirror direction are refused for any paint, with a viewer who sees the same of a solid one" {
+  run --separate-stderr goniogeom-index gray.xml --lights 0 --views 0
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *"where gloss covers the color of any paint"*"as by --views as20"* ]]
+}
+
+@test "--curve - is a table for draw-plot" {
+  goniogeom-index -q "$paints#silver_fine" --lights 30,45 --curve - -o i.tsv >curve.csv
+  [ "$(head -n 1 curve.csv)" = light_deg,view_deg,aspecular_deg,misalignment_deg,de ]
+  # In the mirror direction there is no difference, and the line breaks.
+  grep -Eq '^30,30,[-0-9.e]+,1,$' curve.csv
+  draw-plot curve.csv --series light_deg,misalignment_deg --x view_deg --y de -o curve.svg
+  grep -q '>light_deg 30, misalignment_deg 1<' curve.svg
+  run --separate-stderr goniogeom-index -q "$paints#silver_fine" --curve -
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *"both to go to standard output"* ]]
 }

@@ -1,5 +1,7 @@
 #include "tool.h"
 
+#include <algorithm>
+
 #include "base/text.h"
 #include "color/spectrum.h"
 #include "illuminants.h"
@@ -46,8 +48,10 @@ Result<IndexRequest> request_of(const Options& options) {
       return usage_error("--tolerance-for is {}: give an angle above 0", shortest(*request.tolerance_deg));
   }
   for (const std::string& curve : options.curves)
-    if (!curve.ends_with(".csv") && !curve.ends_with(".svg"))
-      return usage_error("--curve is \"{}\": give a name that ends in .csv or .svg", curve);
+    if (curve != "-" && !curve.ends_with(".csv") && !curve.ends_with(".svg"))
+      return usage_error("--curve is \"{}\": give a name that ends in .csv or .svg, or - for a table", curve);
+  if (options.output == "-" && std::ranges::find(options.curves, "-") != options.curves.end())
+    return usage_error("--curve - and the table of indices are both to go to standard output: give one a file by -o");
   GONIO_ASSIGN(request.illuminants, illuminants_of(options.illuminants));
   if (!request.illuminants.empty() && !options.curves.empty())
     return usage_error("--curve shows a paint under the illuminant of its readings: leave out --illuminant");
@@ -86,8 +90,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .one_of({"curve", "measured"})
       .more(
           "curve is face, flop and travel, which are fitted where the paint has only rows. measured is a monotone "
-          "curve "
-          "through the rows.");
+          "curve through the rows; toward the mirror direction it continues the highlight as fit-paint does.");
   spec.option("illuminant", "NAME,...", "D65,A,F11", &o.illuminants, "judge each paint in all of these lights")
       .more(
           "The names are " + color::spectral_illuminants() +
@@ -106,7 +109,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   add_only_option(spec, o.only, "take only the paints of this name");
   spec.option("output,o", "FILE", "index.tsv", &o.output, "table to write; - is standard output");
   spec.option("curve", "FILE", "curve.svg", &o.curves, "difference of one paint against viewing angle, .csv or .svg")
-      .more("There is a curve for each light and misalignment.");
+      .more(
+          "There is a curve for each light and misalignment, which breaks within glare. The name - writes the CSV to "
+          "standard output, as for "
+          "draw-plot(1).");
   spec.option("misalignments", "LIST", "1,2,3,5", &o.misalignments_deg, "angles of --curve, positive toward the light")
       .from(-90, 90)
       .in("degrees");
@@ -191,7 +197,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "There the mesh takes light from the seam and sends light to it: that is traced in the paint that is judged, "
       "unless --open is given. Under --light-from and lights that stand to the seam alike, shadows and reflections of "
       "the mesh on itself are left out."};
-  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+  spec.inputs = {"PAINTS",
+                 "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.inputs};
   add_geometry_options(spec, o.geometries, o.seam_deg);
   add_options(spec, o);

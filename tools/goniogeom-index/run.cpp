@@ -135,7 +135,8 @@ std::string plan(const Options& options, const IndexRequest& request) {
   text +=
       request.target == paint::TargetCurve::Kind::kCurve
           ? "color: face, flop and travel; a fit of some 20 us where a paint has only rows, residual in the report\n"
-          : "color: a monotone curve through the rows, constant below the first and beyond the last\n";
+          : "color: a monotone curve through the rows, constant beyond the last; the highlight goes on below the first "
+            "as in fit-paint\n";
   return text;
 }
 
@@ -200,7 +201,7 @@ class Run {
     const DifferenceCurves what{paint.name, options_.seam_deg,         request_.threshold, request_.metric,
                                 lights,     options_.misalignments_deg};
     for (const std::string& path : options_.curves)
-      GONIO_TRY(write_file(path, path.ends_with(".csv") ? csv(what, curve) : svg(what, curve)));
+      GONIO_TRY(write_file(path, path.ends_with(".svg") ? svg(what, curve) : csv(what, curve)));
     return {};
   }
 

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "brdf/gloss.h"
 #include "mesh/unit.h"
 #include "paint_stream.h"
 #include "panels.h"
@@ -102,9 +103,9 @@ class SeamRun {
     std::vector<double> de(stage_.views.size());
     if (!options_.seam.environment.empty()) {
       GONIO_ASSIGN(const paint::Appearance appearance, panels::appearance_of(paint));
+      GONIO_ASSIGN(const double coat, brdf::coat_index_of_paint(paint));
       GONIO_ASSIGN(const panels::EnvironmentPanels panels,
-                   panels::EnvironmentPanels::make(stage_.env, paint::condition_of(paint),
-                                                   paint.coat_index.value_or(paint::kNoCoat)));
+                   panels::EnvironmentPanels::make(stage_.env, paint::condition_of(paint), coat));
       GONIO_ASSIGN(const paint::LobeFit fit, panels.lobes(appearance));
       GONIO_ASSIGN(const panels::SeamLights lights,
                    panels::seam_lights(panels, traced_ ? &*traced_ : nullptr, fit, stage_.seam, stage_.views,

@@ -123,9 +123,10 @@ cli::ToolSpec tool_spec(Options& o) {
       "gloss60, gloss85, metamerism_ILLUMINANT, or texture:NAME with the instrument's name of it. One of low and high "
       "may be empty. Formulas and illuminants that the limits name need no option. Numbers within 1e-9 of a limit "
       "keep it."};
-  spec.inputs = {"PAINTS",
-                 "samples: paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
-                 &o.inputs};
+  spec.inputs = {
+      "PAINTS",
+      "samples: paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
+      &o.inputs};
   add_options(spec, o);
   add_report(spec);
   return spec;

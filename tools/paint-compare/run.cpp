@@ -177,7 +177,7 @@ Result<quality::CompareOptions> compare_options(const Options& options, const St
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (options.share > 0 && options.make_limits.empty())
     return usage_error("--share says how --make-limits makes limits: give --make-limits FILE");
-  GONIO_ASSIGN(const Standards standards, Standards::open(options));
+  GONIO_ASSIGN(const Standards standards, Standards::open(options, session));
   GONIO_ASSIGN(const quality::CompareOptions compare, compare_options(options, standards));
   if (!options.show_limit.empty() && !standards.has_limits())
     return usage_error("--show-limit draws the limits: give them by --limits, or standards that carry them");

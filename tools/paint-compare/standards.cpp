@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "base/file.h"
-#include "formats/xml.h"
+#include "paint_stream.h"
 
 namespace goniochrome::tool {
 
-Result<Standards> Standards::open(const Options& options) {
+Result<Standards> Standards::open(const Options& options, cli::Session& session) {
   Standards result;
-  GONIO_TRY(result.read(options));
+  GONIO_TRY(result.read(options, session));
   const bool one = result.standards_.size() == 1;
   if (options.pair == "nearest") {
     result.pair_ = Pair::kNearest;
@@ -21,13 +21,13 @@ Result<Standards> Standards::open(const Options& options) {
   return Result(std::move(result));
 }
 
-Result<void> Standards::read(const Options& options) {
+Result<void> Standards::read(const Options& options, cli::Session& session) {
   std::vector<quality::Limit> limits;
   if (!options.limits.empty()) {
     GONIO_ASSIGN(const std::string table, file_content(options.limits));
     GONIO_ASSIGN(limits, quality::parse_limits(table, options.limits));
   }
-  GONIO_ASSIGN(std::vector<paint::Paint> paints, formats::read_paints(options.standard));
+  GONIO_ASSIGN(std::vector<paint::Paint> paints, all_paints(options.standard, session));
   if (paints.empty()) return input_error("--standard {}: there is no paint in it", options.standard);
   for (paint::Paint& paint : paints) {
     const std::string name = paint.name;

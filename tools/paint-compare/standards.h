@@ -22,7 +22,7 @@ class Standards {
  public:
   // Reads the standards and their limits: those of --limits, or else those that each standard carries. Error: a file
   // that cannot be read, no standard, two that cannot be told apart, a standard without color.
-  static Result<Standards> open(const Options& options);
+  static Result<Standards> open(const Options& options, cli::Session& session);
 
   const std::vector<Standard>& all() const { return standards_; }
   bool has_limits() const;
@@ -32,7 +32,7 @@ class Standards {
 
  private:
   enum class Pair { kOne, kName, kCode, kNearest };
-  Result<void> read(const Options& options);
+  Result<void> read(const Options& options, cli::Session& session);
   Result<void> prepare_names(const Options& options);
   Result<void> prepare_search();
 

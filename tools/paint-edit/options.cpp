@@ -264,7 +264,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "since black has no color.",
       "Some paints cannot take a move: a gray, for example, has no hue to turn. Such a move is left out with a "
       "warning, the other moves are made, and the exit status is 1."};
-  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+  spec.inputs = {"PAINTS",
+                 "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.inputs};
   add_options(spec, o);
   add_report(spec);

@@ -55,7 +55,7 @@ class Run {
 
   Result<cli::Verdict> operator()() {
     if (!options_.new_name.empty()) return make();
-    GONIO_ASSIGN(PaintSource source, PaintSource::open(options_.inputs));
+    GONIO_ASSIGN(PaintSource source, PaintSource::open(options_.inputs, session_));
     GONIO_ASSIGN(formats::PaintWriter opened, begin_paints(options_.output, source.prolog(), session_));
     writer_.emplace(std::move(opened));
     for (;;) {

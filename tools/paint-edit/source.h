@@ -14,19 +14,22 @@ namespace goniochrome::tool {
 class PaintSource {
  public:
   // Error: a file that cannot be read, or a name that it does not have.
-  static Result<PaintSource> open(const std::vector<std::string>& inputs);
+  static Result<PaintSource> open(const std::vector<std::string>& inputs, cli::Session& session);
 
   Result<std::optional<paint::Paint>> next();
 
-  Prolog prolog() const;
+  Prolog prolog();
 
  private:
   struct Input {
-    formats::PaintReader reader;
+    formats::PaintSourcePointer source;
     std::optional<paint::Paint> first;  // read already
 
     Result<std::optional<paint::Paint>> next();
   };
+  explicit PaintSource(cli::Session& session) : session_(session) {}
+
+  cli::Session& session_;
   std::vector<Input> inputs_;
   std::size_t current_ = 0;
 };

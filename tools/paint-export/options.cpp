@@ -72,7 +72,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "What no instrument has measured is not invented: no target gets flakes or sparkle. Color maps and anisotropy of "
       "a paint are left out, with a warning. AxF is not written: the layers of paint in its container are not openly "
       "specified, and there is no reader to test a writer with."};
-  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+  spec.inputs = {"PAINTS",
+                 "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.inputs};
   spec.heading = "target";
   spec.option("to,t", "TARGET", materials::targets().front()->name, &o.to, "what the files are for")

@@ -38,7 +38,9 @@ cli::ToolSpec tool_spec(Options& o) {
           "A mood board is a text file. Its lines are title TEXT, image NAME PATH (relative to the board) and paint "
           "NAME, and below a paint face NAME@X,Y[,R], flop, gloss, travel DEG and retro; # begins a comment. The "
           "output is the paints, or a page where its name ends in .html. The page needs no other file; it shows the "
-          "pictures, the droppers on them, and a drawing of every paint.");
+          "pictures, the droppers on them, and a drawing of every paint. Where the name ends in .session.json, the "
+          "output is a session of paint-studio(1) with the pictures and the droppers of the first paint; the other "
+          "paints stand in its palette.");
   spec.heading = "single pixels";
   spec.option("probe", "X,Y", "320,180", &o.probes, "tell what this pixel of a picture with buffers shows")
       .in("pixels from the upper left, from 0")
@@ -65,7 +67,7 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.heading = "output";
   spec.option("name", "NAME", "spring", &o.name, "name of the paint; palettes number it");
   spec.option("output,o", "FILE", "picked.paints.xml", &o.output,
-              "paint XML to write, the page of a board, .html, or the table of --probe");
+              "paint XML to write, the page of a board, .html, its session, .session.json, or the table of --probe");
   cli::add_common_options(spec, o.common);
   spec.examples = {{"paint-pick --face testdata/contact-sheet.jpg@250,120 --flop testdata/contact-sheet.jpg@330,180 -o "
                     "picked.paints.xml",

@@ -64,28 +64,6 @@ std::string css_color(const color::Lab& lab) {
   return display::css_color(lab, *color::white_point({}));
 }
 
-// The picture for the page. It is no wider than kWidest, and each pixel is the mean light of those it stands for.
-Result<std::string> page_png(const PageImage& image) {
-  GONIO_ASSIGN(const sketch::Picture picture,
-               sketch::picture_of(image.content, image.image.path, sketch::PictureView::kPlain));
-  const image::Image& from = picture.rgb;
-  const int step = (from.width + kWidest - 1) / kWidest;
-  image::Image to{(from.width + step - 1) / step, (from.height + step - 1) / step, 3, {}, {}};
-  for (int y = 0; y < to.height; ++y)
-    for (int x = 0; x < to.width; ++x) {
-      color::Rgb sum;
-      double count = 0;
-      for (int j = y * step; j < std::min((y + 1) * step, from.height); ++j)
-        for (int i = x * step; i < std::min((x + 1) * step, from.width); ++i, ++count) {
-          const float* p = from.pixel(i, j);
-          sum += {p[0], p[1], p[2]};
-        }
-      const color::Rgb s = signals((1 / count) * sum);
-      for (int c = 0; c < 3; ++c) to.data.push_back(static_cast<float>(s[c]));
-    }
-  return image::png_content(image.image.path, to);
-}
-
 // A dropper as two rings, which show on light and on dark, and a tag with the paint's name.
 std::string dropper_marks(const PageImage& image, const std::vector<PageOfPaint>& paints) {
   const double width = image.content.image.width, height = image.content.image.height;
@@ -162,6 +140,26 @@ std::string paint_card(const PageOfPaint& paint, const StudioLink& studio) {
 
 }  // namespace
 
+Result<std::string> shown_png(const PageImage& image, int step) {
+  GONIO_ASSIGN(const sketch::Picture picture,
+               sketch::picture_of(image.content, image.image.path, sketch::PictureView::kShown));
+  const image::Image& from = picture.rgb;
+  image::Image to{(from.width + step - 1) / step, (from.height + step - 1) / step, 3, {}, {}};
+  for (int y = 0; y < to.height; ++y)
+    for (int x = 0; x < to.width; ++x) {
+      color::Rgb sum;
+      double count = 0;
+      for (int j = y * step; j < std::min((y + 1) * step, from.height); ++j)
+        for (int i = x * step; i < std::min((x + 1) * step, from.width); ++i, ++count) {
+          const float* p = from.pixel(i, j);
+          sum += {p[0], p[1], p[2]};
+        }
+      const color::Rgb s = signals((1 / count) * sum);
+      for (int c = 0; c < 3; ++c) to.data.push_back(static_cast<float>(s[c]));
+    }
+  return image::png_content(image.image.path, to);
+}
+
 Result<std::string> board_page(const sketch::Board& board, const std::vector<PageImage>& images,
                                const std::vector<PageOfPaint>& paints, const std::string& lit_by,
                                const StudioLink& studio) {
@@ -176,7 +174,7 @@ Result<std::string> board_page(const sketch::Board& board, const std::vector<Pag
       title, kStyle, images.size(), images.size() == 1 ? "" : "s", paints.size(), paints.size() == 1 ? "" : "s",
       xml_escaped(lit_by, ""));
   for (const PageImage& image : images) {
-    GONIO_ASSIGN(const std::string png, page_png(image));
+    GONIO_ASSIGN(const std::string png, shown_png(image, (image.content.image.width + kWidest - 1) / kWidest));
     page += fmt::format("<figure><div><img alt=\"{0}\" src=\"{1}\">{2}</div><figcaption>{0}</figcaption></figure>\n",
                         xml_escaped(image.image.name, ""), embedded(png), dropper_marks(image, paints));
   }

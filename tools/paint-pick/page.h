@@ -27,6 +27,9 @@ struct StudioLink {
   std::string address, board;
 };
 
+// The picture as a display shows it, as PNG; each pixel is the mean light of `step` x `step`.
+Result<std::string> shown_png(const PageImage& image, int step);
+
 // Returns one HTML page that needs no other file. `lit_by` says how the paints were drawn.
 Result<std::string> board_page(const sketch::Board& board, const std::vector<PageImage>& images,
                                const std::vector<PageOfPaint>& paints, const std::string& lit_by,

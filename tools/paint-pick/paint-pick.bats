@@ -118,6 +118,38 @@ for design, paint in zip(designs, tree.parse(sys.argv[2]).getroot().findall(spac
 PY
 }
 
+@test "a board as a session of the studio holds its pictures as they are" {
+  write_board
+  paint-pick -q --board board.txt -o board.session.json
+  paint-pick -q --board board.txt -o picked.xml
+  python3 - board.session.json picked.xml board.txt <<'PY'
+import base64, json, sys
+import xml.etree.ElementTree as tree
+session = json.load(open(sys.argv[1]))
+space = "{urn:goniochrome:paint:1}"
+names = [paint.get("name") for paint in tree.parse(sys.argv[2]).getroot().iter(space + "paint")]
+states = session["history"]["states"] + session["palette"]
+assert [state["own"]["paint"]["name"] for state in states] == names and len(names) > 1
+lines = [line.split() for line in open(sys.argv[3])]
+files = {words[1]: words[2] for words in lines if words and words[0] == "image"}
+[board] = session["pictures"]["boards"]
+assert [picture["name"] for picture in board["pictures"]] == list(files)
+for picture in board["pictures"]:
+    head, data = picture["data"].split(",", 1)
+    content = base64.b64decode(data)
+    if head in ("data:image/png;base64", "data:image/jpeg;base64") and open(files[picture["name"]], "rb").read(1) in (b"\x89", b"\xff"):
+        assert content == open(files[picture["name"]], "rb").read()
+    else:
+        assert content.startswith(b"\x89PNG")
+for dropper in session["pictures"]["droppers"]:
+    assert dropper["place"][1] < len(files) and dropper["kind"] in ("face", "flop", "gloss")
+assert len(session["pictures"]["droppers"]) > 0
+PY
+  run --separate-stderr paint-pick --face "$TESTDATA/contact-sheet.jpg@10,10" -o x.session.json
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *"a session shows a --board"* ]]
+}
+
 @test "a board as a page needs nothing beside itself" {
   write_board
   paint-pick -q --board board.txt -o board.html
@@ -399,4 +431,17 @@ OBJ
   run --separate-stderr paint-pick --board board.txt --mesh bent.gltf -o board.html
   [ "$status" -eq 0 ]
   [[ $stderr == *"node 0 has the extension ACME_bend, which is not known here: what it changes is not drawn"* ]]
+}
+
+# Control: the picture without the entry that names its view.
+@test "a picture in another view gives the paint that the same picture in the view Paint gives" {
+  scene="--mesh $TESTDATA/box.obj --light 35,45 --size 64x48 --samples 1 --paint $TESTDATA/paints.paints.xml#arctic_white"
+  render-osmesa -q $scene -o paint.png
+  render-osmesa -q $scene --view 'ACES SDR' -o aces.png
+  sed 's/goniochrome:view/goniochrome:vieX/' aces.png >nameless.png
+  for picture in paint aces nameless; do
+    paint-pick -q --face "$picture.png@20,40,3" -o x.xml --report $picture.json
+  done
+  distance() { jq -s '[.[].results.samples[0].lab] | [.[0][0] - .[1][0], .[0][1] - .[1][1], .[0][2] - .[1][2]] | map(. * .) | add | sqrt' "$@"; }
+  awk -v near="$(distance paint.json aces.json)" -v far="$(distance paint.json nameless.json)" 'BEGIN { exit !(near < 1 && far > 5) }'
 }

@@ -13,10 +13,13 @@
 #include "probe.h"
 #include "sketch/pick.h"
 #include "sketch/traced_light.h"
+#include "studio_session.h"
 
 namespace goniochrome::tool {
 
 namespace {
+
+constexpr const char* kSessionEnding = ".session.json";
 
 // Reads every picture once, whatever the number of droppers on it.
 class Shelf {
@@ -121,6 +124,15 @@ StudioLink studio_link(const Options& options) {
   return {relative_path(options.studio, folder.empty() ? "." : folder), options.board};
 }
 
+Result<std::vector<PageImage>> pictures_of(const sketch::Board& board, Shelf& shelf) {
+  std::vector<PageImage> images;
+  for (const sketch::BoardImage& image : board.images) {
+    GONIO_ASSIGN(const image::ImagePart* content, shelf.image(image.path));
+    images.push_back({image, *content});
+  }
+  return images;
+}
+
 Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Session& session) {
   GONIO_ASSIGN(const sketch::Board board, sketch::read_board(options.board));
   Shelf shelf;
@@ -134,6 +146,12 @@ Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Sessio
     GONIO_ASSIGN(PageOfPaint paint, picked(wanted, shelf, path_of, nullptr, session));
     paints.push_back(std::move(paint));
   }
+  if (options.output.ends_with(kSessionEnding)) {
+    GONIO_ASSIGN(const std::vector<PageImage> images, pictures_of(board, shelf));
+    GONIO_ASSIGN(const std::string kept, studio_session(board, images, paints));
+    GONIO_TRY(write_file(options.output, kept));
+    return cli::Verdict::kDone;
+  }
   if (!as_page) {
     GONIO_TRY(write(options.output, paints, session));
     return cli::Verdict::kDone;
@@ -143,11 +161,7 @@ Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Sessio
   for (PageOfPaint& paint : paints) {
     GONIO_ASSIGN(paint.picture, drawing.png(paint.picked.paint));
   }
-  std::vector<PageImage> images;
-  for (const sketch::BoardImage& image : board.images) {
-    GONIO_ASSIGN(const image::ImagePart* content, shelf.image(image.path));
-    images.push_back({image, *content});
-  }
+  GONIO_ASSIGN(const std::vector<PageImage> images, pictures_of(board, shelf));
   GONIO_ASSIGN(const std::string page, board_page(board, images, paints, drawing.described(), studio_link(options)));
   GONIO_TRY(write_file(options.output, page));
   return cli::Verdict::kDone;
@@ -208,8 +222,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     return usage_error(
         "there is nothing to pick: give --face and --flop, --palette N with a picture, --board, or --probe X,Y");
   if (ways > 1) return usage_error("droppers, --palette, --board and --probe exclude each other");
-  if (as_page && options.board.empty())
-    return usage_error("--output is \"{}\": a page shows a --board", options.output);
+  if ((as_page || options.output.ends_with(kSessionEnding)) && options.board.empty())
+    return usage_error("--output is \"{}\": a {} shows a --board", options.output, as_page ? "page" : "session");
   if (!as_page && !(options.mesh.empty() && options.env.empty() && options.basis.empty() && options.studio.empty()))
     return usage_error("--mesh, --env, --basis and --studio are for the page of a board: give -o NAME.html");
   if (!options.basis.empty() && !options.env.empty())

@@ -96,7 +96,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "map has an alpha below 1 and shows what lies beneath it, such as the paint of a car beneath a decal.",
       "Where surfaces meet in a texel, their reflections are mixed, and not the parameters of their lobes. The mean of "
       "the parameters of two lobes is a third lobe that looks like neither."};
-  spec.inputs = {"SURFACE", "paints (FILE#NAME), maps (*.sbrdf.exr), pictures and none", &o.inputs, 1};
+  spec.inputs = {"SURFACE",
+                 "paints (FILE#NAME), maps (*.sbrdf.exr), pictures and none; - is paints or a map from standard input",
+                 &o.inputs, 1};
   add_pattern(spec, o);
   add_changes(spec, o);
   add_lobes(spec, o);
@@ -114,7 +116,7 @@ cli::ToolSpec tool_spec(Options& o) {
        "mix two maps half and half, with three lobes a texel"},
       {"paint-sbrdf testdata/contact-sheet.jpg --gloss 1 --size 256x128 -o poster.sbrdf.exr",
        "make a glossy poster of a picture"},
-      {"paint-sbrdf testdata/wood.sbrdf.exr --wear 0.5 --tile 2x2 -o worn.sbrdf.exr",
+      {"paint-sbrdf testdata/wood.sbrdf.exr --wear 0.5 | paint-sbrdf - --tile 2x2 -o worn.sbrdf.exr",
        "wear the varnish of wood, and repeat it"}};
   spec.report = {
       {"size", "width and height of the map in texels"},

@@ -239,3 +239,13 @@ refused() {
   paint-sbrdf -q wide.sbrdf.exr -o fine.exr
   [ "$(size fine.exr)" = 16384x1 ]
 }
+
+@test "a map and paints come from standard input" {
+  paint-sbrdf -q "$wood" --wear 0.5 -o worn.sbrdf.exr
+  paint-sbrdf -q - --tile 2x1 -o piped.exr <worn.sbrdf.exr
+  paint-sbrdf -q worn.sbrdf.exr --tile 2x1 -o named.exr
+  oiiotool piped.exr named.exr --fail 0 --diff
+  paint-sbrdf -q "$wood" | paint-sbrdf -q - p.xml#dark --mix 0.5 -o mixed.exr
+  paint-sbrdf -q --size 1x1 -o light.exr -- "-#light" <p.xml
+  [ "$(channel light.exr diffuse.R 0 0)" = 0.250000000 ]
+}

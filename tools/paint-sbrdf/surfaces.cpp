@@ -6,9 +6,9 @@
 #include "base/angles.h"
 #include "base/file.h"
 #include "formats/reference.h"
-#include "formats/xml.h"
 #include "image/color_space.h"
 #include "image/surface_file.h"
+#include "paint_stream.h"
 
 namespace goniochrome::tool {
 
@@ -25,16 +25,17 @@ struct ReadPaint {
 
 enum class Kind { kPaints, kMap, kPicture };
 
+constexpr std::string_view kExrMark = "\x76\x2f\x31\x01";
+
 // By what the file begins with; an EXR file is a map if it has the channels of one.
 Result<Kind> kind_of(const std::string& path) {
-  if (path == "-") return Kind::kPaints;
   if (image::image_file(path) != path) return Kind::kPicture;  // a layer of one
   GONIO_ASSIGN(InputFile file, InputFile::open(path));
   GONIO_ASSIGN(const std::string_view head, file.peek());
   const auto first = head.find_first_not_of("\xEF\xBB\xBF \t\r\n");
   if (first != std::string_view::npos && head[first] == '<') return Kind::kPaints;
   if (path.ends_with(".sbrdf.exr")) return Kind::kMap;
-  if (!head.starts_with("\x76\x2f\x31\x01")) return Kind::kPicture;
+  if (!head.starts_with(kExrMark)) return Kind::kPicture;
   GONIO_ASSIGN(const std::vector<image::ImagePart> parts, image::read_exr(path));
   const bool is_map = std::ranges::any_of(parts, [](const image::ImagePart& part) {
     return std::ranges::find(part.image.channel_names, "diffuse.R") != part.image.channel_names.end();
@@ -86,10 +87,11 @@ struct Slot {
   std::optional<paint::Paint> paint;
 };
 
-Result<void> add_paints(const std::string& reference, Surfaces& result, std::vector<Slot>& slots,
-                        cli::Session& session) {
-  const auto [file, names] = formats::paint_reference(reference);
-  GONIO_ASSIGN(const std::vector<paint::Paint> paints, formats::read_paints(file));
+Result<void> add_paints(InputFile input, const std::optional<std::string>& names, Surfaces& result,
+                        std::vector<Slot>& slots, cli::Session& session) {
+  const std::string file = input.name();
+  GONIO_ASSIGN(const formats::PaintSourcePointer source, formats::open_paints(std::move(input), std::nullopt));
+  GONIO_ASSIGN(const std::vector<paint::Paint> paints, all_paints(*source, session));
   if (paints.empty()) return input_error("{}: holds no paint: name a file that has one", file);
   std::optional<formats::NameChoice> choice;
   if (names) choice.emplace(*names);
@@ -141,16 +143,26 @@ Result<Surfaces> read_surfaces(const Options& options, cli::Session& session) {
       slots.push_back({{kNothing, "nothing", {}, nullptr, nullptr, 0}, {}});
       continue;
     }
-    const std::string file = formats::paint_reference(input).file;
-    GONIO_ASSIGN(const Kind kind, kind_of(file));
-    if (kind == Kind::kPaints) {
-      GONIO_TRY(add_paints(input, result, slots, session));
-    } else if (kind == Kind::kMap) {
-      GONIO_ASSIGN(brdf::SbrdfTexture map, image::read_sbrdf(file));
-      slots.push_back({{file, "map", {}, std::make_shared<brdf::SbrdfTexture>(std::move(map)), nullptr, 0}, {}});
-    } else {
+    const auto [file, names] = formats::paint_reference(input);
+    Kind kind = Kind::kPaints;
+    if (file != "-") {
+      GONIO_ASSIGN(kind, kind_of(file));
+    }
+    if (kind == Kind::kPicture) {
       GONIO_ASSIGN(auto picture, read_picture(file, session));
       slots.push_back({{file, "picture", {}, nullptr, std::move(picture), 0}, {}});
+      continue;
+    }
+    GONIO_ASSIGN(InputFile opened, InputFile::open(file));
+    if (file == "-") {
+      GONIO_ASSIGN(const std::string_view head, opened.peek());
+      if (head.starts_with(kExrMark)) kind = Kind::kMap;
+    }
+    if (kind == Kind::kPaints) {
+      GONIO_TRY(add_paints(std::move(opened), names, result, slots, session));
+    } else {
+      GONIO_ASSIGN(brdf::SbrdfTexture map, image::read_sbrdf(std::move(opened)));
+      slots.push_back({{file, "map", {}, std::make_shared<brdf::SbrdfTexture>(std::move(map)), nullptr, 0}, {}});
     }
   }
   if (options.mirror > 0) result.mirror_exponent = options.mirror;

@@ -40,7 +40,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "than 1 dE00 of some color; no_color, where there are neither rows nor a curve.",
       "The report and --format json hold the same figures as the table; and, as textures, what an instrument told of "
       "sparkle, graininess or coarseness, with its geometry, the version of its scale and the instrument."};
-  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+  spec.inputs = {"PAINTS",
+                 "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.inputs};
   spec.heading = "selection";
   spec.option("where,w", "CONDITION", "'flop_index>=17 && chroma_index<5'", &o.where,

@@ -1,8 +1,8 @@
 #include "other_light.h"
 
-#include "formats/xml.h"
 #include "formulas.h"
 #include "illuminants.h"
+#include "paint_stream.h"
 #include "table_output.h"
 
 namespace goniochrome::tool {
@@ -25,8 +25,8 @@ Json json_of(const std::vector<paint::DifferenceAt>& differences) {
   return json;
 }
 
-Result<paint::Measurement> standard_of(const std::string& reference) {
-  GONIO_ASSIGN(const std::vector<paint::Paint> paints, formats::read_paints(reference));
+Result<paint::Measurement> standard_of(const std::string& reference, cli::Session& session) {
+  GONIO_ASSIGN(const std::vector<paint::Paint> paints, all_paints(reference, session));
   if (paints.size() != 1)
     return input_error("--standard {}: holds {} paints: name one of them by FILE#NAME", reference, paints.size());
   const auto& measurement = paints.front().measurement;
@@ -37,14 +37,14 @@ Result<paint::Measurement> standard_of(const std::string& reference) {
 
 }  // namespace
 
-Result<OtherLight> OtherLight::create(const Options& options) {
+Result<OtherLight> OtherLight::create(const Options& options, cli::Session& session) {
   OtherLight result;
   GONIO_ASSIGN(result.formula_, formula_of(options.formula));
   GONIO_ASSIGN(result.illuminants_, illuminants_of(options.illuminants));
   if (options.standard.empty()) return result;
   if (result.illuminants_.empty())
     return usage_error("--standard needs the light in which pairs are compared: give --illuminant, as in A,F11");
-  GONIO_ASSIGN(result.standard_, standard_of(options.standard));
+  GONIO_ASSIGN(result.standard_, standard_of(options.standard, session));
   return result;
 }
 

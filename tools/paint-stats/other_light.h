@@ -14,7 +14,7 @@ namespace goniochrome::tool {
 class OtherLight {
  public:
   // Error: an illuminant that is not known; a standard that cannot be read, is not one paint or has no spectra.
-  static Result<OtherLight> create(const Options& options);
+  static Result<OtherLight> create(const Options& options, cli::Session& session);
 
   // The names of the columns, each behind a tab; "" where no other light was asked for.
   std::string head() const;

@@ -126,7 +126,7 @@ class Run {
       GONIO_ASSIGN(paint::PaintFilter filter, paint::PaintFilter::parse(options_.where));
       filter_.emplace(std::move(filter));
     }
-    GONIO_ASSIGN(light_, OtherLight::create(options_));
+    GONIO_ASSIGN(light_, OtherLight::create(options_, session_));
     GONIO_ASSIGN(formats::PaintBatches batches, formats::PaintBatches::open(options_.inputs));
     Prolog prolog;
     prolog.take(batches);

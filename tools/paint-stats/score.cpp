@@ -13,11 +13,11 @@
 #include "brdf/lobe_model.h"
 #include "brdf/measured.h"
 #include "formats/csv.h"
-#include "formats/xml.h"
 #include "formulas.h"
 #include "image/surface_file.h"
 #include "math/statistics.h"
 #include "paint/curve.h"
+#include "paint_stream.h"
 #include "table_output.h"
 
 namespace goniochrome::tool {
@@ -50,23 +50,16 @@ struct Rows {
 // The directions of --score: those of one measured BRDF, or readings by the names of paints.
 class Table {
  public:
-  static Result<Table> read(const std::string& path) {
+  static Result<Table> read(const std::string& path, cli::Session& session) {
     Table table;
     table.path_ = path;
     GONIO_ASSIGN(InputFile file, InputFile::open(path));
     GONIO_ASSIGN(const std::string_view head, file.peek());
     if (brdf::looks_measured(path, head)) {
       GONIO_ASSIGN(table.brdf_, brdf::read_measured(path));
-    } else if (trimmed(as_utf8(head)).starts_with('<')) {
-      GONIO_ASSIGN(const std::vector<paint::Paint> paints, formats::read_paints(path));
-      for (const paint::Paint& paint : paints) table.note(paint);
     } else {
-      GONIO_ASSIGN(formats::CsvPaintReader reader, formats::CsvPaintReader::open(std::move(file)));
-      while (true) {
-        GONIO_ASSIGN(const std::optional<paint::Paint> paint, reader.next());
-        if (!paint) break;
-        table.note(*paint);
-      }
+      GONIO_ASSIGN(const std::vector<paint::Paint> paints, all_paints(path, session));
+      for (const paint::Paint& paint : paints) table.note(paint);
     }
     if (!table.brdf_ && table.readings_.empty()) return input_error("{}: has no readings to compare with", path);
     return table;
@@ -227,12 +220,12 @@ Result<cli::Verdict> score(const Options& options, cli::Session& session) {
   if (format == Format::kPaints) return usage_error("--score writes a table or JSON, and no paints");
   GONIO_ASSIGN(const color::DifferenceFormula formula, formula_of(options.formula));
   const std::string column = column_of(formula);
-  GONIO_ASSIGN(const Table table, Table::read(options.score));
+  GONIO_ASSIGN(const Table table, Table::read(options.score, session));
   for (const std::string& doubt : table.doubts()) session.warn(fmt::format("{}: {}", options.score, doubt));
   std::vector<std::pair<paint::Paint, std::filesystem::path>> paints;
   bool named = false;
   for (const std::string& path : options.inputs.empty() ? std::vector<std::string>{"-"} : options.inputs) {
-    GONIO_ASSIGN(std::vector<paint::Paint> read, formats::read_paints(path));
+    GONIO_ASSIGN(std::vector<paint::Paint> read, all_paints(path, session));
     for (paint::Paint& paint : read) {
       named = named || paint.name == table.stem();
       paints.emplace_back(std::move(paint), std::filesystem::path(formats::paint_reference(path).file).parent_path());

@@ -34,7 +34,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "those of paint-edit(1), the lobes are fitted as fit-paint(1) does by default, distances are those of "
       "colorsnap(1), and the picture is drawn by the programs of the engine gl of render-osmesa(1). The page shows "
       "the command line that makes the same paint from the same library. It hands the paint over as paint XML, as "
-      "CSV, and as CxF with the code of the nearest paint. It opens paint XML files, saves sessions and the picture, "
+      "CSV, and as CxF with the code of the nearest paint. It opens paint XML files, saves the picture and sessions, "
+      "which hold the pictures of "
+      "the boards, "
       "and copies a link that holds the design and how it is seen. A browser keeps the sessions of its last eight "
       "tabs.",
       "All parts of the mesh wear the design, but for those that nobody paints, such as glass and tires: these are "
@@ -48,7 +50,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "The compiled library lies in ../lib/goniochrome beside the program, as the files studio.wasm and "
       "studio.html, or in $GONIOCHROME_MODULE_PATH. Where the compiler for WebAssembly was missing when the tools "
       "were built, paint-studio says which packages it takes, and the exit status is 3."};
-  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+  spec.inputs = {"PAINTS",
+                 "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.paints};
   spec.heading = "what the page holds";
   spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh,

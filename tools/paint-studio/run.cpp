@@ -6,8 +6,8 @@
 #include "base/text.h"
 #include "formats/default_basis.h"
 #include "formats/reference.h"
-#include "formats/xml.h"
 #include "pack.h"
+#include "paint_stream.h"
 #include "render/page_stage.h"
 #include "studio/display_program.h"
 #include "tool.h"
@@ -58,7 +58,7 @@ Result<PackedLibrary> packed_paints(const Options& options, cli::Session& sessio
   PackedLibrary list;
   std::size_t mapped = 0;
   for (const std::string& path : options.paints.empty() ? std::vector<std::string>{"-"} : options.paints) {
-    GONIO_ASSIGN(const std::vector<paint::Paint> paints, formats::read_paints(path));
+    GONIO_ASSIGN(const std::vector<paint::Paint> paints, all_paints(path, session));
     for (const paint::Paint& paint : paints) {
       if (!paint.measurement && !paint.appearance)
         return input_error("{}: the paint \"{}\" has neither readings nor a face and a flop: give it a color", path,

@@ -20,7 +20,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "grazing views are on the border, the light comes from the left, and a black dot on the right marks the mirror "
       "direction. Target and fit have the same exposure.",
       "A PNG is made by the program rsvg-convert, which must be installed (Debian package librsvg2-bin)."};
-  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+  spec.inputs = {"PAINTS",
+                 "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.libraries};
   spec.heading = "what is drawn";
   spec.option("paint,p", "NAME", "candy_red", &o.names, "draw this paint only");

@@ -8,12 +8,12 @@
 #include "base/file_names.h"
 #include "base/paths.h"
 #include "base/text.h"
-#include "formats/xml.h"
 #include "hud.h"
 #include "image/surface_file.h"
 #include "map_page.h"
 #include "output_names.h"
 #include "page.h"
+#include "paint_stream.h"
 #include "png.h"
 
 namespace goniochrome::tool {
@@ -39,11 +39,11 @@ struct ChosenPaint {
 };
 
 // The paints asked for, in the order of the libraries.
-Result<std::vector<ChosenPaint>> chosen_paints(const Options& options) {
+Result<std::vector<ChosenPaint>> chosen_paints(const Options& options, cli::Session& session) {
   std::vector<ChosenPaint> chosen;
   std::vector<formats::WantedName> missing(options.names.begin(), options.names.end());
   for (const std::string& path : options.libraries.empty() ? std::vector<std::string>{"-"} : options.libraries) {
-    GONIO_ASSIGN(std::vector<paint::Paint> paints, formats::read_paints(path));
+    GONIO_ASSIGN(std::vector<paint::Paint> paints, all_paints(path, session));
     const std::filesystem::path folder = std::filesystem::path(formats::paint_reference(path).file).parent_path();
     for (paint::Paint& paint : paints) {
       const bool named = std::ranges::find(options.names, paint.name) != options.names.end();
@@ -149,7 +149,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     GONIO_TRY(can_be_written(options.pages + "/page." + options.format));
   }
   GONIO_ASSIGN(std::optional<PageFiles> files, PageFiles::create(options));
-  GONIO_ASSIGN(const std::vector<ChosenPaint> paints, chosen_paints(options));
+  GONIO_ASSIGN(const std::vector<ChosenPaint> paints, chosen_paints(options, session));
   GONIO_ASSIGN(const Brdfs brdfs, read_brdfs(options.brdfs, session));
   for (const auto& [name, brdf] : brdfs)
     if (std::ranges::none_of(paints, [&](const ChosenPaint& chosen) { return chosen.paint.name == name; }))

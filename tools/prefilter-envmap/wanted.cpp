@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "envmap/mip.h"
 #include "formats/default_basis.h"
-#include "formats/xml.h"
+#include "formats/paint_source.h"
 
 namespace goniochrome::tool {
 
@@ -38,15 +38,14 @@ void add_shares(const color::Rgb& diffuse, const std::vector<paint::Lobe>& lobes
 }
 
 Result<void> want_those_of_paints(const Options& options, Wanted& wanted) {
-  GONIO_ASSIGN(formats::PaintReader reader, formats::PaintReader::open(options.paints));
+  GONIO_ASSIGN(const formats::PaintSourcePointer source, formats::open_paints(options.paints));
   std::map<double, double> shares;
   for (;;) {
-    GONIO_ASSIGN(const std::optional<paint::Paint> paint, reader.next());
+    GONIO_ASSIGN(const std::optional<paint::Paint> paint, source->next());
     if (!paint) break;
     ++wanted.paints;
     if (!paint->lobes)
-      return input_error("{}:{}: paint {} has no lobes: fit it with fit-paint", options.paints, reader.line(),
-                         paint->name);
+      return input_error("{}: paint {} has no lobes: fit it with fit-paint", source->place(), paint->name);
     add_shares(paint->lobes->diffuse, paint->lobes->lobes, shares);
     for (const paint::ViewLobes& view : paint->lobes->views) add_shares(view.diffuse, view.lobes, shares);
     for (const paint::TiltedLobes& set : paint->lobes->tilts)

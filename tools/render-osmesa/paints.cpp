@@ -270,7 +270,7 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool
     if (!trim) continue;
     result.trim.push_back(part);
     result.paints[part] = *trim, result.gloss_deg[part] = kUnreadGlossDeg;
-    result.anisotropy[part] = {}, result.surfaces[part] = {}, result.names[part] = "trim";
+    result.anisotropy[part] = {}, result.surfaces[part] = {}, result.names[part] = kTrimName;
     result.worn[part].reset();
   }
   // A part's own name is meant before its material, wherever it stands on the command line.

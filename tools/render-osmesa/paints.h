@@ -22,6 +22,8 @@ struct LaidTexture {
   std::optional<double> width;  // of the map in units of the mesh, where it is projected along an axis
 };
 
+inline constexpr const char* kTrimName = "trim";  // stands for a paint in the parts that --trim dresses
+
 struct DressedMesh {
   std::vector<paint::LobeFit> paints;         // for each part of the mesh
   std::vector<double> gloss_deg;              // at which their gloss was read; 45 where it was not

@@ -42,16 +42,18 @@ std::string spelled(const color::ReflectionOperator& reflection) {
 
 }  // namespace
 
-image::Attributes provenance(const cli::Session& session) {
-  return {{"goniochrome:tool", session.tool()},
-          {"goniochrome:version", std::string(cli::Session::version())},
-          {"goniochrome:command", session.command_line()}};
+image::Attributes provenance(const cli::Session& session, const display::Display* display) {
+  image::Attributes text = {{"goniochrome:tool", session.tool()},
+                            {"goniochrome:version", std::string(cli::Session::version())},
+                            {"goniochrome:command", session.command_line()}};
+  if (display != nullptr) text[image::kViewAttribute] = display->name();
+  return text;
 }
 
 Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const Request& request,
                                                   const render::Frame& frame, const render::Scene& scene,
-                                                  const render::Plan& plan, const render::DiffuseWhite& white,
-                                                  double stops, double automatic,
+                                                  const DressedMesh& dress, const render::Plan& plan,
+                                                  const render::DiffuseWhite& white, double stops, double automatic,
                                                   const render::TransportParts* transport,
                                                   const cli::Session& session) {
   image::ImagePart part{"picture", frame.picture, provenance(session), image::PixelType::kHalf};
@@ -84,6 +86,10 @@ Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const 
       names.push_back(mesh_part.name);
       materials.push_back(mesh_part.material);
     }
+    Json trim = Json::array();
+    for (const std::size_t i : dress.trim)
+      if (dress.names[i] == kTrimName && !dress.worn[i]) trim.push_back(i + 1);
+    part.attributes["goniochrome:trim"] = trim.dump();
     if (transport != nullptr && scene.ground) names.push_back("floor"), materials.push_back("");
     part.attributes["goniochrome:parts"] = names.dump(-1, ' ', false, Json::error_handler_t::replace);
     part.attributes["goniochrome:materials"] = materials.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -232,8 +232,8 @@ Result<void> Shooting::write(const Shot& shot, const std::optional<display::Disp
       stopped_ |= !traced->reached;
     }
     GONIO_ASSIGN(std::vector<image::ImagePart> picture,
-                 exr_picture(options_, request_, frame_, drawn, plan_, white_, stops, automatic_stops_,
-                             traced ? &traced->file : nullptr, session_));
+                 exr_picture(options_, request_, frame_, drawn, stage_.dresses.front(), plan_, white_, stops,
+                             automatic_stops_, traced ? &traced->file : nullptr, session_));
     if (options_.to.empty()) return image::write_exr(shot.output, picture);
     GONIO_ASSIGN(const std::string content, exr_frame(std::move(picture)));
     return write_frame(content);
@@ -245,7 +245,7 @@ Result<void> Shooting::write(const Shot& shot, const std::optional<display::Disp
     const std::string head = frames_ ? "" : image::frames_head(format, shown.width, shown.height);
     return write_frame(head + image::frame_content(format, shown));
   }
-  return write_file(shot.output, image::png_content(shown, provenance(session_)));
+  return write_file(shot.output, image::png_content(shown, provenance(session_, &*display)));
 }
 
 // One frame of a sequence on standard output.

@@ -21,8 +21,8 @@ Result<std::vector<image::ImagePart>> scene_linear(const SinkSetup& setup, Strea
   render::Frame frame;
   std::swap(frame.picture, slot.view.picture);
   const render::DiffuseWhite white{setup.views.white_luminance, {0, 1, 0}};
-  auto parts = exr_picture(setup.options, setup.request, frame, setup.stage.scene, *slot.plan, white, setup.views.stops,
-                           setup.views.automatic_stops, nullptr, setup.session);
+  auto parts = exr_picture(setup.options, setup.request, frame, setup.stage.scene, setup.stage.dresses.front(),
+                           *slot.plan, white, setup.views.stops, setup.views.automatic_stops, nullptr, setup.session);
   std::swap(frame.picture, slot.view.picture);
   return parts;
 }
@@ -41,7 +41,7 @@ class FileSink : public StreamSink {
   Result<void> finish(StreamSlot& slot) override {
     if (setup_.display == nullptr) return write_scene_linear(slot);
     GONIO_TRY(show(setup_, slot));
-    image::Attributes text = provenance(setup_.session);
+    image::Attributes text = provenance(setup_.session, setup_.display);
     text["goniochrome:paint"] = slot.source.paint.name;
     return write_file(slot.file, image::png_content(slot.shown, text));
   }
@@ -97,7 +97,7 @@ class SheetSink : public StreamSink {
 
   Result<void> end() override {
     if (!sheet_) return {};
-    const std::string content = image::png_content(sheet_->picture(), provenance(setup_.session));
+    const std::string content = image::png_content(sheet_->picture(), provenance(setup_.session, setup_.display));
     sheet_.reset();
     return write_file(names_.next(++files_, "", ""), content);
   }

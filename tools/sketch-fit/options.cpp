@@ -14,9 +14,11 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "An EXR of render-osmesa --aov normal,aspecular,lambert,mask,part has all that is needed. With transport "
           "among them the picture may have shadows and bounced light, which are then part of what the paint is sought "
           "in; --env is not needed.");
-  spec.option("view", "VIEW", "plain", &o.view, "view that a display picture went through")
-      .one_of({"paint", "plain"})
-      .more("paint is the view Paint of render-osmesa, plain is none.");
+  spec.option("view", "VIEW", "'ACES SDR'", &o.view, "view that a display picture went through")
+      .more(
+          "auto is the view that a PNG of render-osmesa names, or Paint where a picture names none; plain is no view. "
+          "Other views are those of render-osmesa --view, and of the configuration of $OCIO. OpenColorIO inverts "
+          "them.");
   spec.option("exposure", "STOPS", "0.5", &o.exposure, "exposure of the picture, or auto as render-osmesa has it");
   spec.option("shift", "X,Y", "2,-1", &o.shift, "how far the picture lies to the right of and below the buffers")
       .from(-4096, 4096);
@@ -36,7 +38,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "with exponents from 1.3 to 3000.");
   spec.heading = "pixels";
   spec.option("mask,m", "FILE", "mask.png", &o.mask, "image whose white pixels are taken, and no others");
-  spec.option("part", "PART", "Hood", &o.parts, "take the pixels of this part of the mesh");
+  spec.option("part", "PART", "Hood", &o.parts, "take the pixels of this part of the mesh")
+      .more("Without the option all parts are taken but those that --trim of render-osmesa dressed.");
   spec.option("pixels", "WHICH", "all", &o.pixels, "pixels that are taken")
       .one_of({"auto", "changed", "all"})
       .more(

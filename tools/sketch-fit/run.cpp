@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 
 #include "base/clock.h"
 #include "base/text.h"
 #include "brdf/gloss.h"
+#include "display/display.h"
 #include "formats/default_basis.h"
 #include "paint/curve.h"
 #include "paint_stream.h"
@@ -122,6 +124,23 @@ void tell_registration(const Material& material, const Options& options, cli::Se
                     options.image, r.agreement));
 }
 
+// Without --part a sketch is of all parts but those that --trim dressed.
+Result<void> leave_out_trim(Material& material) {
+  std::vector<int>& parts = material.input.parts;
+  const std::vector<int>& trim = material.buffers.trim;
+  if (material.transport) {
+    parts = material.transport->mesh_parts();
+  } else if (!trim.empty()) {
+    parts.resize(material.buffers.parts.size());
+    std::iota(parts.begin(), parts.end(), 1);
+  }
+  std::erase_if(parts, [&](int part) { return std::ranges::find(trim, part) != trim.end(); });
+  if (parts.empty() && !trim.empty())
+    return input_error("{}: --trim dressed every part: name by --part those that the sketch is of",
+                       material.buffers.path);
+  return {};
+}
+
 Result<void> gather(const Options& options, Material& material) {
   if (!options.shift.empty() && options.shift.size() != 2)
     return usage_error("--shift is given {} numbers: write X,Y", options.shift.size());
@@ -130,8 +149,15 @@ Result<void> gather(const Options& options, Material& material) {
   if (!options.residual.empty() && !options.residual.ends_with(".png"))
     return usage_error("--residual is \"{}\": give a name that ends in .png", options.residual);
   sketch::SketchInput& input = material.input;
-  const auto view = options.view == "plain" ? sketch::PictureView::kPlain : sketch::PictureView::kPaint;
-  Result<sketch::Picture> picture = sketch::read_picture(options.image, view);
+  const bool by_name = options.view != "auto" && options.view != "plain";
+  if (by_name && lower(options.view) != "paint") {
+    const auto display = display::Display::make(options.view);
+    if (!display.ok())
+      return usage_error("--view is \"{}\": give auto, plain or a view: {}", options.view, display.error().message);
+  }
+  Result<sketch::Picture> picture = sketch::read_picture(
+      options.image, options.view == "plain" ? sketch::PictureView::kShown : sketch::PictureView::kPaint,
+      by_name ? options.view : "");
   Result<image::AovFile> buffers = image::read_aov_file(options.buffers);
   GONIO_ASSIGN(material.buffers, std::move(buffers));
   GONIO_TRY(check_light(options, material.buffers));
@@ -157,8 +183,8 @@ Result<void> gather(const Options& options, Material& material) {
     input.shift_x = static_cast<int>(std::lround(options.shift[0])),
     input.shift_y = static_cast<int>(std::lround(options.shift[1]));
   GONIO_ASSIGN(material.transport, sketch::SketchTransport::of(material.buffers));
+  if (options.parts.empty()) GONIO_TRY(leave_out_trim(material));
   if (material.transport) {
-    if (input.parts.empty()) input.parts = material.transport->mesh_parts();
     material.shaded = material.transport->worn_picture();
     input.shaded = &material.shaded;
     return {};
@@ -361,9 +387,9 @@ Result<void> fit_lamps(const Material& material, const sketch::SketchLimits& lim
 namespace {
 
 // The paint of --start; none without the option.
-Result<std::optional<paint::Paint>> start_of(const Options& options) {
+Result<std::optional<paint::Paint>> start_of(const Options& options, cli::Session& session) {
   if (options.start.empty()) return std::optional<paint::Paint>();
-  GONIO_ASSIGN(std::vector<paint::Paint> paints, formats::read_paints(options.start));
+  GONIO_ASSIGN(std::vector<paint::Paint> paints, all_paints(options.start, session));
   if (paints.size() != 1)
     return input_error("{}: --start takes one paint, and there are {}: write FILE#NAME", options.start, paints.size());
   return std::optional(std::move(paints.front()));
@@ -390,8 +416,11 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   session.explain(plan_text(options));
   Material material;
   GONIO_TRY(gather(options, material));
-  GONIO_ASSIGN(const std::optional<paint::Paint> start, start_of(options));
+  GONIO_ASSIGN(const std::optional<paint::Paint> start, start_of(options, session));
   const sketch::SketchInput& input = material.input;
+  if (options.parts.empty() && !material.buffers.trim.empty())
+    session.say(fmt::format("left out: {} parts that --trim dressed; --part takes parts by name",
+                            material.buffers.trim.size()));
   tell_registration(material, options, session);
   for (const std::string& warning : material.picture.warnings) session.warn(warning);
   warn_of_left_out(options, material, session);

@@ -17,7 +17,7 @@ EOF
   fit-paint -q --basis "$TESTDATA/b7.basis.xml" "$TESTDATA/paints.paints.xml" -o measured.xml
   oiiotool "$TESTDATA/studio.exr" --resize:filter=box 128x64 -o studio.exr
   prefilter-envmap -q studio.exr --basis "$TESTDATA/b7.basis.xml" -o studio.env.exr
-  scene="--mesh $TESTDATA/speed-shape.obj --light 0,20 --size 320x200 --samples 1 --effects auto,-rays"
+  export scene="--mesh $TESTDATA/speed-shape.obj --light 0,20 --size 320x200 --samples 1 --effects auto,-rays"
   for paint in steel ruby; do
     render-osmesa -q $scene --paint "fitted.xml#$paint" --aov normal,aspecular,lambert,mask,part -o $paint.exr
     render-osmesa -q $scene --paint "fitted.xml#$paint" -o $paint.png
@@ -346,7 +346,7 @@ usage_error() { # TEXT ARGUMENTS...
 @test "usage errors name the option and the remedy" {
   usage_error '--shift is given 1 numbers: write X,Y' --shift 3
   usage_error '--pixels is "some"' --pixels some
-  usage_error '--view is "film"' --view film
+  usage_error '--view is "film": give auto, plain or a view: there is no view "film"' --view film
   usage_error '--exposure is "bright"' --exposure bright
   usage_error '--glare is "90"' --glare 90
   usage_error '--max-de is "-1"' --max-de -1
@@ -493,4 +493,41 @@ EOF
   run sketch-fit -i small.exr -b small.exr --start measured.xml -o none.xml
   [ "$status" -eq 3 ]
   [[ $output == *"measured.xml: --start takes one paint, and there are 59: write FILE#NAME"* ]]
+}
+
+# An unedited picture whose trim counts as paint is far from every paint: the control names all parts.
+@test "what --trim dressed is left out of a sketch" {
+  render-osmesa -q $scene --trim --paint fitted.xml#steel --aov normal,aspecular,lambert,mask,part -o trim.exr
+  fit -i trim.exr -b trim.exr
+  below "$(result rms_de76)" 1.5
+  below "$(distance "$(lab 45as45 found.xml)" "39.497 -2.870 -12.899")" 0.5
+  parts=$(sketch-fit -q -i trim.exr -b trim.exr --part none -o x.xml 2>&1 | sed -n '1s/.*its parts are //p')
+  IFS=', ' read -ra names <<<"$parts"
+  fit -i trim.exr -b trim.exr "${names[@]/#/--part=}"
+  below 4 "$(result rms_de76)"
+  render-osmesa -q $scene --paint fitted.xml#steel --aov mask,part -o all.exr
+  oiiotool --info -v trim.exr | grep -q 'goniochrome:trim: "\[[0-9]'
+  oiiotool --info -v all.exr | grep -q 'goniochrome:trim: "\[\]"'
+}
+
+# Control: the same picture taken for one of the view Paint.
+@test "a picture in another view is brought back by OpenColorIO, or refused by the name of the view" {
+  render-osmesa -q $scene --paint fitted.xml#steel --view 'ACES SDR' -o aces.png
+  for view in auto 'ACES SDR'; do
+    fit -i aces.png -b steel.exr --view "$view"
+    [ "$(result color_space)" = "sRGB / ACES SDR" ]
+    below "$(result median_de76)" 1
+    below "$(distance "$(lab 45as15 found.xml)" "75 -5 -20")" 3
+    below "$(distance "$(lab 45as45 found.xml)" "39.497 -2.870 -12.899")" 1
+  done
+  fit -i aces.png -b steel.exr --view paint
+  below 5 "$(distance "$(lab 45as45 found.xml)" "39.497 -2.870 -12.899")"
+  # An editor that drops the name needs the option.
+  oiiotool aces.png --eraseattrib '.*' -o nameless.png
+  fit -i nameless.png -b steel.exr --view 'ACES SDR'
+  below "$(distance "$(lab 45as45 found.xml)" "39.497 -2.870 -12.899")" 1
+  sed 's/sRGB \/ ACES SDR/sRGB \/ ACES XYZ/' aces.png >other.png
+  run --separate-stderr sketch-fit -i other.png -b steel.exr -o none.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'other.png: was drawn by the view "sRGB / ACES XYZ"'* ]]
 }

@@ -12,7 +12,7 @@ struct Options {
   cli::CommonOptions common;
   std::string image, buffers, env, basis, mask;
   std::vector<std::string> parts;
-  std::string pixels = "auto", view = "paint", exposure = "auto", registration = "auto";
+  std::string pixels = "auto", view = "auto", exposure = "auto", registration = "auto";
   std::vector<double> shift;
   double glare_deg = 10, most_de76 = 10;
   std::string name = "sketch", output = "-", residual, start;

@@ -163,7 +163,7 @@ void add_report(cli::ToolSpec& spec) {
       {"trompe-fit testdata/paints.paints.xml --only silver_black_flop --angle -2 --views as15:105:10 --vary "
        "face_l,travel -o b.paints.xml",
        "find the silver for a panel turned 2 degrees away from the light, by its face L* and travel alone"},
-      {"trompe-fit testdata/paints.paints.xml --only signal_red --angle 3 --lights 0,15.5,29.1,39.8,45,52 --views 0 "
+      {"trompe-fit testdata/paints.paints.xml --only signal_red --angle 3 --lights 0,15.5,29.1,39.8,45,52 --views as20 "
        "--mode rows -o rows.paints.xml",
        "find one answer for each of six lights, for a solid paint"},
       {"trompe-fit testdata/paints.paints.xml --only silver_fine --mesh testdata/speed-shape.obj --seam Hood,Bumper_F "
@@ -222,7 +222,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "A solid paint has no travel, and its face and flop move together. A paint counts as solid by its class, or "
       "where face and flop are closer than 1. Parameters that the views do not determine stay near those of the paint "
       "given, and are named. The exit status is 1 where a paint is not improved."};
-  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+  spec.inputs = {"PAINTS",
+                 "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.inputs};
   add_options(spec, o);
   add_report(spec);

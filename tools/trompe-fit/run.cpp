@@ -6,6 +6,7 @@
 #include "answer.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "brdf/gloss.h"
 #include "paint_stream.h"
 #include "panels.h"
 #include "picture.h"
@@ -18,22 +19,21 @@ constexpr int kNamesShown = 20;
 
 using Answers = std::vector<Answer>;
 
-// Under the coat that the paint states.
-std::vector<panels::PanelView> views_of(const paint::Paint& paint,
-                                        const std::vector<const TrompeGeometry*>& geometries) {
+std::vector<panels::PanelView> views_of(const std::vector<const TrompeGeometry*>& geometries, double coat_index) {
   std::vector<panels::PanelView> views;
-  for (const TrompeGeometry* geometry : geometries)
-    views.push_back(geometry->view.under_coat(paint.coat_index.value_or(paint::kNoCoat)));
+  for (const TrompeGeometry* geometry : geometries) views.push_back(geometry->view.under_coat(coat_index));
   return views;
 }
 
 Result<Answer> answer(const paint::Paint& paint, const paint::Appearance& a,
-                      const std::vector<panels::PanelView>& fitted, std::vector<const TrompeGeometry*> judged,
+                      const std::vector<const TrompeGeometry*>& fitted, std::vector<const TrompeGeometry*> judged,
                       const TrompeRequest& request) {
   Answer result;
-  result.a = a, result.coat_index = paint.coat_index.value_or(paint::kNoCoat);
-  GONIO_ASSIGN(result.fit, panels::trompe_fit(a, paint.paint_class == paint::PaintClass::kSolid, fitted, request.fit));
-  const std::vector<panels::PanelView> views = views_of(paint, judged);
+  result.a = a;
+  GONIO_ASSIGN(result.coat_index, brdf::coat_index_of_paint(paint));
+  GONIO_ASSIGN(result.fit, panels::trompe_fit(a, paint.paint_class == paint::PaintClass::kSolid,
+                                              views_of(fitted, result.coat_index), request.fit));
+  const std::vector<panels::PanelView> views = views_of(judged, result.coat_index);
   result.before = panels::trompe_errors(a, a, views);
   result.after = panels::trompe_errors(a, result.fit.b, views);
   result.judged = std::move(judged);
@@ -47,8 +47,7 @@ Result<Answers> answers_for(const paint::Paint& paint, const TrompeRequest& requ
   std::vector<const TrompeGeometry*> all;
   for (const TrompeGeometry& geometry : request.geometries) all.push_back(&geometry);
   if (request.mode != TrompeMode::kRows) {
-    const auto fitted = views_of(paint, request.single ? std::vector{&*request.single} : all);
-    GONIO_ASSIGN(Answer one, answer(paint, a, fitted, all, request));
+    GONIO_ASSIGN(Answer one, answer(paint, a, request.single ? std::vector{&*request.single} : all, all, request));
     one.name = paint.name + suffix;
     answers.push_back(std::move(one));
     return answers;
@@ -60,7 +59,7 @@ Result<Answers> answers_for(const paint::Paint& paint, const TrompeRequest& requ
     std::vector<const TrompeGeometry*> row;
     std::ranges::copy_if(all, std::back_inserter(row),
                          [&](const TrompeGeometry* g) { return g->geometry.light_deg == light; });
-    GONIO_ASSIGN(Answer one, answer(paint, a, views_of(paint, row), row, request));
+    GONIO_ASSIGN(Answer one, answer(paint, a, row, row, request));
     one.name = fmt::format("{}{}.light{}", paint.name, suffix, shortest(light));
     one.light_deg = light;
     answers.push_back(std::move(one));

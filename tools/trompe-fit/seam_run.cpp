@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "answer.h"
+#include "brdf/gloss.h"
 #include "paint_stream.h"
 #include "panels.h"
 #include "panels/seam.h"
@@ -64,7 +65,8 @@ class SeamRun {
   Result<Answer> answer_for(const paint::Paint& paint) {
     Answer answer;
     answer.name = paint.name + options_.suffix;
-    const double coat = answer.coat_index = paint.coat_index.value_or(paint::kNoCoat);
+    GONIO_ASSIGN(const double coat, brdf::coat_index_of_paint(paint));
+    answer.coat_index = coat;
     GONIO_ASSIGN(answer.a, panels::appearance_of(paint));
     const bool solid = paint.paint_class == paint::PaintClass::kSolid;
     if (options_.seam.environment.empty()) {

@@ -33,6 +33,11 @@ setup() {
   jq -e '.results | .solid and .after.rms > 0.3 and .after.rms < .before.rms and .delta.travel == 0' all.json
   jq -e '.results.fits | length == 6 and all(.after.max < 0.01)' rows.json
   grep -q 'name="signal_red_b.light15.5"' rows.xml
+  # The example of the man page has six lights too; a viewer on the normal would see the mirror of the first.
+  trompe-fit ${red/--views -20/--views as20} --mode rows --report example.json -q -o example.xml
+  jq -e '.results.fits | length == 6' example.json
+  trompe-fit ${red/--views -20/--views 0} --mode rows --report control.json -q -o control.xml
+  jq -e '.results.fits | length == 5' control.json
 }
 
 @test "--mode single meets its geometry and tells the price elsewhere" {
@@ -192,4 +197,16 @@ setup() {
   [ "$status" -eq 0 ]
   [[ "$stderr" == *"left out: 1 of the pairs of light and viewer (0/0 deg), within 10 deg of the mirror direction"* ]]
   jq -e '.results.left_out[0].light_deg == 0 and (.results.geometries | length == 3)' r.json
+}
+
+# Control: a file that says that there is no coat.
+@test "the paint found is the same from the plain and from the fitted file" {
+  fit-paint -q "$paints#silver_fine" -o fitted.xml
+  fit-paint -q --coat none "$paints#silver_fine" -o bare.xml
+  for file in "$paints#silver_fine" fitted.xml bare.xml; do
+    trompe-fit -q "$file" --angle -2 --views as15:105:10 --report r.json -o /dev/null
+    jq -c '[.results.before.rms, .results.after.rms, .results.delta.face_l] | map(. * 1e6 | round)' r.json
+  done >found.txt
+  [ "$(sed -n 1p found.txt)" = "$(sed -n 2p found.txt)" ]
+  [ "$(sed -n 1p found.txt)" != "$(sed -n 3p found.txt)" ]
 }

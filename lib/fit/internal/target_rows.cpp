@@ -6,7 +6,6 @@
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "fit/internal/color_floor.h"
-#include "math/cosine_power.h"
 #include "math/elementary.h"
 
 namespace goniochrome::fit {
@@ -116,13 +115,6 @@ double named_view_deg(const paint::Geometry& geometry) {
   return std::round(1e6 * view_angle_deg(geometry)) / 1e6;
 }
 
-std::vector<double> seen_exponents(const std::vector<double>& exponents, double first_rad) {
-  std::vector<double> seen;
-  for (const double e : exponents)
-    if (math::cos_power(first_rad, e) >= kSeenPart) seen.push_back(e);
-  return seen;
-}
-
 double coat_passages_at(const paint::Geometry& geometry, double coat_index) {
   const paint::DirectionPair at = paint::directions(geometry);
   return brdf::coat_passages(coat_index, std::clamp(at.light.z, 0.0, 1.0), std::clamp(at.view.z, 0.0, 1.0));
@@ -132,11 +124,6 @@ FlakeReading flake_reading(const paint::LabReading& reading, double coat_index) 
   return {{paint::aspecular_angle_deg(reading.geometry) * kDegree, view_angle_deg(reading.geometry)},
           reading.lab,
           coat_passages_at(reading.geometry, coat_index)};
-}
-
-double steepest_seen(const std::vector<double>& exponents, double first_rad) {
-  const std::vector<double> seen = seen_exponents(exponents, first_rad);
-  return seen.empty() ? 0 : std::ranges::max(seen);
 }
 
 double gamut_loss(const color::Lab& lab, const color::Rgb& rgb, const color::Xyz& white) {
@@ -151,23 +138,12 @@ FlakeRow flake_row(const TargetRow& row, const FitOptions& options, bool inferre
           inferred};
 }
 
-// Below the first known angle a the color goes on as f(t) = f(a) (cos t / cos a)^e, with the e that the curve has
-// between a and b. Every sum of non-negative lobes is convex in the logarithm against u = -log cos t (a sum of
-// exponentials of linear functions), so it lies on or above this line: the extension is the least highlight that the
-// lobes can have, and it leaves no reason for a sharp lobe with an arbitrary weight.
 std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double steepest, const color::Xyz& white,
                                              double importance, double coat_index) {
-  const double cos_a = math::cos(end.a_deg * kDegree), cos_b = math::cos(end.b_deg * kDegree);
-  color::Rgb exponent;
-  for (int c = 0; c < 3; ++c) {
-    if (end.at_a[c] <= end.at_b[c] || cos_b <= 0) continue;
-    exponent[c] = end.at_b[c] > 0 ? std::min(steepest, math::log(end.at_a[c] / end.at_b[c]) / math::log(cos_a / cos_b))
-                                  : steepest;
-  }
+  const color::Rgb exponents = highlight_exponents(end, steepest);
   std::vector<TargetRow> rows;
   for (double t = 0; t < end.a_deg - kStep_deg / 2; t += kStep_deg) {
-    TargetRow row = {t, usual_view_deg(t), end.at_a, importance, 0};
-    for (int c = 0; c < 3; ++c) row.reflectance_factor[c] *= math::pow(math::cos(t * kDegree) / cos_a, exponent[c]);
+    TargetRow row = {t, usual_view_deg(t), highlight_at(end, exponents, t), importance, 0};
     row.passages = usual_passages(t, coat_index);
     row.lightness = color::lab_from_rgb(row.passages * row.reflectance_factor, white).L;
     rows.push_back(row);

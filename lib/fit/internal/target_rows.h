@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "color/color.h"
+#include "fit/highlight_end.h"
 #include "fit/internal/flake_fit.h"
 #include "fit/paint_fit.h"
 #include "paint/curve.h"
@@ -47,20 +48,10 @@ Result<Target> target_rows(const paint::Paint& paint, paint::TargetCurve::Kind k
                            const std::vector<double>& exponents, double coat_index = paint::kNoCoat,
                            bool by_view = false);
 
-// How the flake highlight goes on from the angle a toward specular, in rows every 5 deg from 0, by its color there and
-// at b > a (reflectance factors of the base, at least 0). It rises no steeper than a lobe of the exponent `steepest`.
-struct HighlightEnd {
-  double a_deg = 0, b_deg = 0;
-  color::Rgb at_a, at_b;
-};
+// How the flake highlight goes on toward specular, in rows every 5 deg from 0. It rises no steeper than a lobe of the
+// exponent `steepest`.
 std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double steepest, const color::Xyz& white,
                                              double importance, double coat_index);
-
-// The exponents whose lobes are seen from that angle on.
-std::vector<double> seen_exponents(const std::vector<double>& exponents, double first_rad);
-
-// The sharpest of them; 0 where there is none.
-double steepest_seen(const std::vector<double>& exponents, double first_rad);
 
 // The angle of the viewer of a geometry from the normal, and the same to 1e-6 deg, as lobes by views name it.
 double view_angle_deg(const paint::Geometry& geometry);

@@ -12,4 +12,7 @@ namespace goniochrome::image {
 // here are an oiio:ColorSpace that says so.
 Attributes png_colors(std::string_view content);
 
+// The text of a PNG under that keyword, from an entry that is not compressed; "" where there is none.
+std::string png_text(std::string_view content, std::string_view keyword);
+
 }  // namespace goniochrome::image

@@ -79,6 +79,17 @@ drive("the droppers take what they are on", { width: 1700, height: 1000 }, async
   check("both pictures are in the command", /--face '?two.*--flop '?third/.test(await value("document.getElementById('pick-command').textContent")));
   check("each picture has its marks", (await value("[...document.querySelectorAll('.sheet')].map((one) => one.querySelectorAll('.dropper').length).join()")) === "2,1");
   await shot("droppers-2");
+  // The session brings boards, pictures and droppers back. The control is a session without pictures.
+  const shown = () => value(`JSON.stringify([studio.pictures.all.map(({ name, canvas }) => [name, canvas.toDataURL()]), studio.pictures.boards.map(({ name, zoom }) => [name, zoom]),
+    Object.entries(studio.pictures.droppers).map(([kind, { picture, ...found }]) => [kind, studio.pictures.all.indexOf(picture), found])])`);
+  const kept = await shown();
+  const forget = "Object.assign(studio.pictures, { boards: [], board: null, current: null, droppers: {} }); studio.pictures.show();";
+  await value(`(() => { const bare = studio.savedSession(false); window.savedSession = studio.savedSession(); ${forget} studio.openSession(bare); })()`);
+  check("a session without pictures brings none", (await value("studio.pictures.all.length")) === 0);
+  await value("studio.openSession(window.savedSession)");
+  await browser.until("Object.keys(studio.pictures.droppers).length === 3");
+  check("the session has the boards with their pictures and droppers", (await shown()) === kept);
+  check("the browser keeps them", (await value("JSON.parse(localStorage.getItem(studio.key)).pictures.boards[0].pictures.length")) === 2);
   await browser.click("#new-board");
   check("the new board is empty", (await value("document.querySelectorAll('#picture canvas').length")) === 0);
   await give("#add-pictures", [second]);

@@ -1,5 +1,6 @@
 // The page as a whole: it shows the paint of the history, or the preview of an edit that is being made.
 
+const mostKept = 4e6;    // letters of pictures that a browser is asked to keep; most keep five million in all
 const mostListed = 500;  // paints in a list that the browser unfolds
 
 class App {
@@ -349,10 +350,12 @@ class App {
     this.stageView.see({ view, environment, stops, lamp, turn });
   }
 
-  // The session: the library paints and edits of all states, and the palette. Paints are made again when it is opened.
-  savedSession() {
+  // The session: the library paints and edits of all states, the palette, and the boards with their pictures and
+  // droppers. Paints are made again when it is opened.
+  savedSession(withPictures = true) {
     return JSON.stringify({ kind: "paint-studio session", version: 1, title: this.data.title,
-                            history: this.history.saved(), palette: this.palette.map(saidState) });
+                            history: this.history.saved(), palette: this.palette.map(saidState),
+                            ...(withPictures && this.pictures.boards.length > 0 ? { pictures: this.pictures.saved() } : {}) });
   }
   // The state that these edits of a library paint lead to. Throws what a request refuses.
   replayed({ start, own, steps, name, code }) {
@@ -378,18 +381,28 @@ class App {
     this.history = new EditHistory(states, at);
     this.palette = palette;
     this.show();
+    if (session.pictures) this.pictures.restore(session.pictures).catch((error) => this.say(error.message));
   }
   // Each tab keeps a session of its own, and a new tab begins with the last one. The newest eight stay. Browsers may refuse
-  // to store anything; the page then works without.
+  // to store anything, or so much as pictures take; the page then works without.
   store() {
-    try {
-      if (!this.tab) sessionStorage.setItem("paint-studio tab", (this.tab = sessionStorage.getItem("paint-studio tab") ?? crypto.randomUUID()));
-      localStorage.setItem(`${this.key} ${this.tab}`, JSON.stringify({ time: Date.now(), session: this.savedSession() }));
-      for (const { place } of this.kept().slice(8)) localStorage.removeItem(place);
-    } catch {
-      if (!this.storeRefused) this.say("The browser does not keep this session: save it as a file.");
-      this.storeRefused = true;
-    }
+    const told = (lost) => {
+      if (this.storeRefused !== lost) this.say(`The browser does not keep ${lost}: save the session as a file.`);
+      this.storeRefused = lost;
+    };
+    const small = this.pictures.size <= mostKept;
+    if (!small) told("pictures of this size");
+    for (const withPictures of small && this.pictures.size > 0 ? [true, false] : [false])
+      try {
+        if (!this.tab) {
+          sessionStorage.setItem("paint-studio tab", (this.tab = sessionStorage.getItem("paint-studio tab") ?? crypto.randomUUID()));
+          for (const { place } of this.kept().slice(7)) localStorage.removeItem(place);
+        }
+        localStorage.setItem(`${this.key} ${this.tab}`, JSON.stringify({ time: Date.now(), session: this.savedSession(withPictures) }));
+        return;
+      } catch {
+        told(withPictures ? "pictures of this size" : "this session");
+      }
   }
   // The sessions of all tabs, the newest first.
   kept() {

@@ -3,6 +3,13 @@
 
 const mostPixels = 4096;  // of a side; larger pictures are made smaller
 
+const dataOf = (file) => new Promise((resolve, reject) => {
+  const reader = new FileReader();
+  reader.onload = () => resolve(reader.result);
+  reader.onerror = () => reject(reader.error);
+  reader.readAsDataURL(file);
+});
+
 class Pictures {
   constructor(app) {
     this.app = app;
@@ -46,6 +53,7 @@ class Pictures {
     this.show();
   }
 
+  get size() { return this.all.reduce((sum, { data }) => sum + data.length, 0); }
   get all() { return this.boards.flatMap((board) => board.pictures); }
   addBoard() {
     this.board = { name: `Board ${++this.made}`, pictures: [], zoom: 0 };
@@ -63,7 +71,7 @@ class Pictures {
     this.showMarks();
   }
 
-  async add(files) {
+  async add(files, keep = true) {
     for (const file of files) {
       try {
         const bitmap = await createImageBitmap(file);
@@ -74,7 +82,7 @@ class Pictures {
         context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
         bitmap.close();
         if (scale < 1) this.app.say(`${file.name} was made smaller: its sides have at most ${mostPixels} pixels here.`);
-        const picture = { name: file.name, canvas, context };
+        const picture = { name: file.name, canvas, context, data: scale < 1 ? canvas.toDataURL("image/png") : await dataOf(file) };
         this.listen(picture);
         if (!this.board) this.addBoard();
         this.board.pictures.push(picture);
@@ -84,6 +92,36 @@ class Pictures {
       }
     }
     this.show();
+    if (keep) this.app.store();
+  }
+  // As a session has them: pictures as the files that they came in, and droppers by the numbers of board and picture.
+  saved() {
+    const places = new Map();
+    this.boards.forEach((board, b) => board.pictures.forEach((picture, i) => places.set(picture, [b, i])));
+    return { made: this.made, open: this.boards.indexOf(this.board),
+             boards: this.boards.map(({ name, zoom, pictures }) => ({ name, zoom, pictures: pictures.map(({ name: file, data }) => ({ name: file, data })) })),
+             droppers: Object.entries(this.droppers).map(([kind, { picture, ...found }]) => ({ kind, place: places.get(picture), ...found })) };
+  }
+  // Takes the place of what stands here. A picture that cannot be read leaves its board without it, and is told.
+  async restore({ made: count, open, boards, droppers }) {
+    if (!Array.isArray(boards) || !Array.isArray(droppers)) throw new Error("The pictures of this session are damaged.");
+    Object.assign(this, { boards: [], board: null, current: null, droppers: {}, made: 0 });
+    const places = [];
+    for (const { name, zoom, pictures } of boards) {
+      this.addBoard();
+      const board = Object.assign(this.board, { name, zoom }), found = [];
+      for (const { name: file, data } of pictures) {
+        const before = board.pictures.length;
+        await this.add([new File([bytesOf(data.slice(data.indexOf(",") + 1))], file, { type: /^data:([^;,]*)/.exec(data)?.[1] ?? "" })], false);
+        found.push(board.pictures.length > before ? board.pictures.at(-1) : null);
+      }
+      places.push(found);
+    }
+    this.made = count;
+    for (const { kind, place: [b, i], ...found } of droppers) if (places[b]?.[i]) this.droppers[kind] = { picture: places[b][i], ...found };
+    const board = this.boards[open] ?? this.boards.at(-1);
+    if (board) this.openBoard(board);
+    this.app.store();
   }
   // Takes the picture that was used last away, and a board that has none with it.
   remove() {
@@ -97,6 +135,7 @@ class Pictures {
       this.current = this.board?.pictures.at(-1) ?? null;
     }
     this.show();
+    this.app.store();
   }
 
   listen(picture) {
