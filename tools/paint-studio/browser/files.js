@@ -26,9 +26,9 @@ drive("paints come and go", { width: 1000, height: 1000 }, async ({ browser, fol
   await value("studio.commit({ travel: 48 })");
   await choose("compare", "silver_fine");
   await browser.click("#gradient");
-  check("the gradient is told: " + (await status()), (await status()).startsWith("3 paints between candy_red and silver_fine"));
-  await browser.click(`#palette .tile:nth-child(${count + 2})`);
-  check("its middle is the paint", (await value("studio.paint.name")) === "candy_red-silver_fine.2");
+  check("the gradient is told: " + (await status()), (await status()).startsWith("3 paints between candy_red copy and silver_fine"));
+  await browser.click(`#palette .kept:nth-child(${count + 2}) .tile`);
+  check("its middle is the paint", (await value("studio.paint.name")) === "candy_red copy-silver_fine.2");
   await value(`(() => { const range = document.querySelector("#numbers input[aria-label=gloss][type=range]");
     range.value = 55; range.dispatchEvent(new Event("input")); range.dispatchEvent(new Event("change")); })()`);
   fs.writeFileSync(path.join(folder, "gradient-command.txt"), await value("document.getElementById('command').textContent"));
