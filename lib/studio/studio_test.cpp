@@ -347,7 +347,7 @@ TEST(Studio, DescribesTheColorsOfAScreen) {
   Studio studio = loaded();
   // As pictures show a matt white: the shoulder leaves .9 of the display's white, and more for what is brighter.
   EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {100, 0, 0}}}).at("css"), "#f3f3f3");
-  EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {133, 0, 0}}}).at("css"), "#fafafa");
+  EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {133, 0, 0}}}).at("css"), "#fcfcfc");
   EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {0, 0, 0}}}).at("css"), "#000000");
   // L* 53.585 is a reflectance factor of .2140, whose sRGB signal is .5 (IEC 61966-2-1).
   EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {53.585, 0, 0}}}).at("css"), "#808080");

@@ -96,6 +96,7 @@ image::ImagePart light_part(const LobeTransport& t, std::size_t column, bool bou
   for (std::size_t i = 0; i < t.places.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
       part.image.data[3 * static_cast<std::size_t>(t.places[i]) + c] = scale * light[i * t.floats() + 3 * column + c];
+  part.image.channel_names = {"R", "G", "B"};
   part.attributes["goniochrome:column"] = t.columns.name(column);
   part.attributes["colorInteropID"] = kColorSpace;
   const double error = half_error(t, part.image, column);

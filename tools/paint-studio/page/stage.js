@@ -408,7 +408,7 @@ class Stage {
     const height = 720, width = Math.round(height * aspect), { corner, right, down } = projected(camera, width, height, this.mesh, [0, 0]);
     const { positions, corners } = this.mesh, ray = added(added(corner, right, x * width), down, y * height), at = (i) => positions.subarray(3 * corners[i], 3 * corners[i] + 3);
     let nearest = Infinity;
-    for (let i = 0; i < corners.length; i += 3) {  // [MollerTrumbore1997]
+    for (let i = 0; i < corners.length; i += 3) {  // u and v are barycentric
       const a = at(i), ab = added([...at(i + 1)], a, -1), ac = added([...at(i + 2)], a, -1), p = crossed(ray, ac), determinant = dotted(ab, p);
       const from = added(camera.eye, a, -1), u = dotted(from, p) / determinant, q = crossed(from, ab), v = dotted(ray, q) / determinant;
       if (!(u >= 0 && v >= 0 && u + v <= 1)) continue;
