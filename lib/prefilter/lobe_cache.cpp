@@ -17,6 +17,15 @@ const T* attribute(const image::ImagePart& part, const std::string& name) {
   return found == part.attributes.end() ? nullptr : std::get_if<T>(&found->second);
 }
 
+// Of all that a kept file says.
+std::string digest_of(const std::vector<float>& texels, const std::string& method, float tolerance) {
+  Digest digest;
+  digest.add(texels);
+  digest.add(std::string_view(method));
+  digest.add(static_cast<double>(tolerance));
+  return digest.hex();
+}
+
 }  // namespace
 
 Result<LobeCache> LobeCache::open(const std::string& folder, const envmap::Environment& env,
@@ -50,8 +59,9 @@ std::optional<envmap::PrefilteredLobe> LobeCache::find(const LobePlan& plan) con
   const envmap::SphereGrid grid = envmap::map_grid(layout_, plan.size);
   const auto* method = attribute<std::string>(part, "goniochrome:method");
   const auto* tolerance = attribute<float>(part, "goniochrome:tolerance");
+  const auto* digest = attribute<std::string>(part, "goniochrome:digest");
   if (part.image.width != grid.width() || part.image.height != grid.height() || part.image.channels != 3 || !method ||
-      !tolerance)
+      !tolerance || !digest || *digest != digest_of(part.image.data, *method, *tolerance))
     return std::nullopt;
   envmap::PrefilteredLobe lobe;
   lobe.exponent = plan.exponent;
@@ -70,8 +80,10 @@ Result<void> LobeCache::keep(const envmap::PrefilteredLobe& lobe) const {
   part.name = "lobe";
   part.type = envmap::storage_type(lobe);
   part.image = {grid.width(), grid.height(), 3, lobe.map.texels, {}};
+  const auto tolerance = static_cast<float>(lobe.tolerance);
   part.attributes = {{"goniochrome:method", lobe.method},
-                     {"goniochrome:tolerance", static_cast<float>(lobe.tolerance)}};
+                     {"goniochrome:tolerance", tolerance},
+                     {"goniochrome:digest", digest_of(lobe.map.texels, lobe.method, tolerance)}};
   return image::write_exr(path(lobe.exponent, lobe.map.size), {part});
 }
 

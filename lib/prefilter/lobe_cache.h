@@ -17,11 +17,11 @@ class LobeCache {
   static Result<LobeCache> open(const std::string& folder, const envmap::Environment& env,
                                 const PrefilterRequest& request, const std::string& version);
 
-  // A lobe with the errors and the method that it was kept with, or nothing; a file that does not fit counts as
-  // nothing.
+  // A lobe with the errors and the method that it was kept with, or nothing; a file that does not fit, or of which a byte
+  // changed, counts as nothing.
   std::optional<envmap::PrefilteredLobe> find(const LobePlan& plan) const;
 
-  // Writes a lobe into the folder, whole or not at all. Error: the file and the system's reason.
+  // Writes a lobe, whose values envmap::round_to_storage() rounded, into the folder, whole or not at all. Error: the file and the system's reason.
   Result<void> keep(const envmap::PrefilteredLobe& lobe) const;
 
  private:
