@@ -41,8 +41,8 @@ struct FitOptions {
   bool perceptual_weights = true;                       // rows weighted by dL*/dY of the target
   std::vector<paint::GlossReading> assumed_gloss = {};  // for paints that state no gloss
   int most_lobes = 0;                                   // flake lobes to use, the best subset of the basis; 0: all
-  // Of the coat of every paint. None: that of brdf::coat_index_of_paint(). Measured BRDFs have no coat unless one is
-  // told here.
+  // The coat of every paint. None: each has that of brdf::coat_index_of_paint(). Measured BRDFs have no coat unless one
+  // is told here.
   std::optional<double> coat_index = {};
   double prune_de00 = 0;               // --prune: lobes that move no color by more are dropped; 0: none are
   std::vector<double> views_deg = {};  // weights at these angles of the viewer too; empty: those of `view_sets`

@@ -29,7 +29,7 @@ class PaintBatches {
   // goes on behind it; without it, such a paint is the error. Error at the end: a name of `only` that no paint has.
   Result<std::vector<paint::Paint>> next(const std::function<void(const Error&)>& left_out = {});
 
-  // What the sources had to say since it was asked last.
+  // The warnings of the sources since the last call.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
  private:

@@ -29,7 +29,7 @@ class LightsSearch {
   // light. Error: the library cannot be read.
   static Result<LightsSearch> open(const std::string& library_path, std::vector<std::string> illuminants,
                                    LibrarySearchOptions options, const std::function<void(std::size_t)>& progress = {});
-  // The same of the paints that `next_paint` gives until it gives none.
+  // Searches the paints that `next_paint` gives until it gives none, as open() does those of a file.
   static Result<LightsSearch> from_paints(const std::function<Result<std::optional<paint::Paint>>()>& next_paint,
                                           std::vector<std::string> illuminants, LibrarySearchOptions options,
                                           const std::function<void(std::size_t)>& progress = {});

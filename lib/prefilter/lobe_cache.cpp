@@ -17,7 +17,7 @@ const T* attribute(const image::ImagePart& part, const std::string& name) {
   return found == part.attributes.end() ? nullptr : std::get_if<T>(&found->second);
 }
 
-// Of all that a kept file says.
+// The digest of all that a kept file says.
 std::string digest_of(const std::vector<float>& texels, const std::string& method, float tolerance) {
   Digest digest;
   digest.add(texels);

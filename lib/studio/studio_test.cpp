@@ -345,7 +345,7 @@ TEST(Studio, DroppersReadSignals) {
 
 TEST(Studio, DescribesTheColorsOfAScreen) {
   Studio studio = loaded();
-  // As pictures show a matt white: the shoulder leaves .9 of the display's white, and more for what is brighter.
+  // Pictures show a matt white so: the shoulder leaves .9 of the display's white, and more for what is brighter.
   EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {100, 0, 0}}}).at("css"), "#f3f3f3");
   EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {133, 0, 0}}}).at("css"), "#fcfcfc");
   EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {0, 0, 0}}}).at("css"), "#000000");

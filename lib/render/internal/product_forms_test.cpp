@@ -7,13 +7,16 @@
 namespace goniochrome::render::product_forms_test {
 namespace {
 
-// The largest difference of the forms' product from the operator's, over colors of 0..1.
+// The largest difference of the forms' product from the operator's, over all pairs of colors of 0 and 1 and some
+// between.
 double error_of(const ProductForms& forms, const color::ReflectionOperator& op) {
   TestNumbers random(3);
   double worst = 0;
-  for (int i = 0; i < 200; ++i) {
-    const color::Rgb a{random(), random(), random()}, b{random(), random(), random()},
-        wanted = color::reflected(op, a, b);
+  const auto corner = [](int i) { return color::Rgb{i & 1 ? 1.0 : 0.0, i & 2 ? 1.0 : 0.0, i & 4 ? 1.0 : 0.0}; };
+  for (int i = 0; i < 264; ++i) {
+    const color::Rgb a = i < 64 ? corner(i) : color::Rgb{random(), random(), random()},
+                     b = i < 64 ? corner(i / 8) : color::Rgb{random(), random(), random()},
+                     wanted = color::reflected(op, a, b);
     color::Rgb got;
     for (int f = 0; f < forms.count; ++f)
       got = got + forms.of(f, a) * forms.of(f, b) * forms.out[static_cast<std::size_t>(f)];
@@ -32,7 +35,7 @@ TEST(ProductForms, FourMakeEveryOperatorInUse) {
                                                 color::iso_rec709_operator(), color::fitted_operator()}) {
     EXPECT_EQ(product_forms(base).count, 4);
     EXPECT_LT(error_of(product_forms(base), base), kExact);
-    EXPECT_GT(error_of({}, base), 0.03) << "each channel by itself would have been wrong";
+    EXPECT_GT(error_of({}, base), 0.05) << "each channel by itself would have been wrong";
     for (const double alpha : {0.01, 0.1, 0.5, 1.0, 1.5}) {
       const auto op = color::with_transfer(base, {alpha, alpha / 2, alpha});
       ASSERT_TRUE(op.ok());

@@ -1,4 +1,4 @@
-// What stays while one works on a page: the stage beside the panels in windows of six sizes, the picture after the graphics
+// The script holds what must stay while one works on a page: the stage beside the panels in windows of six sizes, the picture after the graphics
 // were lost, the sessions of two tabs, and a design in a link. The camera by wheel, fingers and double click, handles that
 // lie on each other, steps of keys, colors that the screen does not show, names and the palette.
 //
@@ -84,7 +84,7 @@ drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value,
   const flop = await ends();
   check(`its middle is the flop: ${flop.flop}`, near(flop.flop[2], 20, 0.7) && near(flop.face[2], 10, 0.01));
 
-  // What the screen does not show is told, with the nearest that it shows.
+  // The page tells a color that the screen does not show, with the nearest that it shows.
   await value("studio.commit({ face: [60, 120, 110] })");
   check("a loss is told", /The screen shows the face \d+\.\d/.test(await value("document.getElementById('screen-loss').textContent")));
   await shot("stay-loss");
