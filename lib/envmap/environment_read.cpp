@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "base/paths.h"
+#include "base/text.h"
 #include "envmap/environment.h"
 #include "envmap/internal/mirror_ball.h"
 #include "image/color_space.h"
@@ -111,6 +112,27 @@ Result<void> check_not_prefiltered(const image::ImagePart& part, const std::stri
                      source.empty() ? "" : ", " + source);
 }
 
+// Error: the header of a Radiance picture states another view than the whole sphere as an angular probe. A header that
+// states none may be that of any layout. [Ward, Radiance: rpict(1), options -vt, -vh and -vv]
+Result<void> check_view(const image::ImagePart& part, const std::string& name) {
+  const std::string view = text_attribute(part, "radiance:VIEW");
+  char type = 'v';
+  double across = 45, up = 45;
+  const std::vector<std::string_view> words = split(view, ' ');
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i].size() == 4 && words[i].starts_with("-vt")) type = words[i][3];
+    if (i + 1 == words.size()) break;
+    if (words[i] == "-vh") across = parse_number(words[i + 1]).value_or(0);
+    if (words[i] == "-vv") up = parse_number(words[i + 1]).value_or(0);
+  }
+  const bool angular = type == 'a' && across == 360 && up == 360;
+  if (view.empty() || (angular && part.image.width == part.image.height)) return {};
+  return input_error(
+      "{}: its header says VIEW= {}, which is no view of the whole sphere that is read: make it a lat-long map, or an "
+      "angular one by -vta -vh 360 -vv 360, or remove that line where it is wrong",
+      name, shown(view));
+}
+
 }  // namespace
 
 class EnvironmentReader {
@@ -126,6 +148,7 @@ class EnvironmentReader {
 
   static Result<Environment> from_part(image::ImagePart part, BadPixels bad_pixels, const std::string& name) {
     GONIO_TRY(check_not_prefiltered(part, name));
+    GONIO_TRY(check_view(part, name));
     const std::string envmap = text_attribute(part, "envmap");
     GONIO_ASSIGN(Picture picture, picture_of(std::move(part), bad_pixels, name));
     return arranged(std::move(picture.rgb), envmap, picture.counts, name);

@@ -300,6 +300,23 @@ TEST_F(EnvironmentFile, HardCase_PrefilterBadShapesAreRefusedAndOddOnesRead) {
               HasSubstr("sea-px.exr"));
 }
 
+// A fisheye of half the sphere was taken for an angular probe of the whole one.
+TEST_F(EnvironmentFile, TheViewOfARadiancePictureIsHeard) {
+  const auto read = [&](const std::string& lines, int width) {
+    const std::string pixels(static_cast<std::size_t>(4 * width * 4), '\x80');
+    return Environment::read(
+        folder_.file("v.hdr", fmt::format("#?RADIANCE\n{}FORMAT=32-bit_rle_rgbe\n\n-Y 4 +X {}\n{}", lines, width, pixels)),
+        BadPixels::kError);
+  };
+  for (const auto& [view, width] :
+       {std::pair{"-vta -vh 180 -vv 180", 4}, {"-vth -vh 180 -vv 180", 4}, {"-vtv -vp 0 0 0 -vh 53 -vv 40", 8}, {"", 4}})
+    EXPECT_EQ(read(*view ? fmt::format("VIEW= {}\n", view) : "", width).ok(), !*view) << view;
+  EXPECT_THAT(read("VIEW= -vth -vh 180 -vv 180\n", 4).error().message,
+              HasSubstr("v.hdr: its header says VIEW= -vth -vh 180 -vv 180"));
+  EXPECT_TRUE(read("VIEW= -vtv\nVIEW= -vta -vp 0 0 0 -vd 0 1 0 -vh 360 -vv 360\n", 4).ok()) << "the last one counts";
+  EXPECT_TRUE(read("pcompos left.hdr right.hdr\n\tVIEW= -vtv -vh 45 -vv 45\n", 8).ok()) << "that of another picture";
+}
+
 TEST_F(EnvironmentFile, FinerTexelsShowTheSameRadianceEverywhere) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> unit(0, 1);

@@ -1,5 +1,6 @@
 #include "image/color_space.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -145,9 +146,27 @@ std::string profile_of(const ImagePart& part) {
   return was_inks || has_id ? "" : text_attribute(part, "ICCProfile");
 }
 
-}  // namespace
+// Divides the signals of whole numbers by their alpha, by which files and readers have multiplied them: curves and
+// profiles take them without it. Returns what each pixel was divided by; nothing where no pixel is half transparent. A
+// pixel that is brighter than its alpha adds light of its own and stays.
+std::vector<float> taken_alpha(ImagePart& part) {
+  Image& image = part.image;
+  const auto channels = static_cast<std::size_t>(image.channels);
+  const bool has_alpha = channels == 2 || (image.channel_names.empty() ? channels == 4 : image.channel_names.back() == "A");
+  if (!has_alpha || attribute_or(part.attributes, "goniochrome:integer", 0) == 0) return {};
+  std::vector<float> taken(image.data.size() / channels, 1.0F);
+  bool any = false;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    float* signals = &image.data[i * channels];
+    const float alpha = signals[channels - 1];
+    if (!(alpha > 0 && alpha < 1) || *std::max_element(signals, signals + channels - 1) > alpha) continue;
+    std::for_each(signals, signals + channels - 1, [&](float& signal) { signal /= alpha; });
+    taken[i] = alpha, any = true;
+  }
+  return any ? taken : std::vector<float>();
+}
 
-Result<Image> working_space_rgb(ImagePart part, const std::string& name) {
+Result<Image> opaque_working_space_rgb(ImagePart part, const std::string& name) {
   if (const std::string profile = profile_of(part); !profile.empty())
     return image_through_icc(part.image, profile, name, attribute_or(part.attributes, "goniochrome:integer", 0) != 0);
   GONIO_ASSIGN(const Space space, space_of(part, name));
@@ -172,6 +191,16 @@ Result<Image> working_space_rgb(ImagePart part, const std::string& name) {
     }
   });
   return to;
+}
+
+}  // namespace
+
+Result<Image> working_space_rgb(ImagePart part, const std::string& name) {
+  const std::vector<float> alpha = taken_alpha(part);
+  GONIO_ASSIGN(Image rgb, opaque_working_space_rgb(std::move(part), name));
+  for (std::size_t i = 0; i < alpha.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) rgb.data[3 * i + c] *= alpha[i];
+  return rgb;
 }
 
 std::string inks_problem(const ImagePart& part, const std::string& name) {

@@ -33,6 +33,20 @@ TEST(ColorSpace, ChromaticitiesLeaveTheCurve) {
 }
 
 // White was D65 for any adoptedNeutral of a file.
+// A red of .5 behind an alpha of .5 is stored as .25 or becomes it in a reader. Its curve bends .5 and not .25.
+TEST(ColorSpace, ACurveTakesSignalsWithoutTheirAlpha) {
+  constexpr double kLight = .21404114048223255;  // of the sRGB signal .5
+  const auto light = [](float red, float alpha) {
+    ImagePart part{"", {1, 1, 4, {red, red, red, alpha}, {"R", "G", "B", "A"}}, {}};
+    part.attributes["goniochrome:integer"] = 1;
+    return working_space_rgb(part, "x.png").value().data[1];
+  };
+  EXPECT_NEAR(light(.25F, .5F), .5 * kLight, 1e-6);
+  EXPECT_GT(std::fabs(kLight * .5 - light(.25F, 1)), .05) << "control";
+  EXPECT_NEAR(light(.5F, 0), kLight, 1e-6) << "light without a surface stays";
+  EXPECT_NEAR(light(.5F, .25F), kLight, 1e-6) << "and so does a pixel brighter than its alpha";
+}
+
 TEST(ColorSpace, TheAdoptedNeutralBecomesWhite) {
   const auto read = [](std::vector<float> neutral) {
     ImagePart part;

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 
 #include "image/internal/content_format.h"
@@ -9,6 +10,13 @@ namespace goniochrome::image::content_format_test {
 namespace {
 
 using testing::HasSubstr;
+
+// A number of 4 bytes, lowest first.
+std::string little(std::uint32_t value) {
+  std::string bytes;
+  for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(value >> shift);
+  return bytes;
+}
 
 // The first bytes of files that are known by them, and others behind.
 TEST(ContentFormat, AFileThatEndsWithinItsHeaderIsNamedOrRefused) {
@@ -26,6 +34,18 @@ TEST(ContentFormat, AFileThatEndsWithinItsHeaderIsNamedOrRefused) {
         EXPECT_THAT(format.error().message, HasSubstr("x: is ")) << size << " bytes of " << head;
       }
     }
+}
+
+// A header of 124 bytes tells the kind of its colors at 56, and place and size of a profile at 112 and 116.
+TEST(ContentFormat, TheProfileOfABmpIsFound) {
+  const auto bmp = [](std::uint32_t kind, std::uint32_t at) {
+    return "BM" + std::string(12, '\0') + little(124) + std::string(52, '\0') + little(kind) + std::string(52, '\0') +
+           little(at) + little(3) + std::string(4, '\0') + "xyz";
+  };
+  constexpr std::uint32_t kEmbedded = 0x4d424544, kSrgb = 0x73524742;
+  EXPECT_EQ(std::get<std::string>(stated_colors(bmp(kEmbedded, 124), "bmp").at("ICCProfile")), "xyz");
+  EXPECT_TRUE(stated_colors(bmp(kSrgb, 124), "bmp").empty()) << "control";
+  EXPECT_TRUE(stated_colors(bmp(kEmbedded, 1U << 30), "bmp").empty()) << "a place behind the end";
 }
 
 TEST(ContentFormat, OrientationOfAWebpIsFound) {

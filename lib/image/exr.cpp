@@ -225,6 +225,10 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
 
   part.type = PixelType::kHalf;
   for (const std::string& name : image.channel_names)
+    if (as_picture && header.channels()[name.c_str()].type == Imf::UINT)
+      return input_error("{}: its channel {} holds whole numbers, of which 1 is no known light: convert it to half or float",
+                         where, name);
+  for (const std::string& name : image.channel_names)
     if (header.channels()[name.c_str()].type != Imf::HALF) part.type = PixelType::kFloat;
   GONIO_TRY(read_pixels(file, index, where, image));
   if (!fills_its_window(file, index, part.attributes, as_picture)) GONIO_TRY(place_in_window(header, where, image));

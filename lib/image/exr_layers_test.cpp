@@ -73,7 +73,8 @@ TEST(ExrLayers, PixelsAreShownInTheDisplayWindow) {
 class ExrPicture : public testing::Test {
  protected:
   // A file of floats whose channels hold 1, 2, 3 ... in the order of `names`.
-  std::string written(const std::vector<std::string>& names, const Imath::Box2i& display, const Imath::Box2i& data) {
+  std::string written(const std::vector<std::string>& names, const Imath::Box2i& display, const Imath::Box2i& data,
+                      Imf::PixelType type = Imf::FLOAT) {
     Imf::Header header(display, data);
     const std::string path = folder_.path("x.exr");
     const int width = data.max.x - data.min.x + 1, height = data.max.y - data.min.y + 1;
@@ -82,8 +83,8 @@ class ExrPicture : public testing::Test {
     for (std::size_t c = 0; c < names.size(); ++c)
       values.emplace_back(static_cast<std::size_t>(width * height), static_cast<float>(c + 1));
     for (std::size_t c = 0; c < names.size(); ++c) {
-      header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
-      buffer.insert(names[c], Imf::Slice::Make(Imf::FLOAT, values[c].data(), data));
+      header.channels().insert(names[c], Imf::Channel(type));
+      buffer.insert(names[c], Imf::Slice::Make(type, values[c].data(), data));
     }
     Imf::OutputFile file(path.c_str(), header);
     file.setFrameBuffer(buffer);
@@ -124,6 +125,13 @@ TEST_F(ExrPicture, OfACropIsBlackAroundIt) {
               HasSubstr("none of its pixels lies in its display window"));
   EXPECT_THAT(read_image(written({"R", "G", "B"}, {{0, 0}, {99999, 99999}}, whole_)).error().message,
               HasSubstr("is too large for its 4 x 2 pixels"));
+}
+
+// One of 65535 was light of 65535.
+TEST_F(ExrPicture, OfWholeNumbersIsRefused) {
+  EXPECT_THAT(read_image(written({"R", "G", "B"}, whole_, whole_, Imf::UINT)).error().message,
+              HasSubstr("its channel R holds whole numbers"));
+  EXPECT_TRUE(read_image(written({"R", "G", "B"}, whole_, whole_)).ok()) << "control";
 }
 
 // Numbers of a transport, in a part wider than its picture, made the picture wide in every other program.

@@ -35,6 +35,7 @@ struct Header {
   std::array<double, 3> gain = {1, 1, 1};  // of all EXPOSURE and COLORCORR lines
   std::optional<std::vector<float>> chromaticities;
   double gamma = 1;
+  std::string view;      // of the last VIEW line
   std::size_t end = 0;  // where the pixels begin
 };
 
@@ -112,6 +113,7 @@ class HeaderReader {
       const bool stated = std::ranges::any_of(number, [](double value) { return value != 0; });
       if (!xyze_ && stated) header_.chromaticities.emplace(number.begin(), number.end());
     }
+    if (const auto text = behind("VIEW=")) header_.view = *text;
     if (const auto text = behind("GAMMA=")) {
       const auto number = numbers_of(*text, 1);
       if (number.empty() || !(number[0] > 0)) return refused(line, "write one number above 0");
@@ -268,6 +270,7 @@ Result<ImagePart> decoded_hdr(const std::string& content, const std::string& nam
   part.attributes["oiio:ColorSpace"] =
       header.gamma == 1 ? std::string("linear") : "GammaCorrected" + shortest(header.gamma);
   part.attributes["goniochrome:integer"] = 0;
+  if (!header.view.empty()) part.attributes["radiance:VIEW"] = header.view;
   if (header.chromaticities) part.attributes["chromaticities"] = *header.chromaticities;
   const bool is_changed = header.gain != std::array<double, 3>{1, 1, 1};
   parallel_for(height, 16, [&](std::size_t begin, std::size_t end) {
