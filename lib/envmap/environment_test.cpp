@@ -3,16 +3,15 @@
 #include <OpenEXR/ImfEnvmap.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <random>
 
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
+#include "base/scratch_for_test.h"
 #include "color/color.h"
 
 namespace goniochrome::envmap::environment_test {
@@ -24,22 +23,16 @@ using Layout = Environment::Layout;
 
 class EnvironmentFile : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / fmt::format("goniochrome-environment-{}", getpid());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   // Writes a working-space image and returns its path.
   std::string written(const std::string& name, const image::Image& image, const std::string& envmap = "") {
     image::ImagePart part = {
         "", image, {{"colorInteropID", std::string("lin_rec2020_scene")}}, image::PixelType::kFloat};
     if (!envmap.empty()) part.attributes["envmap"] = envmap;
-    EXPECT_TRUE(image::write_exr((folder_ / name).string(), {part}).ok());
-    return (folder_ / name).string();
+    EXPECT_TRUE(image::write_exr(folder_.path(name), {part}).ok());
+    return folder_.path(name);
   }
 
-  std::filesystem::path folder_;
+  ScratchFolder folder_;
 };
 
 image::Image filled(int width, int height, const std::function<Vec3(double, double)>& value) {
@@ -145,7 +138,7 @@ TEST_F(EnvironmentFile, HardCase_PrefilterConventionEveryLayoutOfOneSceneAgrees)
     std::copy(strip.pixel(0, f * kSize), strip.pixel(0, f * kSize) + kSize * kSize * 3, face.data.begin());
     written(fmt::format("sky-{}.exr", std::array{"px", "nx", "py", "ny", "pz", "nz"}[f]), face);
   }
-  expect_scene(read((folder_ / "sky-{face}.exr").string()), cube_step);
+  expect_scene(read(folder_.path("sky-{face}.exr")), cube_step);
 
   const Environment edges = read(written("edges.exr", openexr_scene(kSize), "cube"));
   EXPECT_EQ(edges.layout(), Layout::kCubeEdges);
@@ -178,12 +171,9 @@ TEST_F(EnvironmentFile, HardCase_PrefilterConventionEveryLayoutOfOneSceneAgrees)
 TEST_F(EnvironmentFile, CellsCoverTheSphereAndDirectionsLieInThem) {
   std::vector<Environment> all;
   all.push_back(Environment::from_lat_long(lat_long_scene(9), BadPixels::kError, "a").value());
-  all.push_back(Environment::from_lat_long(filled(7, 3,
-                                                  [](double, double) {
-                                                    return Vec3{1, 1, 1};
-                                                  }),
-                                           BadPixels::kError, "odd")
-                    .value());
+  all.push_back(
+      Environment::from_lat_long(filled(7, 3, [](double, double) { return Vec3{1, 1, 1}; }), BadPixels::kError, "odd")
+          .value());
   CubeMap map(5);
   all.push_back(Environment::from_cube(map, "b"));
   all.push_back(Environment::from_cube_edges(gl_strip_scene(5), BadPixels::kError, "c").value());
@@ -206,13 +196,9 @@ TEST_F(EnvironmentFile, CellsCoverTheSphereAndDirectionsLieInThem) {
 
 TEST_F(EnvironmentFile, UntaggedIsRec709AndTagsAreHonored) {
   const auto first_texel = [&](const image::Attributes& attributes) {
-    image::ImagePart part = {"",
-                             filled(4, 2,
-                                    [](double, double) {
-                                      return Vec3{0.2, 0.5, 0.7};
-                                    }),
-                             attributes, image::PixelType::kFloat};
-    const std::string path = (folder_ / "tag.exr").string();
+    image::ImagePart part = {"", filled(4, 2, [](double, double) { return Vec3{0.2, 0.5, 0.7}; }), attributes,
+                             image::PixelType::kFloat};
+    const std::string path = folder_.path("tag.exr");
     EXPECT_TRUE(image::write_exr(path, {part}).ok());
     const auto env = Environment::read(path, BadPixels::kError);
     EXPECT_TRUE(env.ok()) << env.error().message;
@@ -227,13 +213,10 @@ TEST_F(EnvironmentFile, UntaggedIsRec709AndTagsAreHonored) {
   EXPECT_LT(length(first_texel({{"chromaticities", rec2020}}) - Vec3{.2, .5, .7}), 1e-6);
   // White stays white when the file's white is not D65 (ACES).
   image::ImagePart white = {"",
-                            filled(4, 2,
-                                   [](double, double) {
-                                     return Vec3{1, 1, 1};
-                                   }),
+                            filled(4, 2, [](double, double) { return Vec3{1, 1, 1}; }),
                             {{"colorInteropID", std::string("lin_ap1_scene")}},
                             image::PixelType::kFloat};
-  const std::string path = (folder_ / "white.exr").string();
+  const std::string path = folder_.path("white.exr");
   ASSERT_TRUE(image::write_exr(path, {white}).ok());
   const auto env = Environment::read(path, BadPixels::kError);
   ASSERT_TRUE(env.ok());
@@ -276,12 +259,7 @@ TEST_F(EnvironmentFile, HardCase_PrefilterBadTexelsAreRefusedByNameOrZeroedWithA
 
 TEST_F(EnvironmentFile, HardCase_PrefilterBadShapesAreRefusedAndOddOnesRead) {
   const auto read = [&](int w, int h, const std::string& envmap = "") {
-    return Environment::read(written("s.exr",
-                                     filled(w, h,
-                                            [](double, double) {
-                                              return Vec3{1, 1, 1};
-                                            }),
-                                     envmap),
+    return Environment::read(written("s.exr", filled(w, h, [](double, double) { return Vec3{1, 1, 1}; }), envmap),
                              BadPixels::kError);
   };
   for (const auto& [w, h] : {std::pair{1, 1}, {10, 3}, {5, 4}}) {
@@ -296,7 +274,7 @@ TEST_F(EnvironmentFile, HardCase_PrefilterBadShapesAreRefusedAndOddOnesRead) {
     ASSERT_TRUE(env.ok()) << w << " x " << h;
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(env->flux()[c], 4 * kPi, 1e-5) << w << " x " << h;
   }
-  EXPECT_THAT(Environment::read((folder_ / "sea-{face}.exr").string(), BadPixels::kError).error().message,
+  EXPECT_THAT(Environment::read(folder_.path("sea-{face}.exr"), BadPixels::kError).error().message,
               HasSubstr("sea-px.exr"));
 }
 
@@ -304,12 +282,14 @@ TEST_F(EnvironmentFile, HardCase_PrefilterBadShapesAreRefusedAndOddOnesRead) {
 TEST_F(EnvironmentFile, TheViewOfARadiancePictureIsHeard) {
   const auto read = [&](const std::string& lines, int width) {
     const std::string pixels(static_cast<std::size_t>(4 * width * 4), '\x80');
-    return Environment::read(
-        folder_.file("v.hdr", fmt::format("#?RADIANCE\n{}FORMAT=32-bit_rle_rgbe\n\n-Y 4 +X {}\n{}", lines, width, pixels)),
-        BadPixels::kError);
+    return Environment::read(folder_.file("v.hdr", fmt::format("#?RADIANCE\n{}FORMAT=32-bit_rle_rgbe\n\n-Y 4 +X {}\n{}",
+                                                               lines, width, pixels)),
+                             BadPixels::kError);
   };
-  for (const auto& [view, width] :
-       {std::pair{"-vta -vh 180 -vv 180", 4}, {"-vth -vh 180 -vv 180", 4}, {"-vtv -vp 0 0 0 -vh 53 -vv 40", 8}, {"", 4}})
+  for (const auto& [view, width] : {std::pair{"-vta -vh 180 -vv 180", 4},
+                                    {"-vth -vh 180 -vv 180", 4},
+                                    {"-vtv -vp 0 0 0 -vh 53 -vv 40", 8},
+                                    {"", 4}})
     EXPECT_EQ(read(*view ? fmt::format("VIEW= {}\n", view) : "", width).ok(), !*view) << view;
   EXPECT_THAT(read("VIEW= -vth -vh 180 -vv 180\n", 4).error().message,
               HasSubstr("v.hdr: its header says VIEW= -vth -vh 180 -vv 180"));
@@ -345,7 +325,7 @@ TEST_F(EnvironmentFile, FinerTexelsShowTheSameRadianceEverywhere) {
 
 // The first map of a prefiltered environment has the shape of a cube, and would be taken for one.
 TEST_F(EnvironmentFile, MapsThatArePrefilteredAreNoEnvironment) {
-  const std::string cube = (folder_ / "cube.exr").string(), prefiltered = (folder_ / "x.env.exr").string();
+  const std::string cube = folder_.path("cube.exr"), prefiltered = folder_.path("x.env.exr");
   image::ImagePart part = {"diffuse", {2, 12, 3, std::vector<float>(72, 1.0F), {}}, {}, image::PixelType::kHalf};
   ASSERT_TRUE(image::write_exr(cube, {part}).ok());
   EXPECT_TRUE(Environment::read(cube, BadPixels::kError).ok()) << "the control";

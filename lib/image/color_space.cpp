@@ -152,7 +152,8 @@ std::string profile_of(const ImagePart& part) {
 std::vector<float> taken_alpha(ImagePart& part) {
   Image& image = part.image;
   const auto channels = static_cast<std::size_t>(image.channels);
-  const bool has_alpha = channels == 2 || (image.channel_names.empty() ? channels == 4 : image.channel_names.back() == "A");
+  const bool has_alpha =
+      channels == 2 || (image.channel_names.empty() ? channels == 4 : image.channel_names.back() == "A");
   if (!has_alpha || attribute_or(part.attributes, "goniochrome:integer", 0) == 0) return {};
   std::vector<float> taken(image.data.size() / channels, 1.0F);
   bool any = false;

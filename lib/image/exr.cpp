@@ -13,8 +13,8 @@
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
-#include <OpenEXR/ImfVecAttribute.h>
 #include <OpenEXR/ImfThreading.h>
+#include <OpenEXR/ImfVecAttribute.h>
 
 #include <algorithm>
 #include <bit>
@@ -226,8 +226,9 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
   part.type = PixelType::kHalf;
   for (const std::string& name : image.channel_names)
     if (as_picture && header.channels()[name.c_str()].type == Imf::UINT)
-      return input_error("{}: its channel {} holds whole numbers, of which 1 is no known light: convert it to half or float",
-                         where, name);
+      return input_error(
+          "{}: its channel {} holds whole numbers, of which 1 is no known light: convert it to half or float", where,
+          name);
   for (const std::string& name : image.channel_names)
     if (header.channels()[name.c_str()].type != Imf::HALF) part.type = PixelType::kFloat;
   GONIO_TRY(read_pixels(file, index, where, image));

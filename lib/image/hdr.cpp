@@ -35,7 +35,7 @@ struct Header {
   std::array<double, 3> gain = {1, 1, 1};  // of all EXPOSURE and COLORCORR lines
   std::optional<std::vector<float>> chromaticities;
   double gamma = 1;
-  std::string view;      // of the last VIEW line
+  std::string view;     // of the last VIEW line
   std::size_t end = 0;  // where the pixels begin
 };
 

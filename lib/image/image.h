@@ -1,6 +1,6 @@
-// Float images in memory, and the files they come from and go to. OpenEXR, Radiance HDR and PNM are read here; PNG, JPEG
-// and TIFF by their own libraries, in a child process; DPX, WebP, BMP and TGA by the program oiiotool of OpenImageIO,
-// where it is installed. The path "-" is standard input or standard output everywhere.
+// Float images in memory, and the files they come from and go to. OpenEXR, Radiance HDR and PNM are read here; PNG,
+// JPEG and TIFF by their own libraries, in a child process; DPX, WebP, BMP and TGA by the program oiiotool of
+// OpenImageIO, where it is installed. The path "-" is standard input or standard output everywhere.
 #pragma once
 
 #include <cstddef>
@@ -81,8 +81,8 @@ enum class Inks { kAsRgb, kKept };
 // display window: 0 where it has no pixels, and without those outside.
 // `attributes` has `oiio:ColorSpace`, `chromaticities`, `colorInteropID`, `ICCProfile` and `envmap` ("latlong" or
 // "cube") where the file has them, and `goniochrome:integer`, which is 1 where it holds whole numbers; these are 0..1.
-// `goniochrome:inks` is there where the file is CMYK. `radiance:VIEW` has the options of rpict(1) that tell the projection
-// of a Radiance picture.
+// `goniochrome:inks` is there where the file is CMYK. `radiance:VIEW` has the options of rpict(1) that tell the
+// projection of a Radiance picture.
 Result<ImagePart> read_image(const std::string& path, Inks inks = Inks::kAsRgb);
 
 // The file that a path of read_image() names, without its layer.

@@ -160,10 +160,9 @@ TEST_F(TiffFile, WhatItsTagsSayOfColorsAndAlphaIsHeard) {
   const auto lab = read_image(written({"Lab", 8, 3, SAMPLEFORMAT_UINT, PHOTOMETRIC_CIELAB}));
   ASSERT_FALSE(lab.ok());
   EXPECT_THAT(lab.error().message, HasSubstr("its pixels are L*a*b*: convert it to RGB with a profile"));
-  const auto logarithms = read_image(written(
-      {"LogLuv", 32, 3, SAMPLEFORMAT_IEEEFP, PHOTOMETRIC_LOGLUV, false, false, COMPRESSION_SGILOG}, [](TIFF* tiff) {
-        TIFFSetField(tiff, TIFFTAG_SGILOGDATAFMT, SGILOGDATAFMT_FLOAT);
-      }));
+  const auto logarithms =
+      read_image(written({"LogLuv", 32, 3, SAMPLEFORMAT_IEEEFP, PHOTOMETRIC_LOGLUV, false, false, COMPRESSION_SGILOG},
+                         [](TIFF* tiff) { TIFFSetField(tiff, TIFFTAG_SGILOGDATAFMT, SGILOGDATAFMT_FLOAT); }));
   ASSERT_FALSE(logarithms.ok());
   EXPECT_THAT(logarithms.error().message, HasSubstr("its pixels are logarithms of light: convert it to EXR"));
   std::vector<std::uint16_t> curve(256);

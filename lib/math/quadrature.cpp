@@ -1,5 +1,7 @@
 #include "math/quadrature.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 
@@ -27,6 +29,38 @@ std::vector<QuadraturePoint> gauss_legendre(int n) {
       if (std::abs(change) <= 1e-16) break;
     }
     points[k] = {x, 2 / ((1 - x * x) * slope * slope)};
+  }
+  return points;
+}
+
+// Polynomials that are orthogonal over the points obey a recurrence of three terms, whose coefficients Lanczos' method
+// finds. They make a tridiagonal matrix: its eigenvalues are the positions, and the first parts of its eigenvectors
+// tell the weights. [Golub and Welsch, Calculation of Gauss quadrature rules, 1969]
+std::vector<QuadraturePoint> fewer_points(std::vector<QuadraturePoint> points, int count) {
+  const auto from = static_cast<Eigen::Index>(points.size());
+  if (count >= from) return points;
+  Eigen::VectorXd positions(from), next(from);
+  for (Eigen::Index i = 0; i < from; ++i) {
+    const QuadraturePoint& point = points[static_cast<std::size_t>(i)];
+    positions[i] = point.position, next[i] = std::sqrt(point.weight);
+  }
+  const double total = next.squaredNorm();
+  Eigen::MatrixXd polynomials(from, count);
+  Eigen::VectorXd diagonal(count), beside(count);
+  for (int k = 0; k < count; ++k) {
+    polynomials.col(k) = next.normalized();
+    next = positions.cwiseProduct(polynomials.col(k));
+    diagonal[k] = next.dot(polynomials.col(k));
+    const auto found = polynomials.leftCols(k + 1);
+    for (int pass = 0; pass < 2; ++pass) next -= found * (found.transpose() * next).eval();
+    beside[k] = next.norm();
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> matrix;
+  matrix.computeFromTridiagonal(diagonal, beside.head(count - 1));
+  points.clear();
+  for (int k = 0; k < count; ++k) {
+    const double part = matrix.eigenvectors()(0, k);
+    points.push_back({matrix.eigenvalues()[k], total * part * part});
   }
   return points;
 }

@@ -1,4 +1,4 @@
-// Gauss-Legendre quadrature: the points and weights at which sums stand for integrals. goniochrome-theory(7), GLOSS and
+// Gauss quadrature: the points and weights at which sums stand for integrals. goniochrome-theory(7), GLOSS and
 // PREFILTERING.
 #pragma once
 
@@ -13,6 +13,10 @@ struct QuadraturePoint {
 
 // The n points (ascending) and weights on [-1,1] that integrate polynomials of degree 2n-1 exactly, to rounding.
 std::vector<QuadraturePoint> gauss_legendre(int n);
+
+// Gauss quadrature of a sum: `count` points whose sum is that of these for every polynomial of degree 2 count - 1;
+// these themselves where they are no more. Their positions must differ and their weights be above 0.
+std::vector<QuadraturePoint> fewer_points(std::vector<QuadraturePoint> points, int count);
 
 // `count` points on 0..1 and their weights, of sum 1; exact for polynomials of degree 2 count - 1.
 struct GaussPoints {

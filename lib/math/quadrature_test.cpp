@@ -26,6 +26,30 @@ TEST(Quadrature, GaussLegendreConvergesOnSmoothFunctions) {
   EXPECT_NEAR(sum, std::exp(1.0) - std::exp(-1.0), 1e-15);
 }
 
+// Sums of x^k over 90 points on -0.8..0.5, those beside an end cut off: of few points they are the same up to degree
+// 2n - 1; at 2n, the control, they are not.
+TEST(Quadrature, FewerPointsHaveTheSumsOfMany) {
+  std::vector<QuadraturePoint> many;
+  for (int i = 0; i < 90; ++i) {
+    const double x = -0.8 + 1.3 * i / 89;
+    many.push_back({x, std::exp(-9 * x * x) / 30});
+  }
+  const auto sum = [](const std::vector<QuadraturePoint>& points, int degree) {
+    double all = 0;
+    for (const auto& [x, w] : points) all += w * std::pow(x / 0.8, degree);
+    return all;
+  };
+  for (const int n : {1, 2, 5, 12, 30}) {
+    const std::vector<QuadraturePoint> few = fewer_points(many, n);
+    ASSERT_EQ(few.size(), static_cast<std::size_t>(n));
+    for (int degree = 0; degree < 2 * n; ++degree) EXPECT_NEAR(sum(few, degree), sum(many, degree), 1e-14) << n;
+    if (n < 8) {
+      EXPECT_GT(std::abs(sum(few, 2 * n) - sum(many, 2 * n)), 1e-9) << n;
+    }
+  }
+  EXPECT_EQ(fewer_points(many, 90).size(), 90U);
+}
+
 // n points integrate x^k over 0..1 up to k = 2n - 1 to rounding, the sum of at most 12 terms; at k = 2n, the control, a
 // single piece errs by (n!)^4 / ((2n)!)^2.
 TEST(Quadrature, GaussRuleIsExactUpToItsDegree) {

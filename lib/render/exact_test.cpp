@@ -7,6 +7,7 @@
 #include "base/hard_case_for_test.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
+#include "brdf/ward.h"
 #include "math/cosine_power.h"
 #include "render/picture_error.h"
 #include "render/scenes_for_test.h"
@@ -86,11 +87,38 @@ TEST(ReferenceRadiance, IsTheSumOverTexelsOfTheExactBrdf) {
   }
 }
 
+// About one tilt after the other, each of which is summed as it is. The control has fewer tilts.
+TEST(ReferenceRadiance, OfABrushedPointIsTheSumOverItsTilts) {
+  const envmap::Environment env = lat_long(64, 32, [](int column, int row) {
+    return row > 6 && row < 11 && column % 16 < 3 ? Vec3{40, 35, 30} : Vec3{.4, .5, .7};
+  });
+  const Vec3 n = normalized({0.3, 0.5, 0.8});
+  for (const double exponent : {2.0, 6.0, 30.0, 200.0}) {
+    const paint::LobeFit paint = one_lobe(exponent, 0.3, 0.2);
+    const paint::Anisotropy alpha{brdf::lobe_alpha(200), 0.3};
+    const auto tilts = brdf::ward_tilts(alpha, alpha.alpha_x, 1e-3)->tilts;
+    for (const double view_deg : {0.0, 40.0, 80.0}) {
+      const Vec3 across = normalized(cross(n, {0, 1, 0}));
+      const Vec3 viewer = std::cos(view_deg * kDegree) * n + std::sin(view_deg * kDegree) * across;
+      const auto about = [&](std::vector<brdf::Tilt> some) {
+        ExactModel model;
+        model.tilts = std::move(some);
+        return reference_radiance({{n, viewer, &paint, &model}}, &env, {}).front().y;
+      };
+      double sum = 0;
+      for (const brdf::Tilt& tilt : tilts) sum += tilt.weight * about({{tilt.normal, 1}});
+      EXPECT_NEAR(about(tilts) / sum, 1, 2e-4) << exponent << " at " << view_deg;
+      if (exponent == 200) {
+        EXPECT_GT(std::abs(about(brdf::ward_tilts(alpha, alpha.alpha_x, 1e-3, 6)->tilts) / sum - 1), 2e-4);
+      }
+    }
+  }
+}
+
 // A patch is a patch, not a point: a lobe of E = 1e4 over one bright texel of 2.8 deg, against a fine brute-force sum.
 TEST(ReferenceRadiance, SharpLobeSeesTexelsAsPatches) {
-  const envmap::Environment env = lat_long(128, 64, [](int column, int row) {
-    return column == 40 && row == 30 ? Vec3{1, 1, 1} : Vec3{};
-  });
+  const envmap::Environment env =
+      lat_long(128, 64, [](int column, int row) { return column == 40 && row == 30 ? Vec3{1, 1, 1} : Vec3{}; });
   const paint::LobeFit paint = one_lobe(1e4, 0, 1);
   for (const double off : {0.0, 0.3, 0.5, 0.9}) {  // from the middle of the texel to its edge and beyond
     const Vec3 n = env.direction_at(40.5 + off, 30.5);
@@ -108,9 +136,8 @@ TEST(ReferenceRadiance, SharpLobeSeesTexelsAsPatches) {
 }
 
 TEST(ReferenceRadiance, NothingComesFromBelowTheHorizon) {
-  const envmap::Environment env = lat_long(64, 32, [](int, int row) {
-    return row >= 16 ? Vec3{1, 1, 1} : Vec3{};
-  });  // -Y half
+  const envmap::Environment env =
+      lat_long(64, 32, [](int, int row) { return row >= 16 ? Vec3{1, 1, 1} : Vec3{}; });  // -Y half
   paint::LobeFit paint = one_lobe(5, 1, 1);
   paint.diffuse = {1, 1, 1};
   EXPECT_EQ(at(paint, {0, 1, 0}, normalized({1, 0.1, 0}), env), color::Rgb{});

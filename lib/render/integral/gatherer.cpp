@@ -140,6 +140,29 @@ Gatherer::Gatherer(const SurfacePoint& point, double texel_rad, double most_spre
   if (model_.coat) exponents.push_back(model_.coat->sharpest_exponent(cos_o_));
   std::sort(exponents.begin(), exponents.end(), std::greater<>());
   grain_.add(std::move(middles), exponents);
+  bundle_lobes(most_spread == 0);
+}
+
+// With `few`, each lobe stands about as many tilts as its own width asks for. Over the angle of the tilts a lobe is a
+// bell as wide as its alpha, which Gauss quadrature of the tilts sums to a thousandth of its peak.
+void Gatherer::bundle_lobes(bool few) {
+  constexpr double kPointsOfAlpha = 2.8;  // for each alpha of half the range; the test has the error
+  constexpr int kMorePoints = 3;
+  if (!few || tilts_.size() < 2) return bundles_.push_back({mirrored_, 0, lobes_.size()});
+  const auto [low, high] = std::ranges::minmax(tilts_, {}, &math::QuadraturePoint::position);
+  for (std::size_t j = 0; j < lobes_.size(); ++j) {
+    const double alphas = 0.5 * (high.position - low.position) / brdf::lobe_alpha(lobes_[j].exponent);
+    Bundle bundle{{}, j, j + 1};
+    for (const auto& [angle, share] :
+         math::fewer_points(tilts_, kMorePoints + static_cast<int>(kPointsOfAlpha * alphas)))
+      bundle.middles.push_back({mirrored_about(angle), share});
+    bundles_.push_back(std::move(bundle));
+  }
+}
+
+Vec3 Gatherer::mirrored_about(double tilt_rad) const {
+  const Vec3 m = std::sin(tilt_rad) * tilted_along_ + std::cos(tilt_rad) * point_.normal;
+  return 2 * dot(m, point_.to_viewer) * m - point_.to_viewer;
 }
 
 // About the normal, and about each tilted normal: the tangent runs level around +Y, on a level surface along +X.
@@ -152,11 +175,13 @@ void Gatherer::set_mirror_directions() {
   }
   const double level2 = n.x * n.x + n.z * n.z;
   const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
+  const bool along_x = std::ranges::any_of(model_.tilts, [](const brdf::Tilt& tilt) { return tilt.normal.x != 0; });
+  tilted_along_ = along_x ? x : y;
   for (const brdf::Tilt& tilt : model_.tilts) {
-    const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
-    const double cos_m = dot(m, point_.to_viewer);
-    const Vec3 r = 2 * cos_m * m - point_.to_viewer;
-    if (cos_m > 0 && dot(r, n) > 0) mirrored_.push_back({r, tilt.weight});
+    const double angle = std::atan2(along_x ? tilt.normal.x : tilt.normal.y, tilt.normal.z);
+    const Vec3 r = mirrored_about(angle);
+    if (!(dot(r + point_.to_viewer, n) > 0) || !(dot(r, n) > 0)) continue;
+    mirrored_.push_back({r, tilt.weight}), tilts_.push_back({angle, tilt.weight});
   }
 }
 
@@ -342,14 +367,17 @@ color::Rgb Gatherer::lobes_toward(const Patch& patch, const BaseLight& base, boo
   color::Rgb f;
   const double cos_half = 0.5 * length(patch.direction + point_.to_viewer);
   const double fresnel = model_.fresnel ? brdf::fresnel_dielectric(std::min(1.0, cos_half), brdf::kCoatIndex) : 1;
-  for (const Mirrored& m : mirrored_) {
-    const LobeLight light(patch, m.direction, point_.normal);
-    for (const paint::Lobe& lobe : lobes_) {
-      const BlurredLobe blurred = grain_.blurred(lobe.exponent, patch.variance);
-      const color::Rgb power = m.share * light.mean(blurred);
-      if (power == color::Rgb{}) break;  // as it is for all that are sharper
-      f += power * (fresnel * lobe.gloss);
-      if (!mapped) f += power * base.mean(light.more_cosine(blurred, base)) * lobe.directional_diffuse;
+  for (const Bundle& bundle : bundles_) {
+    for (const Mirrored& m : bundle.middles) {
+      const LobeLight light(patch, m.direction, point_.normal);
+      for (std::size_t j = bundle.first; j < bundle.end; ++j) {
+        const paint::Lobe& lobe = lobes_[j];
+        const BlurredLobe blurred = grain_.blurred(lobe.exponent, patch.variance);
+        const color::Rgb power = m.share * light.mean(blurred);
+        if (power == color::Rgb{}) break;  // as it is for all that are sharper
+        f += power * (fresnel * lobe.gloss);
+        if (!mapped) f += power * base.mean(light.more_cosine(blurred, base)) * lobe.directional_diffuse;
+      }
     }
   }
   return f;

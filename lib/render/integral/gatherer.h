@@ -7,6 +7,7 @@
 
 #include "color/color.h"
 #include "envmap/block_tree.h"
+#include "math/quadrature.h"
 #include "render/integral/exact_model.h"
 #include "render/integral/patch.h"
 
@@ -75,11 +76,20 @@ class Gatherer {
   const color::Rgb& sum() const { return sum_; }
 
  private:
+  // A mirrored view, and its part of the light.
   struct Mirrored {
     Vec3 direction;
     double share;
   };
+  // Lobes, from `first` to before `end`, that stand about the same mirrored views.
+  struct Bundle {
+    std::vector<Mirrored> middles;
+    std::size_t first, end;
+  };
   void set_mirror_directions();
+  // The view mirrored about a normal that is tilted by this angle.
+  Vec3 mirrored_about(double tilt_rad) const;
+  void bundle_lobes(bool few);
   // With `horizon`, the direction's own cosine, and nothing from below. With `mapped`, the color map in the place of
   // the diffuse part and the flakes.
   void add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped);
@@ -102,8 +112,11 @@ class Gatherer {
   double cos_o_ = 1;
   Vec3 reflected_;
   Vec3 frame_x_, frame_y_, local_viewer_;  // of a color map and of facets, with the normal as z
+  Vec3 tilted_along_;                      // unit: the tangent toward which tilted normals lean
   std::vector<Mirrored> mirrored_;
-  std::vector<paint::Lobe> lobes_;  // finite exponents, ascending
+  std::vector<math::QuadraturePoint> tilts_;  // of each: the angle of its normal (rad) and its share
+  std::vector<paint::Lobe> lobes_;            // finite exponents, ascending
+  std::vector<Bundle> bundles_;
   Grain grain_;
   bool summed_ = false;  // whether lamps are integrated over their discs, and not looked up
   color::Rgb sum_;
