@@ -14,7 +14,7 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr double kTail = BlurredLobe::kTail;  // 4e-18 of the peak
+constexpr double kTail = BlurredLobe::kTail;
 // A texel is cut into pieces of at most this many standard deviations (1/sqrt E) of the sharpest lobe that reaches it.
 // The midpoint rule then errs by (1/4)^2/24 of the value on a patch, and far less in the sum over smooth radiance.
 constexpr double kPiece = 0.25;
@@ -54,6 +54,10 @@ double bend_beyond(double q) {
 Grain::Grain(double texel_rad, double most_spread)
     : texel_rad_(texel_rad), most_spread_(most_spread), piece_(std::max(kPiece, kPieceOfBlock * most_spread)) {}
 
+int Grain::pieces(double exponent) const {
+  return std::max(1, static_cast<int>(std::ceil(texel_rad_ * std::sqrt(exponent) / piece_)));
+}
+
 void Grain::add(std::vector<Vec3> middles, const std::vector<double>& exponents) {
   Bundle bundle{std::move(middles), {}, 0, {}};
   for (const Vec3& middle : bundle.middles) bundle.axis += middle;
@@ -65,27 +69,27 @@ void Grain::add(std::vector<Vec3> middles, const std::vector<double>& exponents)
     apart2_ = apart * apart;
   }
   for (const double exponent : exponents) {
-    const double pieces = std::max(1.0, std::ceil(texel_rad_ * std::sqrt(exponent) / piece_));
     // cos^E = exp(-kTail) at this angle; a texel whose center is that far and its own extent has nothing to give.
     const double reach_rad = std::acos(std::exp(-kTail / exponent)) + texel_rad_;
     const double chord = 2 * std::sin(0.5 * std::min(reach_rad, kPi));
-    bundle.reaches.push_back({1 / (1 / exponent + apart2_), static_cast<int>(pieces), chord * chord});
+    bundle.reaches.push_back({1 / (1 / exponent + apart2_), pieces(exponent), chord * chord});
   }
   bundles_.push_back(std::move(bundle));
 }
 
-int Grain::pieces(const Vec3& direction) const {
-  int most = 1;
+const std::vector<int>& Grain::cuts(const Vec3& direction) const {
+  thread_local std::vector<int> cuts;
+  cuts = {1};
   for (const Bundle& bundle : bundles_) {
-    if (bundle.reaches.empty() || bundle.reaches.front().pieces <= most) continue;
+    if (bundle.reaches.empty() || bundle.reaches.front().pieces == 1) continue;
     double chord2 = 4;
     for (const Vec3& middle : bundle.middles) chord2 = std::min(chord2, dot(middle - direction, middle - direction));
-    for (const Reach& reach : bundle.reaches) {
-      if (reach.pieces <= most) break;
-      if (chord2 < reach.chord2) most = reach.pieces;
-    }
+    for (const Reach& reach : bundle.reaches)
+      if (reach.pieces > 1 && chord2 < reach.chord2) cuts.push_back(reach.pieces);
   }
-  return most;
+  std::ranges::sort(cuts);
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  return cuts;
 }
 
 bool Grain::opens(const envmap::BlockTree::Block& block, double variance) const {
@@ -140,24 +144,39 @@ Gatherer::Gatherer(const SurfacePoint& point, double texel_rad, double most_spre
   if (model_.coat) exponents.push_back(model_.coat->sharpest_exponent(cos_o_));
   std::sort(exponents.begin(), exponents.end(), std::greater<>());
   grain_.add(std::move(middles), exponents);
-  bundle_lobes(most_spread == 0);
+  for (const paint::Lobe& lobe : lobes_) pieces_.push_back(grain_.pieces(lobe.exponent));
+  if (most_spread == 0 && tilts_.size() > 1) make_bells();
 }
 
-// With `few`, each lobe stands about as many tilts as its own width asks for. Over the angle of the tilts a lobe is a
-// bell as wide as its alpha, which Gauss quadrature of the tilts sums to a thousandth of its peak.
-void Gatherer::bundle_lobes(bool few) {
+// Each lobe stands about as many tilts as its own width asks for. Over the angle of the tilts a lobe is a bell as wide
+// as its alpha, which Gauss quadrature of the tilts sums to a thousandth of its peak. Its powers are linear to 5e-6 of
+// themselves between steps.
+void Gatherer::make_bells() {
   constexpr double kPointsOfAlpha = 2.8;  // for each alpha of half the range; the test has the error
-  constexpr int kMorePoints = 3;
-  if (!few || tilts_.size() < 2) return bundles_.push_back({mirrored_, 0, lobes_.size()});
+  constexpr int kMorePoints = 3, kSteps = 4096;
   const auto [low, high] = std::ranges::minmax(tilts_, {}, &math::QuadraturePoint::position);
-  for (std::size_t j = 0; j < lobes_.size(); ++j) {
-    const double alphas = 0.5 * (high.position - low.position) / brdf::lobe_alpha(lobes_[j].exponent);
-    Bundle bundle{{}, j, j + 1};
+  for (const paint::Lobe& lobe : lobes_) {
+    const double alphas = 0.5 * (high.position - low.position) / brdf::lobe_alpha(lobe.exponent);
+    Bell& bell = bells_.emplace_back();
     for (const auto& [angle, share] :
          math::fewer_points(tilts_, kMorePoints + static_cast<int>(kPointsOfAlpha * alphas)))
-      bundle.middles.push_back({mirrored_about(angle), share});
-    bundles_.push_back(std::move(bundle));
+      bell.middles.push_back({mirrored_about(angle), share});
+    const double last = -std::expm1(-kTail / lobe.exponent);
+    bell.steps = kSteps / last;
+    for (int i = 0; i <= kSteps; ++i) bell.power.push_back(std::exp(lobe.exponent * std::log1p(-i / bell.steps)));
   }
+}
+
+double Gatherer::Bell::toward(const Vec3& direction) const {
+  double sum = 0;
+  for (const Mirrored& middle : middles) {
+    const Vec3 apart = middle.direction - direction;
+    const double place = 0.5 * steps * dot(apart, apart);
+    if (!(place < static_cast<double>(power.size() - 1))) continue;
+    const auto step = static_cast<std::size_t>(place);
+    sum += middle.share * std::lerp(power[step], power[step + 1], place - static_cast<double>(step));
+  }
+  return sum;
 }
 
 Vec3 Gatherer::mirrored_about(double tilt_rad) const {
@@ -187,7 +206,7 @@ void Gatherer::set_mirror_directions() {
 
 // The integral over the disc. Looked up, the lobes are as the kernels have them; summed, it is exact.
 void Gatherer::add_light(const Light& light) {
-  if (!(light.radius_rad > 0)) return add({light.direction, kPi}, light.white, true, model_.map_under_lights);
+  if (!(light.radius_rad > 0)) return add({light.direction, kPi}, light.white, true, model_.map_under_lights, {});
   const double cosine = dot(point_.normal, light.direction);
   if (cosine <= -std::sin(light.radius_rad)) return;
   const bool mapped = model_.map_under_lights;
@@ -325,17 +344,18 @@ color::Rgb Gatherer::lobe_over_disc(const paint::Lobe& lobe, const Vec3& r, cons
   return scale * ((mapped ? 0 : flake) * lobe.directional_diffuse + gloss * lobe.gloss);
 }
 
-void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped) {
+void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped, PatchPart part) {
   const double above = (1 - patch.variance) * dot(point_.normal, patch.direction);
   const BaseLight base(patch, point_.normal, paint_.coat_index);
   color::Rgb f;
-  if (above > 0) f = mapped ? above * mapped_toward(patch.direction) : base.mean() * paint_.diffuse;
+  if (above > 0 && mapped && part.is_finest) f = above * mapped_toward(patch.direction);
+  if (above > 0 && !mapped && part.has_base()) f = base.mean() * paint_.diffuse;
   if (!horizon) {
-    f += lobes_toward(patch, {std::clamp(cos_o_, 0.0, 1.0), paint_.coat_index}, mapped);
+    f += lobes_toward(patch, {std::clamp(cos_o_, 0.0, 1.0), paint_.coat_index}, mapped, part);
   } else if (above > 0) {
-    f += lobes_toward(patch, base, mapped);
+    f += lobes_toward(patch, base, mapped, part);
   }
-  if (above > 0 && model_.coat) {
+  if (above > 0 && model_.coat && part.is_finest) {
     const double coat = model_.coat->sent(local(patch.direction), local_viewer_).f_cos;
     f += {coat, coat, coat};
   }
@@ -363,21 +383,27 @@ Vec3 Gatherer::local(const Vec3& direction) const {
   return {dot(direction, frame_x_), dot(direction, frame_y_), dot(direction, point_.normal)};
 }
 
-color::Rgb Gatherer::lobes_toward(const Patch& patch, const BaseLight& base, bool mapped) const {
+color::Rgb Gatherer::lobes_toward(const Patch& patch, const BaseLight& base, bool mapped, PatchPart part) const {
   color::Rgb f;
   const double cos_half = 0.5 * length(patch.direction + point_.to_viewer);
   const double fresnel = model_.fresnel ? brdf::fresnel_dielectric(std::min(1.0, cos_half), brdf::kCoatIndex) : 1;
-  for (const Bundle& bundle : bundles_) {
-    for (const Mirrored& m : bundle.middles) {
-      const LobeLight light(patch, m.direction, point_.normal);
-      for (std::size_t j = bundle.first; j < bundle.end; ++j) {
-        const paint::Lobe& lobe = lobes_[j];
-        const BlurredLobe blurred = grain_.blurred(lobe.exponent, patch.variance);
-        const color::Rgb power = m.share * light.mean(blurred);
-        if (power == color::Rgb{}) break;  // as it is for all that are sharper
-        f += power * (fresnel * lobe.gloss);
-        if (!mapped) f += power * base.mean(light.more_cosine(blurred, base)) * lobe.directional_diffuse;
-      }
+  for (std::size_t j = 0; j < bells_.size(); ++j) {
+    if (!part.has_lobe(pieces_[j])) continue;
+    const double power = bells_[j].toward(patch.direction);
+    if (power > 0) f += power * (fresnel * lobes_[j].gloss);
+    if (power > 0 && !mapped) f += power * base.mean() * lobes_[j].directional_diffuse;
+  }
+  if (!bells_.empty()) return f;
+  for (const Mirrored& m : mirrored_) {
+    const LobeLight light(patch, m.direction, point_.normal);
+    for (std::size_t j = 0; j < lobes_.size(); ++j) {
+      if (!part.has_lobe(pieces_[j])) continue;
+      const paint::Lobe& lobe = lobes_[j];
+      const BlurredLobe blurred = grain_.blurred(lobe.exponent, patch.variance);
+      const color::Rgb power = m.share * light.mean(blurred);
+      if (power == color::Rgb{}) break;  // as it is for all that are sharper
+      f += power * (fresnel * lobe.gloss);
+      if (!mapped) f += power * base.mean(light.more_cosine(blurred, base)) * lobe.directional_diffuse;
     }
   }
   return f;
@@ -414,11 +440,13 @@ void TextureGatherer::add_lobe(const Vec3& axis, double exponent, const color::R
   lobes_.push_back(lobe);
 }
 
-void TextureGatherer::add(const Patch& patch, const color::Rgb& radiance) {
+void TextureGatherer::add(const Patch& patch, const color::Rgb& radiance, PatchPart part) {
   const BaseLight base(patch, point_.normal, paint::kNoCoat);
   if (!(base.cosine() > 0)) return;
-  color::Rgb f = base.mean() * diffuse_;
+  color::Rgb f;
+  if (part.has_base()) f = base.mean() * diffuse_;
   for (const TexelLobe& lobe : lobes_) {
+    if (!part.has_lobe(grain_.pieces(lobe.exponent))) continue;
     if (dot(lobe.middle, patch.direction) < lobe.least_cosine - std::sqrt(3 * patch.variance)) continue;
     const LobeLight light(patch, lobe.middle, point_.normal);
     const BlurredLobe blurred = grain_.blurred(lobe.exponent, patch.variance);

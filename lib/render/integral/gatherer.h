@@ -25,8 +25,11 @@ class Grain {
   // soften each other: blocks need not be much narrower than the directions stand apart.
   void add(std::vector<Vec3> middles, const std::vector<double>& exponents);
 
-  // Into how many pieces, across and down, a texel about this direction is to be cut.
-  int pieces(const Vec3& direction) const;
+  // Lobes of this exponent ask for a texel to be cut into so many pieces, across and down.
+  int pieces(double exponent) const;
+  // The numbers of pieces that lobes ask for of the texel about this direction, ascending: 1, and those of lobes that
+  // reach it.
+  const std::vector<int>& cuts(const Vec3& direction) const;
   // Whether the light of a block is too wide to come from one direction. `variance` of its directions, along each axis.
   bool opens(const envmap::BlockTree::Block& block, double variance) const;
   // Of this exponent, by a patch of this variance; as it is far from the lobe, where wide patches were let through.
@@ -54,6 +57,16 @@ class Grain {
   std::vector<Bundle> bundles_;
 };
 
+// What of a point takes the light of a patch: all, or the lobes that ask for a texel to be cut into so many pieces. The
+// whole texel, which is one piece, also lights the base, and the finest pieces what is no lobe.
+struct PatchPart {
+  int pieces = 0;  // 0: all
+  bool is_finest = true;
+
+  bool has_base() const { return pieces <= 1; }
+  bool has_lobe(int asked) const { return pieces == 0 || pieces == asked; }
+};
+
 // The reflected radiance of one point in a paint.
 class Gatherer {
  public:
@@ -66,8 +79,8 @@ class Gatherer {
   const Vec3& normal() const { return point_.normal; }
 
   // Adds f L cos_i dw, with cos_i multiplied into f so that the gloss term needs no division.
-  void add(const Patch& patch, const color::Rgb& radiance) {
-    add(patch, radiance, model_.horizon, model_.map_in_image);
+  void add(const Patch& patch, const color::Rgb& radiance, PatchPart part = {}) {
+    add(patch, radiance, model_.horizon, model_.map_in_image, part);
   }
   void add_light(const Light& light);
   // The mirror lobe, which sees this radiance.
@@ -81,19 +94,22 @@ class Gatherer {
     Vec3 direction;
     double share;
   };
-  // Lobes, from `first` to before `end`, that stand about the same mirrored views.
-  struct Bundle {
+  // A lobe and the mirrored views that it stands about.
+  struct Bell {
     std::vector<Mirrored> middles;
-    std::size_t first, end;
+    std::vector<double> power;  // by the versine between view and light, linear between steps
+    double steps = 0;           // for each unit of the versine
+
+    double toward(const Vec3& direction) const;
   };
   void set_mirror_directions();
   // The view mirrored about a normal that is tilted by this angle.
   Vec3 mirrored_about(double tilt_rad) const;
-  void bundle_lobes(bool few);
+  void make_bells();
   // With `horizon`, the direction's own cosine, and nothing from below. With `mapped`, the color map in the place of
   // the diffuse part and the flakes.
-  void add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped);
-  color::Rgb lobes_toward(const Patch& patch, const BaseLight& base, bool mapped) const;
+  void add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped, PatchPart part);
+  color::Rgb lobes_toward(const Patch& patch, const BaseLight& base, bool mapped, PatchPart part) const;
   color::Rgb mapped_toward(const Vec3& direction) const;
   Vec3 local(const Vec3& direction) const;
   color::Rgb lobes_toward_disc(const Light& light, bool mapped) const;
@@ -116,7 +132,8 @@ class Gatherer {
   std::vector<Mirrored> mirrored_;
   std::vector<math::QuadraturePoint> tilts_;  // of each: the angle of its normal (rad) and its share
   std::vector<paint::Lobe> lobes_;            // finite exponents, ascending
-  std::vector<Bundle> bundles_;
+  std::vector<int> pieces_;                   // that each of lobes_ asks for
+  std::vector<Bell> bells_;                   // of each of lobes_; none: all of them stand about mirrored_
   Grain grain_;
   bool summed_ = false;  // whether lamps are integrated over their discs, and not looked up
   color::Rgb sum_;
@@ -131,7 +148,7 @@ class TextureGatherer {
   const Grain& grain() const { return grain_; }
   bool ends_at_horizon() const { return true; }
   const Vec3& normal() const { return point_.normal; }
-  void add(const Patch& patch, const color::Rgb& radiance);
+  void add(const Patch& patch, const color::Rgb& radiance, PatchPart part = {});
   void add_light(const Light& light);
 
   const color::Rgb& sum() const { return sum_; }

@@ -34,7 +34,7 @@ inline color::Rgb at_least_0(const color::Rgb& c) {
 // A lobe cos^E as a patch of this variance blurs it: peak cos^exponent (1 + bend (1/cos^2 - 1 + 2 ln cos)). It is right
 // to the first order in the variance and, for a sharp lobe, which is a Gaussian, beyond. Variance 0: the lobe as it is.
 struct BlurredLobe {
-  static constexpr double kTail = 40;  // cos^E below exp(-kTail) is left out: 4e-18 of the peak
+  static constexpr double kTail = 25;  // cos^E below exp(-kTail) is left out: 1e-11 of the peak
 
   BlurredLobe(double sharpness, double patch_variance)
       : peak(1 / (1 + sharpness * patch_variance)),
