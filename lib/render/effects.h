@@ -52,7 +52,7 @@ struct Effects {
   std::uint32_t texture_lobes = ~0U;  // of textures, by bits
   bool texture_filter = false;        // pixels show the mean of all texels that they cover; else those in their middle
   bool anisotropy = false;
-  double tilt_tolerance = 0.005;  // of the lobes drawn about tilted normals, relative to their peak
+  double tilt_tolerance = 0.005;  // Scene::tilt_error
   int most_tilts = 1024;
   double tolerance_de00 = 0.3;  // of light that is summed instead of looked up: p95 over the visible pixels
   bool sums = false;  // the diffuse part and the wide lobes by sums over the environment, which plans alone turn on

@@ -138,7 +138,7 @@ std::vector<color::Rgb> exact_radiance(const std::vector<VisiblePoint>& points, 
   std::vector<paint::LobeFit> paints;
   std::vector<ExactModel> models(scene.paints.size());
   Effects dense = effects;
-  if (around.blocks == nullptr) dense.tilt_tolerance = kTiltTolerance;
+  if (around.blocks == nullptr) dense.tilt_tolerance = kTiltTolerance, dense.most_tilts = brdf::kMostTilts;
   const auto tilts =
       effects.anisotropy ? tilts_of(scene, dense) : std::vector<std::vector<brdf::Tilt>>(scene.paints.size());
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {

@@ -73,6 +73,10 @@ struct Scene {
   color::Rgb background_color;
   std::vector<double> gloss_deg = {};  // for each part, the angle of incidence its gloss weights hold at; none: 45
   std::vector<paint::Anisotropy> anisotropy = {};  // for each part; alpha 0 is none. The tangent runs level around +Y
+  // Brushed parts are drawn about as many tilted normals as this error asks for, relative to the peak of the lobe, but
+  // about no more than `most_tilts`.
+  double tilt_error = 0.005;
+  int most_tilts = 1024;
   color::ReflectionOperator reflection = color::component_wise();
   const SurfaceLayer* layer = nullptr;        // textures and color maps of parts, if there are any
   const envmap::BlockTree* texels = nullptr;  // of the image that env was made from, for engines that sum it

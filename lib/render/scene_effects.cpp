@@ -210,6 +210,7 @@ Effects effects_of(const Scene& scene) {
   effects.stretch = effects.satin && effects.environment && effects.lights == 0;
   effects.anisotropy =
       !effects.lobes.empty() && std::any_of(scene.anisotropy.begin(), scene.anisotropy.end(), is_anisotropic);
+  effects.tilt_tolerance = scene.tilt_error, effects.most_tilts = scene.most_tilts;
   if (effects.environment) {
     for (std::size_t part = 0; part < scene.paints.size(); ++part) {
       effects.tilt_level = std::max(effects.tilt_level, static_cast<int>(scene.paints[part].tilts.size()));
@@ -252,29 +253,32 @@ paint::LobeFit with_effects(const paint::LobeFit& paint, const Effects& effects)
   return result;
 }
 
-std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects& effects) {
-  std::vector<std::vector<brdf::Tilt>> tilts(scene.paints.size(), {{{0, 0, 1}, 1}});
-  for (std::size_t part = 0; part < scene.anisotropy.size(); ++part) {
-    const paint::Anisotropy& alpha = scene.anisotropy[part];
-    if (!(alpha.alpha_x > 0) || effects.lobes.empty()) continue;
-    double sharpest = 0;
-    for (const Effects::LobeUse& use : effects.lobes) {
-      const paint::LobeFit& paint = scene.paints[part];
-      if (wears_lobe(paint, use.exponent, LobeWeight::kDirectionalDiffuse) ||
-          wears_lobe(paint, use.exponent, LobeWeight::kGloss))
-        sharpest = use.exponent;
-    }
-    if (sharpest == 0) continue;
-    // The tilts must be close enough for the sharpest lobe, which may be narrower than the surface's narrow side: the
-    // same spread, wide^2 - narrow^2, about that lobe.
-    const double low = std::min(alpha.alpha_x, alpha.alpha_y), high = std::max(alpha.alpha_x, alpha.alpha_y);
-    const double narrow = std::min(low, brdf::lobe_alpha(sharpest)),
-                 wide = std::sqrt(high * high - low * low + narrow * narrow);
-    const paint::Anisotropy fine =
-        alpha.alpha_x < alpha.alpha_y ? paint::Anisotropy{narrow, wide} : paint::Anisotropy{wide, narrow};
-    auto set = brdf::ward_tilts(fine, narrow, effects.tilt_tolerance, effects.most_tilts);
-    if (set.ok()) tilts[part] = std::move(set->tilts);
+brdf::TiltSet tilts_of(const Scene& scene, const Effects& effects, std::size_t part) {
+  const brdf::TiltSet level = {{{{0, 0, 1}, 1}}, 0, 0};
+  if (part >= scene.anisotropy.size()) return level;
+  const paint::Anisotropy& alpha = scene.anisotropy[part];
+  double sharpest = 0;
+  for (const Effects::LobeUse& use : effects.lobes) {
+    const paint::LobeFit& paint = scene.paints[part];
+    if (wears_lobe(paint, use.exponent, LobeWeight::kDirectionalDiffuse) ||
+        wears_lobe(paint, use.exponent, LobeWeight::kGloss))
+      sharpest = use.exponent;
   }
+  if (!(alpha.alpha_x > 0) || sharpest == 0) return level;
+  // The tilts must be close enough for the sharpest lobe, which may be narrower than the surface's narrow side: the
+  // same spread, wide^2 - narrow^2, about that lobe.
+  const double low = std::min(alpha.alpha_x, alpha.alpha_y), high = std::max(alpha.alpha_x, alpha.alpha_y);
+  const double narrow = std::min(low, brdf::lobe_alpha(sharpest)),
+               wide = std::sqrt(high * high - low * low + narrow * narrow);
+  const paint::Anisotropy fine =
+      alpha.alpha_x < alpha.alpha_y ? paint::Anisotropy{narrow, wide} : paint::Anisotropy{wide, narrow};
+  auto set = brdf::ward_tilts(fine, narrow, effects.tilt_tolerance, effects.most_tilts);
+  return set.ok() ? *std::move(set) : level;
+}
+
+std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects& effects) {
+  std::vector<std::vector<brdf::Tilt>> tilts;
+  for (std::size_t part = 0; part < scene.paints.size(); ++part) tilts.push_back(tilts_of(scene, effects, part).tilts);
   return tilts;
 }
 

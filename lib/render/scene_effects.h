@@ -23,6 +23,7 @@ std::vector<Light> single_lights(const Scene& scene, const Effects& effects);
 
 // The tilted normals that each part's lobes are drawn about; a single one where the part is isotropic.
 std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects& effects);
+brdf::TiltSet tilts_of(const Scene& scene, const Effects& effects, std::size_t part);
 
 // Error: a paint that is seen shows the extent of a lamp at a place. What its lobes gather of a disc is tabulated for
 // one radius, and the lamp has another at each point. `engine` is the name of the engine that asks.

@@ -59,6 +59,21 @@ decided() { grep -A4 "\"effect\": \"$1\"" auto.json | grep -q "\"decision\": \"$
   scene brushed.xml#candy_red --light -30,20
 }
 
+@test "--tilts: fewer tilted normals of a brushed paint err more, and what cannot be is refused" {
+  brushed() { # TILTS: the mean difference from the reference integrator
+    render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --size 48x27 --samples 1 --paint brushed.xml#silver_black_flop \
+      --env studio.env.exr --check-source studio.exr --effects auto,-rays --check 8,model --tilts "$1" -o tilts.exr --report r.json
+    jq .results.error.de00_mean r.json
+  }
+  few=$(brushed 3) && many=$(brushed 0.005)
+  awk -v few="$few" -v many="$many" 'BEGIN { exit !(few > 2 * many) }' || { echo "$few and $many"; return 1; }
+  for bad in 0 8193 1.5 0. -1 many; do
+    run render-osmesa $view --paint brushed.xml#silver_black_flop --env studio.env.exr --tilts=$bad -o none.exr
+    [ "$status" -eq 2 ]
+    [[ $output == *"--tilts is \"$bad\": write how many"* ]]
+  done
+}
+
 # Forced out, the error that the check shows is the one that the plan predicted, within a factor of 2.
 @test "--check tells what the plan left out" {
   run render-osmesa $view --check 5 -p fitted.xml#candy_red --env studio.env.exr --effects all,-rays,-mirror -o off.exr --report off.json

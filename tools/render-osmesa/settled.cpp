@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "brdf/ward.h"
 #include "render/engine.h"
 
 namespace goniochrome::tool {
@@ -50,12 +51,28 @@ Result<void> take_check(Options& options) {
   return {};
 }
 
+// N or an error below 1.
+Result<void> take_tilts(Options& options) {
+  const auto count = parse_integer(options.tilts);
+  const auto error = parse_number(options.tilts);
+  if (count && *count >= 1 && *count <= brdf::kMostTilts) {
+    options.most_tilts = static_cast<int>(*count), options.tilt_error = 0;
+  } else if (error && *error > 0 && *error < 1) {
+    options.most_tilts = brdf::kMostTilts, options.tilt_error = *error;
+  } else {
+    return usage_error("--tilts is \"{}\": write how many, 1 to {}, or an error between 0 and 1, as in 0.01",
+                       options.tilts, brdf::kMostTilts);
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<Options> settled(const Options& asked) {
   Options options = asked;
   GONIO_TRY(take_camera(options));
   GONIO_TRY(take_check(options));
+  GONIO_TRY(take_tilts(options));
   GONIO_ASSIGN(options.effects, render::words_of(asked.effects_text));
   if (asked.engine == kGpu) {
     const auto able = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->needs_opengl; });

@@ -210,6 +210,7 @@ void wear(const DressedMesh& dress, const Options& options, Stage& stage) {
   scene.paints = dress.paints;
   scene.gloss_deg = dress.gloss_deg;
   scene.anisotropy = dress.anisotropy;
+  scene.tilt_error = options.tilt_error, scene.most_tilts = options.most_tilts;
   scene.panes = dress.panes;
   stage.layer = std::make_unique<render::SurfaceLayer>(
       scene, dress.surfaces, brdf::critical_angle_of(options.critical_angle).value_or(brdf::CriticalAngle::kSlide),

@@ -32,6 +32,7 @@ struct Options {
   std::string spectral = "auto";
   bool needs_bands() const { return spectral == "on" || spectral == "guess"; }
   std::string critical_angle = "slide";
+  std::string tilts = "0.005";
   std::vector<std::string> textures;
   std::string texture_maps = "cubes";
   bool print_shader = false;
@@ -41,9 +42,11 @@ struct Options {
   bool no_cache = false;
   std::string check_source;
 
-  // Values that settled() takes out of --camera, --check, --effects and --engine.
+  // Values that settled() takes out of --camera, --check, --effects, --engine and --tilts.
   std::vector<double> orbit;
   double fov_deg = 30;
+  double tilt_error = 0;  // 0: most_tilts of them
+  int most_tilts = 0;
   int check = 0;
   std::string check_against = "auto";
   render::EffectWords effects;

@@ -84,9 +84,13 @@ std::string spots_reason(const Scene& scene, const Effects& all) {
 
 std::string anisotropy_reason(const Scene& scene, const Effects& all) {
   if (!all.anisotropy) return "no visible paint is brushed";
-  std::size_t most = 0;
-  for (const auto& tilts : tilts_of(scene, all)) most = std::max(most, tilts.size());
-  return fmt::format("brushed paint: {} tilted normals", most);
+  brdf::TiltSet most;
+  for (std::size_t part = 0; part < scene.paints.size(); ++part) {
+    brdf::TiltSet set = tilts_of(scene, all, part);
+    if (set.tilts.size() > most.tilts.size()) most = std::move(set);
+  }
+  return fmt::format("brushed paint: {} tilted normals, within {:.2g} of the lobes' peak", most.tilts.size(),
+                     most.error);
 }
 
 std::string extent_reason(const Scene& scene, const Effects& all) {
