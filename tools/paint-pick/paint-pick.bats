@@ -445,3 +445,43 @@ OBJ
   distance() { jq -s '[.[].results.samples[0].lab] | [.[0][0] - .[1][0], .[0][1] - .[1][1], .[0][2] - .[1][2]] | map(. * .) | add | sqrt' "$@"; }
   awk -v near="$(distance paint.json aces.json)" -v far="$(distance paint.json nameless.json)" 'BEGIN { exit !(near < 1 && far > 5) }'
 }
+
+@test "a picture in a view of \$OCIO is read back through it, and refused without it" {
+  cat >config.ocio <<'OCIO'
+ocio_profile_version: 2
+roles: {aces_interchange: aces, default: aces}
+displays:
+  Booth:
+    - !<View> {name: Plain, colorspace: plain}
+    - !<View> {name: Dim, colorspace: dim}
+colorspaces:
+  - !<ColorSpace> {name: aces}
+  - !<ColorSpace>
+    name: plain
+    from_scene_reference: !<GroupTransform>
+      children:
+        - !<BuiltinTransform> {style: "UTILITY - ACES-AP0_to_CIE-XYZ-D65_BFD"}
+        - !<BuiltinTransform> {style: "DISPLAY - CIE-XYZ-D65_to_sRGB"}
+  - !<ColorSpace>
+    name: dim
+    from_scene_reference: !<GroupTransform>
+      children:
+        - !<CDLTransform> {slope: [0.5, 0.5, 0.5]}
+        - !<ColorSpaceTransform> {src: aces, dst: plain}
+OCIO
+  fit-paint -q --basis "$TESTDATA/b5.basis.xml" "$TESTDATA/paints.paints.xml#silver_fine" -o fitted.xml
+  for view in Plain Dim; do
+    OCIO=config.ocio render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --paint fitted.xml --light 0,30 --exposure 0 --size 96x54 \
+      --samples 1 --effects auto,-rays --view $view -o $view.png
+    OCIO=config.ocio paint-pick -q --face $view.png@48,27,1 -o $view.xml --report $view.json
+  done
+  plain=$(jq '.results.paints[0].face[0]' Plain.json)
+  near "$(jq '.results.paints[0].face[0]' Dim.json)" "$plain" 0.1
+  # Without the name of its view, half of the light is that of a darker paint.
+  sed 's/goniochrome:view/goniochrome:vieX/' Dim.png >nameless.png
+  paint-pick -q --face nameless.png@48,27,1 -o nameless.xml --report nameless.json
+  awk -v plain="$plain" -v dark="$(jq '.results.paints[0].face[0]' nameless.json)" 'BEGIN { exit !(dark < plain - 5) }'
+  run paint-pick --face Dim.png@48,27,1 -o none.xml
+  [ "$status" -eq 3 ]
+  [[ $output == *'was drawn by the view "Booth / Dim": there is no view "Booth / Dim"'* ]]
+}
