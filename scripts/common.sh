@@ -8,11 +8,11 @@ builds=$(realpath -m "${GONIOCHROME_BUILD_FOLDER:-$top/build}")
 build_packages=(
   g++ cmake ninja-build ccache pkg-config
   libcgal-dev libceres-dev libcli11-dev libdraco-dev libegl-dev libeigen3-dev libembree-dev libfmt-dev libhwy-dev libimath-dev libjpeg-dev liblcms2-dev
-  libmeshoptimizer-dev libopencolorio-dev libopenexr-dev libpng-dev libtbb-dev libtiff-dev libtinygltf-dev libxml2-dev libzip-dev nlohmann-json3-dev
+  libmeshoptimizer-dev libopencolorio-dev libopenexr-dev libpng-dev libtbb-dev libtiff-dev libtinygltf-dev libxml2-dev libzip-dev mandoc nlohmann-json3-dev
   zlib1g-dev
 )
 test_packages=(
-  bats coinor-libclp-dev file jq libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6 librsvg2-bin libbenchmark-dev libgmock-dev libgtest-dev libxml2-utils locales make mandoc
+  bats coinor-libclp-dev file jq libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6 librsvg2-bin libbenchmark-dev libgmock-dev libgtest-dev libxml2-utils locales make
   openexr openimageio-tools procps pybind11-dev python3 python3-dev python3-numpy python3-openimageio strace time
 )
 # The compiler for the page of paint-studio. Not every system has it, and everything else is built without.

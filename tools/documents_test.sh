@@ -37,7 +37,7 @@ for folder in "$top"/tools/*/; do
     grep -q -- "$option" <<<"$help" || complain "$tool: $option is in the man page and not in --help"
   done
   grep -qE "^\| \`$tool\` \|" "$top/README.md" || complain "README.md: the tool table lacks $tool"
-  grep -q "$tool" "$top/man/goniochrome-theory.7" || complain "goniochrome-theory(7) does not name $tool"
+  grep -q "^\.It Xr $tool 1" "$top/man/goniochrome.7" || complain "goniochrome(7) does not list $tool"
 done
 while read -r tool; do
   [ -d "$top/tools/$tool" ] || complain "README.md: the tool table has $tool, which does not exist"
@@ -46,18 +46,44 @@ for page in "$top"/man/*.1; do
   # make-documents writes the pages of all tools and commands, so that one that it did not write is a page of neither.
   [ -s "$made/man/$(basename "$page")" ] || complain "$page: there is no such tool or command"
 done
-# Both ways: what is cited, there or in the code, is a reference of goniochrome-theory(7), and each of these is cited.
-theory=$top/man/goniochrome-theory.7
-listed=$(sed -n '/^\.Sh REFERENCES/,/^\.Sh SEE/s/^\.It Bq //p' "$theory" | sort)
-[ -n "$listed" ] || complain "goniochrome-theory(7) has no references"
-body=$(sed '/^\.Sh REFERENCES/,$d' "$theory")
+for page in "$top"/man/*.[57]; do
+  name=$(basename "$page")
+  case $name in goniochrome.7) continue ;; esac
+  grep -q "^\.It Xr ${name%.*} ${name##*.}" "$top/man/goniochrome.7" || complain "goniochrome(7) does not list $name"
+done
+# Both ways: a source that pages or code cite is in goniochrome-references(7), and each source there is cited.
+listed=$(sed -n 's/^\.It Bq //p' "$top/man/goniochrome-references.7" | sort)
+[ -n "$listed" ] || complain "goniochrome-references(7) has no references"
+body=$(cat "$top"/man/goniochrome-*.7 | grep -v '^\.It Bq ')
 for key in $({ grep -oE '\b[A-Z][a-z][A-Za-z]*(19|20)[0-9]{2}\b' <<<"$body"
   grep -rhoE '\[[A-Z][a-z][A-Za-z]*(19|20)[0-9]{2}\]' "$top/lib" "$top/tools" | tr -d '[]'; } | sort -u); do
-  grep -qx "$key" <<<"$listed" || complain "goniochrome-theory(7): $key is cited and not among the references"
+  grep -qx "$key" <<<"$listed" || complain "goniochrome-references(7): $key is cited and not among the references"
 done
-for key in $listed; do
-  grep -qw "$key" <<<"$body" || complain "goniochrome-theory(7): the reference $key is cited nowhere"
+while IFS= read -r key; do
+  grep -qF "$key" <<<"$body" || complain "goniochrome-references(7): the reference $key is cited nowhere"
+done <<<"$listed"
+# No page is longer than a reader reads at once: README, pages of subjects, pages of tools.
+words() {
+  local most=$1 page count
+  shift
+  for page in "$@"; do
+    count=$(wc -w <"$page")
+    [ "$count" -le "$most" ] || complain "$(basename "$page") has $count words, and at most $most are wanted"
+  done
+}
+words 1000 "$top/README.md"
+words 3500 "$top/man/render-osmesa.1"
+for page in "$top"/man/*.1; do [ "$page" = "$top/man/render-osmesa.1" ] || words 1800 "$page"; done
+for page in "$top"/man/*.7; do [ "$page" = "$top/man/goniochrome-hard-cases.7" ] || words 4000 "$page"; done
+# The pages as HTML: every link leads to a page, and every page is in the index.
+"$top/scripts/make-html" "$made/html"
+for link in $(grep -ohE 'href="[^"#:]+' "$made"/html/*.html | sort -u | cut -d'"' -f2); do
+  [ -s "$made/html/$link" ] || complain "HTML: the link $link leads nowhere"
 done
+for page in "$top"/man/*.[1-9]; do
+  grep -q "href=\"$(basename "$page").html\"" "$made/html/index.html" || complain "HTML: the index lacks $(basename "$page")"
+done
+grep -q 'href="goniochrome-paint.5.html"' "$made/html/fit-paint.1.html" || complain 'HTML: pages of tools have no links'
 mandoc -Tlint -W warning "$top"/man/*.[1-9] || complain "mandoc finds fault with the man pages"
 [ "$checked" -gt 20 ] || complain "only $checked options were checked"
 exit $wrong

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Executes the examples of man pages: the commands of tool pages, which have to be done (0), if with a negative verdict (1)
-# or into a pipe that head closes (141); and of goniochrome-paint(5) the sample files, which have to be read.
+# Executes the examples of man pages and of README.md: the commands of tool pages and of blocks that begin with ```sh, which
+# have to be done (0), if with a negative verdict (1) or into a pipe that head closes (141); and of goniochrome-paint(5) the sample
+# files, which have to be read. In goniochrome-tutorial(7) they are the literal blocks.
 #
 #   examples_test.sh PAGE...     the tools are in PATH, TESTDATA is the folder of sample data
 set -euo pipefail
@@ -17,7 +18,11 @@ executed=0
 
 # commands PAGE: the example commands as a reader copies them, one a line.
 commands() {
-  sed -n '/^\.SH EXAMPLES/,/^\.SH SEE/p' "$1" | sed -n '/^\.RS/,/^\.RE/p' | sed '/^\.R[SE]/d; s/\\-/-/g; s/\\(aq/'\''/g; s/\\e/\\/g; s/^\\&//'
+  case $1 in
+    *.md) awk '/^```/ { inside = /^```sh$/; next } inside' "$1" && return ;;
+    *.7) awk '/^\.Bd -literal/ { inside = 1; next } /^\.Ed/ { inside = 0 } inside' "$1" | sed 's/\\e/\\/g; s/\\-/-/g' && return ;;
+  esac
+  awk '/^\.S[Hh] / { inside = /EXAMPLES/ } inside' "$1" | sed -n '/^\.RS/,/^\.RE/p' | sed '/^\.R[SE]/d; s/\\-/-/g; s/\\(aq/'\''/g; s/\\e/\\/g; s/^\\&//'
 }
 
 # execute COMMAND [STATUS...]: runs it; any other exit status than 0 and these is wrong.

@@ -21,8 +21,7 @@ inline void add_target_options(cli::ToolSpec& spec, std::string& target, std::st
   spec.option("weights,w", "WEIGHTS", "plain", &weights, "how errors count")
       .one_of({"perceptual", "plain"})
       .more(
-          "perceptual weighs an error by its effect on lightness, so that a dark flop counts as much as a bright face. "
-          "plain weighs all errors alike.");
+          "perceptual weighs an error by its effect on lightness; plain weighs all alike.");
 }
 
 inline paint::TargetCurve::Kind target_kind(const std::string& target) {

@@ -24,7 +24,7 @@ options() {
     /^\.TP/ { head = 1; next }
     head && /^(-[a-z], )?--[a-z]/ { name = $0; sub(/^-., /, "", name); split(name, word, " "); name = word[1]; value = word[2]; head = 0; next }
     name != "" && value != "" {
-      print name, /The option is required/ ? "required" : "-", /The value is [^.]*from -?[0-9.]+ to / ? "bounded" : /The value is (one of |.* or more\.|.* or less\.)/ ? "checked" : "free", match($0, /one of [^ ,.]+/) ? substr($0, RSTART + 7, RLENGTH - 7) : "x"
+      print name, / Required\./ ? "required" : "-", /Value: [^.]*from -?[0-9.]+ to / ? "bounded" : /Value: (one of |.* or more\.|.* or less\.)/ ? "checked" : "free", match($0, /one of [^ ,.]+/) ? substr($0, RSTART + 7, RLENGTH - 7) : "x"
     }
     { name = ""; head = 0 }'
 }

@@ -40,7 +40,7 @@ inline void add_seam_options(cli::ToolSpec& spec, panels::SeamTexts& seam) {
       .more(
           "auto takes the unit that the file states: meters for glTF, or a comment such as \"# File units = inches\". "
           "Else it goes by the diagonal of the mesh's box: up to 30 units are meters, up to 300 inches, up to 900 "
-          "centimeters, and more are millimeters. What it took is told.");
+          "centimeters, and more are millimeters. A message names the unit.");
   spec.option("max-gap", "MM", "8", &seam.max_gap_mm, "wider gaps are no seam; 0 is a hundredth of the mesh's size")
       .from(0, 1e6);
   spec.option("light-from", "AZ,EL", "0,75", &seam.lights_from, "a light in the world")
@@ -50,9 +50,7 @@ inline void add_seam_options(cli::ToolSpec& spec, panels::SeamTexts& seam) {
   spec.option("environment", "FILE", "studio.env.exr", &seam.environment,
               "light of a prefiltered environment, for --view-from")
       .more(
-          "The mesh takes a part of this light from the seam and sends another part to it, in the paint that is "
-          "judged: "
-          "both are traced by rays, with a noise that is told.");
+          "The light that the mesh blocks and sends to the seam is traced by rays; the report has its noise.");
   spec.flag("open", &seam.open, "let the light of --environment come to the seam as if there were no mesh");
 }
 

@@ -158,7 +158,7 @@ TEST(Texts, OptionsStandUnderTheirHeadings) {
 
 TEST(Texts, TheManPageTellsUnitDomainDefaultAndExample) {
   Values v;
-  EXPECT_NE(man_page(table(v)).find("Error. It is relative. The value is in units, from 0 to 1. The default is 0.5. "
+  EXPECT_NE(man_page(table(v)).find("Error. It is relative. Value: units, from 0 to 1. Default: 0.5. "
                                     "Example: \\-\\-tolerance 0.1"),
             std::string::npos);
 }
@@ -168,7 +168,7 @@ TEST(Texts, LinesWithHyphensAreAList) {
   ToolSpec spec = table(v);
   std::ranges::find(spec.options, "tolerance", &Option::name)->details = "It is:\n- small.\n- relative.";
   EXPECT_NE(man_page(spec).find("Error. It is:\n.RS\n.IP \\(bu 2\nsmall.\n.IP \\(bu\nrelative.\n.RE\n.IP\n"
-                                "The value is in units, from 0 to 1."),
+                                "Value: units, from 0 to 1."),
             std::string::npos);
 }
 
@@ -195,10 +195,22 @@ TEST(Texts, WhatATableLacksIsTold) {
 TEST(Texts, ThePageNamesEveryOtherPageOnce) {
   Values v;
   ToolSpec spec = table(v);
-  spec.see_also = {"goniochrome-theory(7)", "fit-paint(1)"};
+  spec.see_also = {"goniochrome(7)", "fit-paint(1)"};
   const std::string man = man_page(spec);
   EXPECT_EQ(man.substr(man.find(".SH SEE ALSO")),
-            ".SH SEE ALSO\n.BR goniochrome\\-theory (7),\n.BR fit\\-paint (1),\n.BR goniochrome\\-paint (5)\n");
+            ".SH SEE ALSO\n.BR goniochrome (7),\n.BR fit\\-paint (1),\n.BR goniochrome\\-paint (5)\n");
+}
+
+TEST(Texts, ThePageOpensWithItsFirstParagraphAndExamples) {
+  Values v;
+  ToolSpec spec = table(v);
+  spec.description = {"First.", "# A title\nSecond.", "Third."};
+  spec.examples = {{"sample-tool x", "do it"}};
+  const std::string man = man_page(spec);
+  const std::size_t at = man.find(".SH DESCRIPTION");
+  EXPECT_EQ(man.substr(at, man.find(".SH OPTIONS") - at),
+            ".SH DESCRIPTION\nFirst.\n.SH EXAMPLES\nDo it.\n.PP\n.nf\n.RS\nsample\\-tool x\n.RE\n.fi\n"
+            ".SH DETAILS\n.SS A title\nSecond.\n.PP\nThird.\n");
 }
 
 int run_tool(const std::vector<std::string>& words, const std::function<Result<Verdict>(Session&)>& run) {

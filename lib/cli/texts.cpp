@@ -57,10 +57,10 @@ bool is_number(const Option& option) {
          !std::holds_alternative<std::vector<std::string>*>(option.target);
 }
 
-// The domain of a value in whole sentences: "The value is in degrees, from 0 to 90."
+// The domain of a value: "Value: degrees, from 0 to 90."
 std::string domain_sentences(const Option& option) {
   std::string text;
-  if (const std::string unit = unit_of(option); !unit.empty()) text = " in " + unit;
+  if (const std::string unit = unit_of(option); !unit.empty()) text = " " + unit;
   const auto add = [&](const std::string& more) { text += (text.empty() ? " " : ", ") + more; };
   const bool has_low = option.low > -1e300, has_high = option.high < 1e300;
   if (has_low && has_high)
@@ -69,9 +69,9 @@ std::string domain_sentences(const Option& option) {
     add(fmt::format("{:.15g} or more", option.low));
   else if (has_high)
     add(fmt::format("{:.15g} or less", option.high));
-  if (!text.empty()) text = " The value is" + text + ".";
+  if (!text.empty()) text = " Value:" + text + ".";
   if (std::holds_alternative<std::vector<std::string>*>(option.target))
-    text += " The option may be given several times.";
+    text += " Repeatable.";
   return text;
 }
 
@@ -85,15 +85,15 @@ std::string sentence(std::string text) {
 // The option's paragraph in the man page.
 std::string paragraph(const Option& option) {
   std::string text = sentence(option.help);
-  if (!option.choices.empty()) text += fmt::format(" The value is one of {}.", joined(option.choices, ", "));
+  if (!option.choices.empty()) text += fmt::format(" Value: one of {}.", joined(option.choices, ", "));
   if (!option.details.empty()) text += " " + option.details;
   std::string rest;
   if (option.choices.empty()) rest = domain_sentences(option);
   const std::string value = default_of(option);
   if (option.required)
-    rest += " The option is required.";
+    rest += " Required.";
   else if (!value.empty())
-    rest += fmt::format(" The default is {}.", value);
+    rest += fmt::format(" Default: {}.", value);
   if (!option.alias.empty()) rest += fmt::format(" The option may also be written --{}.", option.alias);
   if (!option.example.empty()) rest += fmt::format(" Example: --{} {}", option.name, option.example);
   // Behind a list they are a paragraph of their own.
@@ -160,6 +160,13 @@ std::string roff_paragraph(const std::string& text) {
   return in_list ? result + ".RE\n" : result;
 }
 
+// A paragraph of the description. One that begins with "# TITLE" and a new line has a heading.
+std::string section_paragraph(const std::string& text, bool follows_another) {
+  if (!text.starts_with("# ")) return (follows_another ? ".PP\n" : "") + roff_paragraph(text);
+  const std::size_t end = text.find('\n');
+  return fmt::format(".SS {}\n{}", roff(text.substr(2, end - 2)), roff_paragraph(text.substr(end + 1)));
+}
+
 // A category as the heading of a section.
 std::string heading(const std::string& category) {
   std::string text = sentence(category);
@@ -198,8 +205,13 @@ std::string man_page(const ToolSpec& spec) {
   text += fmt::format(".SH SYNOPSIS\n.B {}\n[options]", roff(spec.name));
   if (spec.inputs) text += roff(usage(spec).substr(spec.name.size() + 10));
   text += "\n.SH DESCRIPTION\n";
-  for (std::size_t i = 0; i < spec.description.size(); ++i)
-    text += (i ? ".PP\n" : "") + roff(spec.description[i]) + "\n";
+  if (!spec.description.empty()) text += roff(spec.description.front()) + "\n";
+  if (!spec.examples.empty()) text += ".SH EXAMPLES\n";
+  for (std::size_t i = 0; i < spec.examples.size(); ++i)
+    text += fmt::format("{}{}\n.PP\n.nf\n.RS\n{}\n.RE\n.fi\n", i ? ".PP\n" : "",
+                        roff(sentence(spec.examples[i].effect)), roff(spec.examples[i].command));
+  if (spec.description.size() > 1) text += ".SH DETAILS\n";
+  for (std::size_t i = 1; i < spec.description.size(); ++i) text += section_paragraph(spec.description[i], i > 1);
   text += ".SH OPTIONS\n";
   if (spec.inputs) text += fmt::format(".TP\n.I {}\n{}\n", roff(spec.inputs->value), roff(sentence(spec.inputs->help)));
   std::string category;
@@ -216,16 +228,11 @@ std::string man_page(const ToolSpec& spec) {
       text += fmt::format(".TP\n.B {}\n{}\n", roff(key.key), roff(sentence(key.meaning)));
   }
   text +=
-      ".SH EXIT STATUS\n"
-      "0: the work is done. 1: it is done, and its verdict is negative. 2: the command line is wrong. 3: an input is "
-      "wrong, a file cannot be read or written, or the system gives too little memory or no thread. 4: a limit stopped "
-      "the work, and the best result is written. 70: the tool has a bug.\n";
-  if (!spec.examples.empty()) text += ".SH EXAMPLES\n";
-  for (std::size_t i = 0; i < spec.examples.size(); ++i)
-    text += fmt::format("{}{}\n.PP\n.nf\n.RS\n{}\n.RE\n.fi\n", i ? ".PP\n" : "",
-                        roff(sentence(spec.examples[i].effect)), roff(spec.examples[i].command));
+      ".SH EXIT STATUS\n0: done. 1: done, and the verdict is negative. 2: the command line is wrong. 3: an input is "
+      "wrong, a file cannot be read or written, or memory or a thread is missing. 4: a limit stopped the work, and the "
+      "best result is written. 70: a bug. goniochrome(7) has the rules for scripts.\n";
   std::vector<std::string> pages = spec.see_also;
-  for (const char* of_all : {"goniochrome-paint(5)", "goniochrome-theory(7)"})
+  for (const char* of_all : {"goniochrome-paint(5)", "goniochrome(7)"})
     if (std::ranges::find(pages, of_all) == pages.end()) pages.emplace_back(of_all);
   text += ".SH SEE ALSO\n";
   for (const std::string& page : pages) {

@@ -44,7 +44,11 @@ MANUAL = Manual(
         "which takes root or sudo."],
     "0: the work is done. 1: a default setting is dominated, or --target-de00 is not reached. 2: the command line is wrong. 3: an "
     "input is wrong, a file cannot be read or written, or a tool failed.",
-    [("Compare ways to search a library, in a few seconds", "accuracy-report --quick search -o accuracy")],
+    [("Compare ways to search a library, in a few seconds", "accuracy-report --quick search -o accuracy"),
+     ("Do the same for the metallics of a library of your own",
+      "paint-stats -w 'class==metallic' -f paints testdata/paints.paints.xml -o own.paints.xml && accuracy-report --quick --paints "
+      "own.paints.xml search -o own"),
+     ("List the studies", "accuracy-report --help | head -n 20")],
     ["goniochrome-accuracy(7)", "render-osmesa(1)", "paint-batch(1)"])
 
 

@@ -95,7 +95,7 @@ def value_of(action):
 
 def paragraph(action):
     text = sentence(action.help % {**vars(action)})
-    return text + (" The option is required." if action.option_strings and action.required else "")
+    return text + (" Required." if action.option_strings and action.required else "")
 
 
 def entries(parser):
@@ -120,12 +120,14 @@ def man_page(parser, manual):
             f"{roff(manual.name)} \\- {roff(manual.summary)}\n.SH SYNOPSIS\n")
     lines = [synopsis(f"{manual.name} {name}", command, len(split_actions(command)[1]) > 1) for name, command in commands.items()]
     text += ".br\n".join(lines or [synopsis(manual.name, parser, True)])
-    text += ".SH DESCRIPTION\n" + ".PP\n".join(roff(paragraph) + "\n" for paragraph in manual.description)
+    opening, *details = manual.description
+    text += f".SH DESCRIPTION\n{roff(opening)}\n.SH EXAMPLES\n"
+    text += ".PP\n".join(f"{roff(sentence(effect))}\n.PP\n.nf\n.RS\n{roff(command)}\n.RE\n.fi\n" for effect, command in manual.examples)
+    text += (".SH DETAILS\n" if details else "") + ".PP\n".join(roff(paragraph) + "\n" for paragraph in details)
     for name, command in commands.items():
         text += f".SH COMMAND {roff(name.upper())}\n{roff(sentence(helps[name]))}\n{entries(command)}"
-    text += f".SH OPTIONS\n{entries(parser)}.SH EXIT STATUS\n{roff(sentence(manual.exit_status))}\n.SH EXAMPLES\n"
-    text += ".PP\n".join(f"{roff(sentence(effect))}\n.PP\n.nf\n.RS\n{roff(command)}\n.RE\n.fi\n" for effect, command in manual.examples)
-    pages = [*manual.see_also, "goniochrome-paint(5)", "goniochrome-theory(7)"]
+    text += f".SH OPTIONS\n{entries(parser)}.SH EXIT STATUS\n{roff(sentence(manual.exit_status))}\n"
+    pages = [*manual.see_also, "goniochrome-paint(5)", "goniochrome(7)"]
     return text + ".SH SEE ALSO\n" + ",\n".join(f".BR {roff(page.partition('(')[0])} ({page.partition('(')[2]}" for page in pages) + "\n"
 
 

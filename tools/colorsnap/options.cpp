@@ -96,8 +96,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("count,k", "N", "3", &o.count, "number of matches for each paint").from(1, 100000);
   spec.option("formula,metric,m", "FORMULA", "ciede2000", &o.formula, "formula of the color difference")
       .more("It is one of " + color::formula_words() +
-            "; goniochrome-theory(7), COLOR DIFFERENCES, has them. The query is the standard of those that are not "
-            "symmetric. The search is exact with each of them.");
+            ". See goniochrome-color(7), \"COLOR DIFFERENCES\". The query is the standard of those that are not "
+            "symmetric.");
   spec.option("geometry,g", "LIST", "45as15,45as45,45as110", &o.geometries, "geometries at which paints are compared")
       .more("Where the option is given, the geometries that query and library share are not looked for.");
   spec.option("weight,w", "LIST", "45as15=2,45as110=0.5", &o.weights, "weights of geometries; 1 for the others");
@@ -130,8 +130,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("cloud", "FILE", "cloud.svg", &o.cloud, "SVG of the library in CIELAB with the queries in it")
       .more(
           "It shows the library from above (a* and b*) and from the side (a* and L*), at 45as45 or the middle one of "
-          "the geometries that are compared. Points have colors near their hue. Each query is a ring that a line joins "
-          "to its nearest paint. At most 20000 paints and 500 queries are drawn; the titles tell how many.");
+          "the geometries. A line joins each query to its nearest paint. At most 20000 paints and 500 queries are "
+          "drawn.");
   spec.flag("assign", &o.assign, "pass the queries on as paint XML, each with the code of its nearest paint")
       .more(
           "The code is where a formulation starts. A nearest paint without a code gives its name. A query without a "
@@ -180,7 +180,7 @@ void add_report(cli::ToolSpec& spec) {
       {"outside, off_radial, hue_travel, no_match", "number of queries with this status"},
       {"left_out", "number of queries that --keep-going left out"},
       {"warnings[]", "the warnings of the run"}};
-  spec.see_also = {"paint-stats(1)", "paint-edit(1)", "paint-convert(1)"};
+  spec.see_also = {"paint-stats(1)", "paint-edit(1)", "paint-convert(1)", "goniochrome-search(7)"};
 }
 
 }  // namespace
@@ -188,33 +188,24 @@ void add_report(cli::ToolSpec& spec) {
 cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec{.name = "colorsnap", .summary = "find the paints of a library nearest to a paint"};
   spec.description = {
-      "colorsnap reads paints, most often designs, and finds for each of them the nearest paints of a library, so that "
-      "a formulation can start from the code of a paint that exists. The distance of two paints is the sum of their "
-      "color differences at the geometries that are compared, each with its weight. The answer is exact with "
-      "every formula. Of equally near paints, the one that stands first in the library comes first.",
-      "A paint is compared by its measured rows, or where it has none by its curve at 15, 25, 45, 75 and 110 degrees. "
+      "colorsnap finds the nearest paints of a library for each paint that it reads, so that a formulation can start "
+      "from the code of a paint that exists. The distance of two paints is the sum of their color differences at the "
+      "geometries that are compared, each with its weight. The answer is exact with every formula. Equally near paints "
+      "keep the order of the library.",
+      "# Geometries\nA paint is compared by its measured rows, or else by its curve at 15, 25, 45, 75 and 110 degrees. "
       "Without --geometry, a query is compared at the geometries that it shares with the most paints of the library, "
-      "but at three at least as long as any paint has so many. Library paints that lack one of these geometries are "
-      "left out with a warning. A query that has no geometry in common with the library is an error.",
-      "The library is read once and indexed in FILE.snapindex beside it. Later runs map that file and start in "
-      "milliseconds. The index is used only while the size and the time of modification of the library agree with it, "
-      "or its size and checksum, and if this version of the program made it; otherwise it is made anew, whole or not "
-      "at all. Where the folder cannot be written, "
-      "the index stays in memory, and a message says so.",
-      "The table has one line for each match: query, rank, name, code and class of the paint; distance, and the mean "
-      "difference per unit of weight; what the query has more of than the match in lightness (dL), chroma (dC) and hue "
-      "(dH, in CIELAB units, counterclockwise positive), as means over the geometries; the status of the query; and "
-      "the difference at each geometry.",
-      "The status tells which designs cannot be made from the library. outside: the nearest paint is farther away than "
-      "--threshold, so that the design lies outside the library's gamut; dL, dC and dH say to which side, and the exit "
-      "status is 1. off_radial: the flop leaves the face's hue line on another side than that of the nearest paint "
-      "does, or farther, so that its hue shift is not captured; a paint chemist has to be asked. hue_travel: the hue "
-      "turns from face "
-      "to flop by another angle than that of the nearest paint, by more than --hue-travel; a turn by half a circle "
-      "ends "
-      "on the hue line of the face and is not off_radial. A design with several of these has all of them, joined by "
-      "commas. no_match: the filters "
-      "leave no paint, and the exit status is 1."};
+      "at least three if any paint has so many. Library paints that lack one of them are left out with a warning.",
+      "# The index\nThe library is read once and indexed in FILE.snapindex beside it. Later runs map that file and "
+      "start in milliseconds. A changed library, or another version of the program, makes it anew. Where the folder "
+      "cannot be written, the index stays in memory.",
+      "# The table\nEach match has a line: query, rank, name, code and class of the paint; distance, and the mean "
+      "difference per unit of weight; query minus match in lightness (dL), chroma (dC) and hue (dH, counterclockwise "
+      "positive), as means over the geometries; the status of the query; and the difference at each geometry.",
+      "# The status\nIt names designs that cannot be made from the library:\n- outside: the nearest paint is farther "
+      "than --threshold; dL, dC and dH give the side, and the exit status is 1.\n- off_radial: the flop leaves the "
+      "face's hue line otherwise than that of the nearest paint; ask a paint chemist.\n- hue_travel: the hue turns "
+      "from face to flop by another angle, by more than --hue-travel.\n- no_match: the filters leave no paint, and the "
+      "exit status is 1.\nSeveral are joined by commas."};
   spec.inputs = {"PAINTS",
                  "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.inputs};

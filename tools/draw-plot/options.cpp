@@ -41,7 +41,9 @@ cli::ToolSpec tool_spec(Options& o) {
        "draw a library by two of its indices, each class in its color"},
       {"goniogeom-index testdata/paints.paints.xml#silver_fine --lights 30,45 --curve - -o index.tsv | draw-plot "
        "--series light_deg,misalignment_deg --x view_deg --y de -o curve.svg",
-       "draw how far two panels of one paint differ from every side"}};
+       "draw how far two panels of one paint differ from every side"},
+      {"paint-stats testdata/paints.paints.xml | draw-plot --series class --x L15 --y L110 --style points -o light.svg",
+       "draw the lightness of face and flop against each other"}};
   spec.report = {{"series[]: label, points, left_out", "what was drawn, and how many points an axis left out"}};
   spec.see_also = {"paint-stats(1)", "goniogeom-index(1)", "fit-basis(1)"};
   return spec;

@@ -58,7 +58,9 @@ cli::ToolSpec tool_spec(Options& o) {
       {"fit-basis --lobes 5 testdata/paints.paints.xml -o my.basis.xml",
        "choose five exponents for the sample library"},
       {"fit-basis --lobes 1..4 --starts 2 --table sets.csv --plot sets.svg testdata/paints.paints.xml -o my.basis.xml",
-       "show what each further lobe gains"}};
+       "show what each further lobe gains"},
+      {"fit-basis --lobes 3 'testdata/paints.paints.xml#silver_*' -o silver.basis.xml",
+       "choose three exponents for the silvers alone"}};
   spec.report = {
       {"sets[].lobes", "number of lobes"},
       {"sets[].exponents", "the exponents, ascending"},
@@ -80,7 +82,7 @@ cli::ToolSpec tool_spec(Options& o) {
       {"mirror", "whether the basis has a mirror lobe"},
       {"paints", "number of paints"},
       {"enough_lobes", "the number beyond which no paint changes by the color difference of --visible"}};
-  spec.see_also = {"fit-paint(1)", "prefilter-envmap(1)"};
+  spec.see_also = {"fit-paint(1)", "prefilter-envmap(1)", "goniochrome-lobes(7)"};
   return spec;
 }
 

@@ -88,7 +88,7 @@ void add_report(cli::ToolSpec& spec) {
                  {"fit_s", "time of the fit"},
                  {"texels_per_s", "texels fitted in a second"},
                  {"warnings[]", "exposures that are wrong, and how many texels are uncertain"}};
-  spec.see_also = {"render-osmesa(1)", "goniochrome-paint(5)", "goniochrome-theory(7)"};
+  spec.see_also = {"render-osmesa(1)", "goniochrome-paint(5)", "goniochrome-surfaces(7)"};
 }
 
 }  // namespace
@@ -134,7 +134,10 @@ cli::ToolSpec tool_spec(Options& o) {
        "fit the sample photographs of varnished stripes"},
       {"fit-sbrdf testdata/capture/photos.csv -n 1 --width 2 -k 3 --error-map error.png --report fit.json -o "
        "varnish.sbrdf.exr",
-       "hold three photographs out, and show where the map is off"}};
+       "hold three photographs out, and show where the map is off"},
+      {"fit-sbrdf testdata/capture/photos.csv -n 1 --width 2 -o varnish.sbrdf.exr && render-osmesa --mesh "
+       "testdata/speed-shape.obj --texture Hood=varnish.sbrdf.exr --light 30,50 --size 320x180 -o hood.png",
+       "see the map on a hood under a lamp"}};
   add_report(spec);
   return spec;
 }

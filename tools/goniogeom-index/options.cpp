@@ -89,20 +89,18 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("target", "KIND", "measured", &o.target, "color that a panel shows")
       .one_of({"curve", "measured"})
       .more(
-          "curve is face, flop and travel, which are fitted where the paint has only rows. measured is a monotone "
-          "curve through the rows; toward the mirror direction it continues the highlight as fit-paint does.");
+          "curve is face, flop and travel. measured is a monotone curve through the rows, continued toward the mirror "
+          "direction as fit-paint does.");
   spec.option("illuminant", "NAME,...", "D65,A,F11", &o.illuminants, "judge each paint in all of these lights")
       .more(
           "The names are " + color::spectral_illuminants() +
-          ". The colors come from the spectra of the paint; one without spectra is left out with a warning. The table "
-          "then has a last column with the illuminant, and the smallest index is that over all of them.");
+          ". A paint without spectra is left out with a warning. The table has a last column with the illuminant.");
   spec.heading = "verdict";
   spec.flag("worst", &o.worst, "write one row for each paint: its smallest index");
   spec.option("tolerance-for", "DEG", "1", &o.tolerance_for_deg, "judge the paints by every angle up to this one")
       .from(0, 90)
       .more(
-          "The last column tells for a whole library which paints stay under the threshold. Those that fail are also "
-          "listed on standard error, and if there are any, the exit status is 1.");
+          "The last column has the verdict. Paints that fail are listed on standard error, and the exit status is 1.");
   add_seam_options(spec, o.seam);
   spec.flag("advise", &o.advise, "tell which styling guidelines apply to the seam, with figures");
   spec.heading = "input and output";
@@ -139,34 +137,22 @@ void add_report(cli::ToolSpec& spec) {
       {"paints[].status", "one of done, and failed with a message: the paint has no color"},
       {"paints[].residual_de00",
        "worst row of the curve that was fitted; null where the paint states its curve; the largest of several lights"},
-      {"paints[].geometries[].light_deg", "the light, from the normal of the first panel"},
-      {"paints[].geometries[].illuminant", "with --illuminant: the light's"},
-      {"paints[].geometries[].view_deg", "the viewer, positive on the far side of the normal from the light"},
-      {"paints[].geometries[].azimuth_deg", "azimuth of the viewer about the normal"},
-      {"paints[].geometries[].aspecular_deg", "aspecular angle at the first panel"},
-      {"paints[].geometries[].index_plus_deg", "first crossing for turns toward the light; null where there is none"},
-      {"paints[].geometries[].index_minus_deg",
-       "first crossing for turns away from the light; null where there is none"},
-      {"paints[].geometries[].de_at_1deg",
-       "difference at 1 degree, the larger one of both signs; de_at_2deg and de_at_5deg stand beside it"},
-      {"paints[].worst_deg", "smallest index of the paint; null where there is none"},
-      {"worst_deg", "smallest index of all paints"},
-      {"left_out[]",
-       "the light_deg, view_deg, azimuth_deg and aspecular_deg of the pairs that are left out because they are within "
-       "10 "
-       "degrees of the mirror direction"},
-      {"seam_length_m",
-       "with --mesh; beside it stand unit_m, misalignment_deg, gap_mm and flush_mm (low, median, high), and repairs"},
-      {"paints[].de_max", "with --mesh: largest difference along the seam; de_rms is that over all places and views"},
-      {"paints[].over_threshold", "with --mesh: part of the seam that reaches the threshold"},
-      {"paints[].seam[]", "with --mesh: rows of the table"},
-      {"traced[].paint", "with --environment: name of a paint whose light was traced"},
-      {"traced[].worth_de76", "what the mesh changes in the difference of the panels (CIE 1976), at 95 % of the views"},
-      {"traced[].noise_de76", "standard deviation of that difference by the random rays, at 95 % of the views"},
-      {"traced[].panels_not_found", "panels under whose edge no ray found them, and that get open light"},
+      {"paints[].geometries[].light_deg, view_deg, azimuth_deg, aspecular_deg, illuminant", "light and viewer"},
+      {"paints[].geometries[].index_plus_deg, index_minus_deg",
+       "first crossing for turns toward the light and away from it; null where there is none"},
+      {"paints[].geometries[].de_at_1deg, de_at_2deg, de_at_5deg", "difference, the larger of both signs"},
+      {"paints[].worst_deg, worst_deg", "smallest index of the paint, and of all; null where there is none"},
+      {"left_out[]", "light_deg, view_deg, azimuth_deg and aspecular_deg of pairs near the mirror direction"},
+      {"seam_length_m, unit_m, misalignment_deg, gap_mm, flush_mm, repairs",
+       "with --mesh: the seam, with low, median and high values"},
+      {"paints[].de_max, de_rms, over_threshold, seam[]",
+       "with --mesh: largest and RMS difference, part of the seam that reaches the threshold, and rows of the table"},
+      {"traced[].paint, worth_de76, noise_de76",
+       "with --environment: change of the difference by the mesh, and its noise, at 95 % of the views"},
+      {"traced[].panels_not_found", "panels that no ray found, and that get unoccluded light"},
       {"paints[].advice[]", "with --advise: one line for each guideline"},
       {"failing", "with --tolerance-for: names of the paints that do not stay under the threshold"}};
-  spec.see_also = {"trompe-fit(1)", "paint-stats(1)", "goniochrome-theory(7)"};
+  spec.see_also = {"trompe-fit(1)", "paint-stats(1)", "goniochrome-panels(7)"};
 }
 
 }  // namespace
@@ -174,29 +160,23 @@ void add_report(cli::ToolSpec& spec) {
 cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec{.name = "goniogeom-index", .summary = "the angle at which two panels of one paint stop matching"};
   spec.description = {
-      "goniogeom-index takes two panels of one paint that meet at a seam. One of them is turned about the seam against "
-      "the other, with light and viewer at rest. Each panel shows its color at its own aspecular angle, times the "
-      "cosine of its light. The goniogeometric index is the smallest angle at which the color difference reaches "
-      "--threshold. There is one for positive angles, which turn the second panel toward the light, and one for "
-      "negative angles. Gloss is left out, because highlights need not line up for panels to match, and pairs of light "
-      "and viewer within 10 degrees of the mirror direction are passed over.",
-      "The difference rises and falls with the angle. The index is its first crossing, which is found in steps that "
-      "cannot jump over one, and bracketed to 1e-9 degrees. It reads none where the threshold is not reached before "
-      "the second panel turns its back to the viewer.",
-      "One row of tab-separated values is written for each paint and pair: name, light, view, azimuth, aspecular "
-      "angle, index for + and for -, and the difference at 1, 2 and 5 degrees. This is the larger one of both signs, "
-      "and - where neither panel is seen. With --worst and --tolerance-for there is one row for each paint, that of "
-      "its smallest index.",
-      sets_text(),
-      "With --mesh and --seam A,B, the panels are two parts of a mesh. They meet where their skins end: at open edges, "
-      "folds and tight bends, so that a rolled border belongs to the gap. For every place along the seam, the table "
-      "has the gap, the flush, the angle between the smooth normals and its part about the seam (positive for a "
-      "ridge), and the largest and the RMS difference over the lights and viewers. These stand to the first panel at "
-      "every place as they would to a flat one, with the light from either side of the seam. --light-from and "
-      "--view-from put them into the world instead, and --environment takes the light of a prefiltered environment. "
-      "There the mesh takes light from the seam and sends light to it: that is traced in the paint that is judged, "
-      "unless --open is given. Under --light-from and lights that stand to the seam alike, shadows and reflections of "
-      "the mesh on itself are left out."};
+      "goniogeom-index finds the smallest angle between two panels of one paint at which their colors differ by "
+      "--threshold. One panel is turned about the seam, with light and viewer at rest. There is an index for turns "
+      "toward the light (positive) and one for turns away from it; none where the panels match at every angle.",
+      "# The index\nEach panel shows its color at its own aspecular angle, times the cosine of its light. Gloss is "
+      "left out, because highlights need not line up for panels to match. Pairs of light and viewer within 10 degrees "
+      "of the mirror direction are left out. The index is the first crossing of the threshold, found in steps that "
+      "cannot jump over one.",
+      "# The table\nThe columns are name, light, view, azimuth, aspecular angle, index for + and for -, and the "
+      "difference at 1, 2 and 5 degrees, the larger of both signs. With --worst and --tolerance-for there is one row "
+      "for each paint.",
+      "# Lights and views\n" + sets_text(),
+      "# Seams of a mesh\nWith --mesh and --seam A,B, the panels are two parts of a mesh that meet at open edges, "
+      "folds and tight bends. For every place along the seam, the table has the gap, the flush, the angle between the "
+      "normals and its part about the seam (positive for a ridge), and the largest and the RMS difference. Lights and "
+      "viewers stand to the first panel as to a flat one, or in the world by --light-from and --view-from. With "
+      "--environment the light is a prefiltered environment, and the light that the mesh blocks and sends to the seam "
+      "is traced, unless --open is given; elsewhere it is left out."};
   spec.inputs = {"PAINTS",
                  "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.inputs};

@@ -93,7 +93,7 @@ void add_report(cli::ToolSpec& spec) {
                  {"left_out", "number of samples that --keep-going left out"},
                  {"pairs_per_s", "pairs a second on all threads, without reading and writing"},
                  {"warnings[]", "the warnings of the run"}};
-  spec.see_also = {"colorsnap(1)", "paint-convert(1)", "paint-stats(1)", "goniochrome-theory(7)"};
+  spec.see_also = {"colorsnap(1)", "paint-convert(1)", "paint-stats(1)", "goniochrome-quality(7)"};
 }
 
 }  // namespace

@@ -13,26 +13,20 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("from", "FORMAT", "csv", &o.from, "format of every input").one_of(input_format_names());
   spec.option("illuminant", "NAME", "A", &o.illuminant, "illuminant of the readings, such as D65, D50 or A")
       .more(
-          "It picks the readings that are taken from CxF and CGATS, and measured spectra are integrated under it: "
-          "those "
-          "of measured BRDFs, of CxF and of paint XML, under " +
-          color::spectral_illuminants() + ". auto takes the first readings, and D65 for spectra.");
+          "It picks readings of CxF and CGATS, and spectra are integrated under it: " + color::spectral_illuminants() +
+          ". auto takes the first readings, and D65 for spectra.");
   spec.option("observer", "DEG", "2", &o.observer, "observer of the readings")
       .one_of({"auto", "2", "10"})
       .more("It does the same as --illuminant. auto takes the first readings, and 10 degrees for spectra.");
   spec.option("scale", "SCALE", "percent", &o.scale, "what reflectances are written in")
       .one_of({"auto", "percent", "factor"})
       .more(
-          "It holds for the spectra of tables, CGATS, workbooks and CxF that do not state it themselves, and for XYZ "
-          "in "
-          "CGATS and CxF without spectra. auto judges all spectra of a file together, tells what it took them for, and "
-          "refuses what may be either; see REFLECTANCES "
-          "in goniochrome-paint(5).");
+          "It holds for spectra and XYZ of files that do not state it. auto judges all spectra of a file together, and "
+          "refuses a file that may be either; see goniochrome-paint(5), \"REFLECTANCES\".");
   spec.option("viewing", "WORDS=GEOMETRY", "SCE=45as45", &o.viewings, "geometry of readings whose file names none")
       .more(
-          "Instruments with a sphere, and files that do not say how they were measured, have no aspecular angle, and "
-          "their readings are left out. This option takes those whose viewing has the words as of that geometry; "
-          "--viewing 45as45 takes all. It may be given several times.");
+          "Readings of a sphere, or of an unknown geometry, are left out. This option takes those whose viewing has "
+          "the words; --viewing 45as45 takes all.");
   spec.option("aperture", "DEG", "2", &o.aperture_deg, "angle over which a measured BRDF is averaged")
       .from(0, 20)
       .more("It is the full angle of a detector; 0 is a single direction.");
@@ -48,19 +42,13 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("average", "KEY", "name", &o.average, "write one paint for all readings of the same name, code or day")
       .one_of({"none", "name", "code", "date"})
       .more(
-          "The numbers and dates in parentheses by which readings of one name are told apart do not count. date makes "
-          "one "
-          "paint for each name and day, which stands behind the name. The mean has the span of all dates, "
-          "FIRST..LAST, and the serials of all instruments. "
-          "Spectra are averaged as spectra, and Lab is the color of their mean; Lab, gloss and textures are averaged "
-          "where there are no spectra. The report has number and standard deviations by geometry. All paints are held "
-          "in memory.");
+          "Numbers and dates in parentheses after a name do not count. date makes one paint for each name and day. "
+          "Spectra are averaged where all readings have them, and else Lab. All paints are held in memory.");
   spec.option("outliers", "WHAT", "drop", &o.outliers, "what --average does with readings that stand apart")
       .one_of({"keep", "drop"})
       .more(
-          "Each is named in a warning. A reading stands apart where its CIE 1976 difference from the median, in the "
-          "mean over the geometries, is more than three times the median of these differences and more than 0.1. "
-          "Fewer than four readings have no outliers.");
+          "Each is named in a warning. See goniochrome-quality(7), \"REPEATED READINGS\". Fewer than four readings "
+          "have no outliers.");
   spec.heading = "output";
   spec.option("output,o", "FILE", "paints.cxf", &o.output, "where to write; - is standard output");
   spec.option("to", "FORMAT", "wide", &o.to, "format of the output")
@@ -70,9 +58,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .one_of({"core", "all"})
       .more(
           "core has names, conditions and Lab. all adds class, code, instrument, gloss, serial and date, and to a long "
-          "table the "
-          "spectra, at the "
-          "wavelengths of the first paint.");
+          "table the spectra.");
   spec.flag("cxf-compat", &o.cxf_compat, "write CxF with one object for each angle")
       .more("Some programs take only the first Lab of an object. Such a file, too, is read back as one paint.");
   cli::add_common_options(spec, o.common, {.explain = true});
@@ -113,10 +99,10 @@ void add_report(cli::ToolSpec& spec) {
       {"measured[].albedo_45", "reflectance for light at 45 degrees, without gloss"},
       {"measured[].held_share", "share of X, Y or Z that comes from beyond the ends of the spectrum"},
       {"measured[].geometries[]",
-       "geometry; gap_deg, the widest step that was interpolated; outside_deg, the distance to the nearest sample "
-       "where the geometry lies beyond them; negative; below_noise"},
+       "geometry; gap_deg, the widest interpolated step; outside_deg, the distance to the nearest sample beyond the "
+       "data; negative; below_noise"},
       {"warnings[]", "what was left out, assumed or lost, one line each"}};
-  spec.see_also = {"fit-paint(1)", "paint-edit(1)", "goniochrome-paint(5)"};
+  spec.see_also = {"fit-paint(1)", "paint-edit(1)", "goniochrome-paint(5)", "goniochrome-fitting(7)"};
 }
 
 }  // namespace
@@ -127,54 +113,33 @@ cli::ToolSpec tool_spec(Options& o) {
       .summary =
           "convert paints between paint XML, tables, CxF and CGATS, and read files of instruments and measured BRDFs"};
   spec.description = {
-      "paint-convert reads paints from any number of inputs and writes them to one output, each as soon as it is read, "
-      "so that a library of any size passes in constant memory. The format of an input is found from its first bytes, "
-      "and that of the output from its name; --from and --to overrule both. Standard output is paint XML unless --to "
-      "says otherwise.",
-      "Tables are read as spreadsheets write them. They may be long (one row for each sample and geometry) or wide "
-      "(columns L15, a15, b15 and so on). They may be separated by commas, semicolons or tabs, have decimal commas "
-      "where a comma is not the separator or the cell is quoted, have headings like L*, and begin with a byte order "
-      "mark. The rows of one "
-      "sample have to stand together. The columns class, code, instrument, gloss20, gloss60, gloss85, serial and date "
-      "are read where "
-      "they are there.",
-      "CxF3 and CGATS.17 files of other programs are read as far as their colors stand at an angle; a warning names "
-      "the colors that do not. Where a sample has readings under several illuminants or observers, the first counts, "
-      "or the one of --illuminant and --observer. Spectra in CxF are integrated under what their specification states. "
-      "CxF is written with one color specification for each angle, and with the spectra that its schema allows: "
-      "factors "
-      "from -0.1 to 3, in steps of 1, 2, 5, 10 or 20 nm from 360 to 400 nm on.",
-      "QTX, MIF, XTF, MTF and JCAMP-DX, the texts of instruments and their programs, are read with their spectra. "
-      "Readings "
-      "of a sphere, and those whose file does not say how they were measured, are left out unless --viewing says what "
-      "geometry they stand for. See goniochrome-paint(5), FILES OF INSTRUMENTS.",
-      "A workbook (XLSX) of a multi-angle instrument is read on all its sheets. A table is found by its headings: L*, "
-      "a* and "
-      "b*, or wavelengths, beside a column of geometries and one of names. The condition may stand in the headings, as "
-      "in "
-      "L* (D65/10), or above the table. Spectra are kept. Where a geometry has a spectrum alone, Lab is integrated "
-      "from "
-      "it; where both stand there and disagree, the Lab is taken and a warning tells the color difference.",
-      "A measured BRDF (" + brdf::measured_formats() +
-          ") becomes one paint, which holds what a multi-angle instrument would have read at the geometries of "
-          "--geometry, by default at 15, 25, 45, 75 and 110 degrees. Spectra are integrated under --illuminant and "
-          "--observer, by default D65 and 10 degrees. RGB data are what the 2 degree observer sees under D65, and "
-          "they stay that. The data are checked on the way: the report tells the share of negative samples, how far "
-          "light and viewer can be swapped, whether the values are f or f cos, the noise floor, and which readings "
-          "were interpolated and how far.",
-      "A paint that was only measured keeps the rows it has. A designed paint has a face, a flop and a travel. Where "
-      "readings are written, it has them at 15, 45 and 110 degrees and at 25, 45 and 75 degrees, which are the two "
-      "sets "
-      "of the industry: its rows, and its curve where a row is missing. --geometry does the same for any list and any "
-      "paint; the curve of a paint that was only measured is the one nearest to its rows, if it has three angles. The "
-      "last column of a table, origin, says row or curve of each reading; it is there if an input is paint XML, and "
-      "with --geometry and --fit-appearance. Paint XML has no such mark; there --geometry selects among the rows of a "
-      "measured paint. What the output cannot hold is named in a warning.",
-      "Paint XML keeps the spectra of measured BRDFs and of CxF, one for each geometry. With --illuminant or "
-      "--observer, a paint that has spectra gets the readings that these make in that light, and its face and flop "
-      "are fitted again; its lobes and its color map, which are those of the light before, are left out. A paint "
-      "without spectra stays as it is, and a warning says so.",
-      "A wrong value stops the conversion, and the output file stays as it was."};
+      "paint-convert reads paints from any number of inputs, in any of the formats below, and writes them to one "
+      "output, each as soon as it is read. The format of an input is found from its first bytes, and that of the "
+      "output from its name; --from and --to overrule both. Standard output is paint XML unless --to says otherwise. A "
+      "wrong value stops the conversion, and the output file stays as it was.",
+      "# Tables\nThey are long (one row for each sample and geometry) or wide (columns L15, a15, b15 and so on), "
+      "separated by commas, semicolons or tabs, with decimal points or commas, and headings like L*. The rows of one "
+      "sample stand together. The columns class, code, instrument, gloss20, gloss60, gloss85, serial and date are read "
+      "too.",
+      "# CxF3 and CGATS.17\nColors that stand at an angle are read; a warning names the others. Where a sample has "
+      "several illuminants or observers, the first counts, or the one of --illuminant and --observer. CxF is written "
+      "with one color specification for each angle, and with the spectra that its schema allows.",
+      "# Files of instruments\nQTX, MIF, XTF, MTF and JCAMP-DX are read with their spectra. Readings without a "
+      "geometry are left out unless --viewing states one. See goniochrome-paint(5), \"FILES OF INSTRUMENTS\".",
+      "# Workbooks\nAll sheets of a workbook (XLSX) are read. A table is found by its headings: L*, a* and b*, or "
+      "wavelengths, with a column of geometries and one of names. The condition stands in the headings, as in L* "
+      "(D65/10), or above the table. Where Lab and spectrum of a geometry disagree, the Lab is taken with a warning.",
+      "# Measured BRDFs\nA measured BRDF (" + brdf::measured_formats() +
+          ") becomes one paint with the readings of a multi-angle instrument at the geometries of --geometry, by "
+          "default 15, 25, 45, 75 and 110 degrees. Spectra are integrated under --illuminant and --observer. RGB data "
+          "stay the colors of the 2 degree observer under D65. The report has the quality of the data.",
+      "# Measured and designed paints\nA paint that was only measured keeps its rows. A designed paint has a face, a "
+      "flop and a travel; it is written at 15, 45 and 110 degrees and at 25, 45 and 75 degrees, by its rows, and by "
+      "its curve where a row is missing. --geometry does the same for any list. The last column of a table, origin, "
+      "is row or curve. A warning names what the output cannot hold.",
+      "# Other light\nPaint XML keeps spectra. With --illuminant or --observer, a paint with spectra gets its readings "
+      "in that light, and its face and flop are fitted again; lobes and color map are left out. A paint without "
+      "spectra stays as it is, with a warning."};
   spec.inputs = {"INPUT",
                  "paint XML, tables, CxF, CGATS, files of instruments or measured BRDFs, or FILE#NAMES for some paints "
                  "of one; - or "

@@ -127,21 +127,20 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("at", "DEG", "45", &o.at_deg, "make the three shifts at this aspecular angle, not everywhere")
       .from(0, 180)
       .more(
-          "The color at this angle changes by exactly the shifts, and face and flop change as little as that needs. Up "
-          "to 15 degrees this is the face alone, from the travel on it is the flop alone.");
+          "Face and flop change as little as that needs: up to 15 degrees the face alone, from the travel on the flop "
+          "alone.");
   spec.option("share", "HOW", "source", &o.share, "how a change at one angle is divided between face and flop")
       .one_of({"exact", "source"})
       .more(
-          "exact makes the change that was asked for. source blends face and flop as Shimizu's dissertation does, each "
-          "in proportion; the color between face and travel then changes by less, down to 0.47 of what was asked for.");
+          "exact makes the change in full. source blends face and flop as Shimizu's dissertation does, and makes less "
+          "of it.");
   spec.heading = "moves at a place in a picture";
   spec.option("image", "FILE", "scene.exr", &o.image, "buffers of a picture of the paint")
       .more(
-          "render-osmesa(1) writes them with --aov aspecular,mask. With --aov aspecular,mask,transport, --at-pixel and "
-          "--travel-to take the angle from the light that was traced there: that of the one lamp that would show the "
-          "paint alike, as the mesh may hide the lamp that the buffers are relative to.");
+          "render-osmesa(1) writes them with --aov aspecular,mask. With transport among them, --at-pixel and "
+          "--travel-to take the angle of the one lamp that would show the paint as the traced light does.");
   pixel("at-pixel", o.at_pixel, "make shifts at the aspecular angle under this pixel")
-      .more("The shifts are --lighter, --chroma, which is a factor then, and --hue, which is a turn then.");
+      .more("The shifts are --lighter, --chroma (a factor) and --hue (a turn).");
   spec.option("lighter", "D", "3", &o.lighter, "what is added to L* under the pixel of --at-pixel")
       .from(-300, 300)
       .in("CIELAB units");
@@ -156,12 +155,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("travel-shift", "DEG", "10", &o.travel_shift_deg, "what is added to the travel").from(-165, 165);
   spec.flag("keep-residual", &o.keep_residual, "keep what the curve did not explain of the rows of a measured paint")
       .more(
-          "Without this flag, --face, --flop, --travel and --travel-to state the rows anew, from the curve: the paint "
-          "then reads exactly what was asked for.");
+          "Without it, --face, --flop and --travel state the rows anew.");
   spec.option("set", "GEOMETRY=L,A,B", "45as45=50,12.5,-3", &o.readings, "what the paint shall read at this geometry")
       .more(
-          "It is made after all other moves of the color. The other rows stay, "
-          "and face, flop and travel are fitted to all rows, unless one of them is given on the command line.");
+          "The other rows stay, and face, flop and travel are fitted to all rows, unless one of them is given.");
   spec.option("gloss", "GU", "90", &o.gloss, "gloss to reach").from(0, 100);
   spec.option("gloss-shift", "GU", "-5", &o.gloss_shift, "what is added to the gloss").from(-100, 100);
   spec.option("gloss-angle", "DEG", "20", &o.gloss_angle_deg, "angle of the gloss reading that is moved")
@@ -175,15 +172,14 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("variations", "WHAT", "flop", &o.variations, "write each paint and its eight neighbors")
       .one_of({"face", "flop", "travel", "gloss"})
       .more(
-          "Neighbors are named after their change. Those of face and flop are lighter, darker, red, yellow, green, "
-          "cyan, blue and magenta, each one --step away. Those of travel and gloss are one to four steps away, either "
-          "way.");
+          "Neighbors of face and flop are lighter, darker, red, yellow, green, cyan, blue and magenta, each one --step "
+          "away; those of travel and gloss are one to four steps away, either way.");
   spec.option("step", "X", "6", &o.step, "how far the variations go")
       .from(0, 165)
       .in("units of CIE 1976 color difference, in degrees or in gloss units");
   spec.option("gradient", "N", "6", &o.gradient, "write N new paints between each paint and the next; 0 for none")
       .from(0, 100000)
-      .more("They are equally spaced in Lab at face, flop and every measured geometry that both paints have.");
+      .more("They are equally spaced in Lab at face, flop and every common geometry.");
   spec.heading = "input and output";
   add_only_option(spec, o.only, "edit the paints of this name, and pass the others on");
   spec.option("suffix", "TEXT", "_green", &o.suffix, "text to append to the name of every paint that is edited");
@@ -193,8 +189,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .one_of({"solid", "metallic", "pearl", "interference", "unknown"});
   spec.option("new", "NAME", "dune", &o.new_name, "make a paint of this name from nothing, and read none")
       .more(
-          "It needs --face, or readings by --set. Where --flop is given too, --travel is needed; without a flop the "
-          "paint is solid. All other moves of one paint can be given with it.");
+          "It needs --face, or readings by --set; with --flop also --travel. Without a flop the paint is solid.");
   spec.option("output,o", "FILE", "edited.paints.xml", &o.output, "paint XML to write; - is standard output");
   cli::add_common_options(spec, o.common, {.explain = true});
 }
@@ -219,29 +214,25 @@ void add_report(cli::ToolSpec& spec) {
        "write a silver and the eight paints around it, for a variations sheet"},
       {"paint-edit testdata/paints.paints.xml#ice_blue testdata/paints.paints.xml#candy_blue --gradient 6 -o "
        "facade.paints.xml",
-       "write a sequence of eight metallics, for a facade"}};
+       "write a sequence of eight metallics"}};
   spec.report = {
       {"read", "number of paints read"},
       {"written", "number of paints written"},
-      {"pixels[].option", "option that names a place in --image"},
-      {"pixels[].x", "pixels from the left"},
-      {"pixels[].y", "pixels from the top"},
-      {"pixels[].aspecular_deg", "aspecular angle that is seen there"},
-      {"pixels[].traced", "whether that angle is one of traced light"},
+      {"pixels[].option, x, y", "option that names a place in --image, and the place"},
+      {"pixels[].aspecular_deg, traced", "aspecular angle there, and whether it is one of traced light"},
       {"changes[].name", "name of a paint that was edited or made"},
-      {"changes[].from", "name of the paint that it was made from; for a gradient, the names of both"},
-      {"changes[].fraction", "place in a gradient, from 0 to 1"},
+      {"changes[].from", "name of its origin; for a gradient, both names"},
+      {"changes[].fraction", "place in a gradient, 0 to 1"},
       {"changes[].before",
-       "face, flop (L*, a*, b*), travel_deg, gloss (gloss_60_deg and so on) and anisotropy (the two alphas, where the "
-       "paint is brushed) before the moves; absent for a gradient"},
-      {"changes[].after", "the same after the moves"},
+       "face, flop (L*, a*, b*), travel_deg, gloss_60_deg and so on, and anisotropy before the moves"},
+      {"changes[].after", "the same after them"},
       {"changes[].de00_max", "largest CIEDE2000 difference between before and after at 15, 45 and 110 degrees"},
       {"changes[].fitted_de00", "worst row of the fit, where the paint had only rows or where readings were set"},
       {"changes[].restated_de00", "worst row against the curve before the rows were stated anew, where they were"},
       {"changes[].dropped[]", "what no longer holds and was left out"},
       {"changes[].clipped[]", "values that a move took out of their domain, and that were put at its edge"},
-      {"changes[].skipped[]", "moves that this paint cannot take, and why"}};
-  spec.see_also = {"fit-paint(1)", "paint-convert(1)", "render-osmesa(1)"};
+      {"changes[].skipped[]", "moves that it cannot take, and why"}};
+  spec.see_also = {"fit-paint(1)", "paint-convert(1)", "render-osmesa(1)", "goniochrome-paint(7)"};
 }
 
 }  // namespace
@@ -251,19 +242,16 @@ cli::ToolSpec tool_spec(Options& o) {
       .name = "paint-edit",
       .summary = "change the color, travel and gloss of paints, or make variations and gradients of them"};
   spec.description = {
-      "paint-edit reads paints, makes the moves that it is told and writes the paints on. Whatever their order on the "
-      "command line, moves are made in this order: first the average of the whole paint, then shifts, face, flop, "
-      "travel, single readings and gloss. Where one of these is both set and shifted, it is set first.",
-      "A paint is edited in every form that it has. Measured rows move by as much as the curve moves at their angle, "
-      "so that what the curve did not explain of a measurement stays. But where face, flop or travel are set outright, "
-      "the rows are stated anew from the curve, so that the paint reads what was asked for; --keep-residual keeps what "
-      "the curve did not explain there, too. A paint that has only rows is fitted first and "
-      "carries face, flop and travel from then on. Lobes and color maps no longer hold after a move of the color, and "
-      "lobes no longer hold after a move of the gloss. They are dropped, a message says so, and fit-paint(1) makes new "
-      "ones. Name, code and class stay unless an option changes them. Lightness stops at 0, where chroma ends with it, "
-      "since black has no color.",
-      "Some paints cannot take a move: a gray, for example, has no hue to turn. Such a move is left out with a "
-      "warning, the other moves are made, and the exit status is 1."};
+      "paint-edit changes paints as a designer does: hue, chroma, lightness, face, flop, travel, single readings, "
+      "gloss and anisotropy. It also makes paints from nothing, variations and gradients.",
+      "# Order of moves\nWhatever their order on the command line, moves are made in this order: the average of the "
+      "whole paint, shifts, face, flop, travel, single readings and gloss. Setting comes before shifting. A move that "
+      "a paint cannot take, as a gray has no hue to turn, is left out with a warning, and the exit status is 1.",
+      "# Rows, curve and lobes\nMeasured rows move by as much as the curve moves at their angle. Where face, flop or "
+      "travel are set outright, the rows are stated anew from the curve, so that the paint reads what was asked for; "
+      "--keep-residual keeps their distance from the curve. A paint that has only rows is fitted first. Lobes and "
+      "color maps are dropped after a move that changes them, with a message; fit-paint(1) makes new ones. Lightness "
+      "stops at 0, where chroma ends with it."};
   spec.inputs = {"PAINTS",
                  "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.inputs};

@@ -114,7 +114,7 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"de00_mean", "mean of paints[].de00_mean"},
                  {"paints_per_s", "paints a second, without reading"},
                  {"warnings[]", "messages about paints and parts of paints that are left out"}};
-  spec.see_also = {"fit-paint(1)", "paint-convert(1)", "render-osmesa(1)"};
+  spec.see_also = {"fit-paint(1)", "paint-convert(1)", "render-osmesa(1)", "goniochrome-export(7)"};
   return spec;
 }
 

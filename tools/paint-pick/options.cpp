@@ -97,7 +97,7 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"paints[].gloss_60_gu", "its gloss at 60 degrees; null where no dropper tells it"},
                  {"paints[].swapped", "whether face and flop were swapped"},
                  {"paints[].share", "part of the picture that has its colors; only for a palette"}};
-  spec.see_also = {"paint-edit(1)", "sketch-fit(1)", "fit-paint(1)", "goniochrome-theory(7)"};
+  spec.see_also = {"paint-edit(1)", "sketch-fit(1)", "fit-paint(1)", "goniochrome-sketches(7)"};
   return spec;
 }
 

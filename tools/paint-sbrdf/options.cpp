@@ -135,7 +135,7 @@ cli::ToolSpec tool_spec(Options& o) {
       {"albedo_max", "largest share of even light that a texel sends back along the normal"},
       {"alpha_mean", "mean alpha: 1 where the map covers all that lies beneath it"}};
   spec.see_also = {"render-osmesa(1)", "fit-paint(1)", "prefilter-envmap(1)", "goniochrome-paint(5)",
-                   "goniochrome-theory(7)"};
+                   "goniochrome-surfaces(7)"};
   return spec;
 }
 

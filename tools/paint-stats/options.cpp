@@ -53,7 +53,7 @@ cli::ToolSpec tool_spec(Options& o) {
           "it. Where no paint matches, the exit status is 1.");
   spec.flag("classify", &o.classify, "infer the class of paints that state none from their readings")
       .more(
-          "goniochrome-theory(7), CLASSES, has the rule. --where and --format paints see the inferred class, and a "
+          "See goniochrome-paint(7), \"CLASSES\". --where and --format paints see the inferred class, and a "
           "last "
           "column of the table, class_source, tells it from a stated one. Where the readings decide nothing, the "
           "class stays unknown.");
@@ -81,7 +81,7 @@ cli::ToolSpec tool_spec(Options& o) {
           "off before, by a factor for each of X, Y and Z. PAINT is a file with one paint, or FILE#NAME.");
   spec.option("formula", "FORMULA", "cmc:2:1", &o.formula, "formula of these color differences")
       .more("It is one of " + color::formula_words() +
-            "; goniochrome-theory(7), COLOR DIFFERENCES, has them. With --score its columns are named after it, de00 "
+            "; see goniochrome-color(7), \"COLOR DIFFERENCES\". With --score its columns are named after it, de00 "
             "where it is CIEDE2000, and the readings are the standard.");
   add_keep_going(spec, "keep-going,k", o.keep_going, "paints that cannot be read");
   spec.heading = "output";
@@ -117,7 +117,7 @@ cli::ToolSpec tool_spec(Options& o) {
         "those of another formula, de76_mean and de76_p95 of each model of a paint"},
        {"paints_per_s", "paints a second, without reading and writing"},
        {"warnings[]", "messages about paints left out"}});
-  spec.see_also = {"colorsnap(1)", "paint-convert(1)", "paint-edit(1)"};
+  spec.see_also = {"colorsnap(1)", "paint-convert(1)", "paint-edit(1)", "goniochrome-paint(7)"};
   return spec;
 }
 

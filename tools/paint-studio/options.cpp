@@ -80,7 +80,15 @@ cli::ToolSpec tool_spec(Options& o) {
       {"prefilter-envmap testdata/studio.exr --basis testdata/b5.basis.xml -o studio.env.exr && paint-studio --mesh "
        "testdata/speed-shape.obj --env studio.env.exr --basis testdata/b5.basis.xml testdata/paints.paints.xml -o "
        "studio.html",
-       "make a page of the sample paints in the light of a photographer's studio"}};
+       "make a page of the sample paints in the light of a photographer's studio"},
+      {"paint-stats -w 'class==metallic' -f paints testdata/paints.paints.xml | paint-studio --mesh "
+       "testdata/speed-shape.obj --env studio.env.exr --basis testdata/b5.basis.xml --title Metallics -o "
+       "metallics.html",
+       "make a page of the metallics alone, in the same light"},
+      {"prefilter-envmap testdata/outdoor.exr --basis testdata/b5.basis.xml -o outdoor.env.exr && paint-studio --mesh "
+       "testdata/speed-shape.obj --env studio.env.exr --env outdoor.env.exr --basis testdata/b5.basis.xml "
+       "testdata/paints.paints.xml#candy* -o candies.html",
+       "make a page of the candies with two lights"}};
   spec.report = {
       {"bytes", "size of the page"},
       {"code_bytes", "size of the page without its data: markup, scripts and the compiled library"},

@@ -63,7 +63,7 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"paints[].lobes", "number of lobes drawn; 0 where the paint was not fitted"},
                  {"paints[].model", "with --color-map: isolines or aspecular"},
                  {"paints[].target", "what the squares compare with: measured BRDF, curve or none"}};
-  spec.see_also = {"fit-paint(1)", "paint-convert(1)", "goniochrome-theory(7)"};
+  spec.see_also = {"fit-paint(1)", "paint-convert(1)", "goniochrome-lobes(7)"};
   return spec;
 }
 

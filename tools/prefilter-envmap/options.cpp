@@ -13,8 +13,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("ball", "WHERE", "auto", &o.ball, "unroll the photograph of a mirror ball")
       .more(
           "WHERE is X,Y,RADIUS in texels from the upper left corner, or auto: in front of a dark ground the ball is "
-          "found wherever it lies, and otherwise it touches the sides of a square picture. The camera is far away, at "
-          "+Z, and +X is to the right in the picture. What the ball swallows is not made up for; see --exposure.");
+          "found, and otherwise it touches the sides of a square picture. The camera is far away, at +Z, and +X is to "
+          "the right in the picture.");
   spec.option("exposure,x", "STOPS", "1.5", &o.exposure, "multiply the radiance by two to this power").from(-64, 64);
   spec.option("horizon", "DEG", "0", &o.horizon, "take as black what lies below this elevation; -90 keeps all")
       .from(-90, 90)
@@ -38,30 +38,22 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("spots", "N", "4", &o.spots, "most bright spots to keep beside the maps, such as the sun")
       .from(0, envmap::kMostSpots)
       .more(
-          "The light of the spots is in the maps as well. render-osmesa cuts each of them by the horizon of every "
-          "point, which the maps cannot do; more of them come nearer to the truth and take longer, see the effect "
-          "spots there. An environment without small bright parts has none.");
+          "render-osmesa cuts each of them by the horizon of every point, which the maps cannot do; more of them are "
+          "closer and take longer.");
   spec.flag("no-open-maps", &o.no_open_maps, "leave out the maps without bright spots, and the one under a coat")
       .more(
-          "The file is then half as large and sooner written, and render-osmesa makes those maps that a picture "
-          "needs at each start. Keeping them pays from the third start on where there are twelve spots, and from "
-          "about the tenth on where there are three; one run that draws many paints is one start. Pictures are "
-          "the same within the rounding of half floats.");
+          "The file is then half as large, and render-osmesa makes the maps that a picture needs at each start.");
   spec.option("layout,l", "WHAT", "latlong", &o.layout, "how the maps lie")
       .one_of({"env", "latlong", "openexr", "mip", "ktx2", "dds"})
       .more(
-          "env has a cube for each lobe, and is what render-osmesa reads. latlong has lat-long maps of 2N x N texels, "
-          "and openexr has cubes with texel centers on the edges; both follow OpenEXR's own conventions, for other "
-          "programs. mip has one mip-mapped cube, for paints whose exponent varies from point to point. The sharpest "
-          "exponent is in its finest level, and each coarser level has the next one, or a quarter of the exponent "
-          "after the last; the attribute goniochrome:exponents says which. ktx2 and dds have the same levels as a cube "
-          "texture in linear Rec.709, for real-time engines; ktx2 names the exponents under the key "
-          "goniochrome:exponents, and dds has no place for them.");
+          "They are:\n- env: a cube for each lobe, for render-osmesa.\n- latlong: lat-long maps of 2N x N texels; "
+          "openexr: cubes with texel centers on the edges; for other programs.\n- mip: one mip-mapped cube, the "
+          "sharpest exponent in its finest level, for maps of surfaces; the attribute goniochrome:exponents lists the "
+          "levels.\n- ktx2 and dds: the same levels as a cube texture in linear Rec.709, for real-time engines.");
   cli::add_tolerance(spec, o.common, "X", "largest error of a texel, relative to the texel")
       .more(
-          "The error is the difference from the sum over all texels of the image in double precision, and includes the "
-          "rounding of the file. Where a texel is darker than a thousandth of the map's mean, the error is relative to "
-          "that thousandth.");
+          "The error is the difference from the exact sum over all texels, rounding included. Below a thousandth of "
+          "the map's mean it is relative to that thousandth.");
   spec.option("cache,c", "DIR", "lobes", &o.cache, "folder that keeps the lobes made and gives them back")
       .more("They are known by the content of the environment and by all that shapes a lobe.");
   spec.heading = "checking and output";
@@ -73,12 +65,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("output,o", "FILE", "studio.env.exr", &o.output,
               "where the prefiltered environment goes; - is standard output")
       .more(
-          "Its maps are not compressed, because a picture is then drawn sooner. Compressed by ZIP, which is read as "
-          "well, they take about half the room.");
+          "Its maps are not compressed, so that they load faster.");
   spec.option("picture", "FILE", "studio.png", &o.picture, "PNG to write that shows all maps side by side")
       .more(
-          "Every map is a panorama with +Z in the middle, beside its exponent and its size. All of them have one "
-          "exposure, which shows the mean of the light as middle gray.");
+          "Every map is a panorama with +Z in the middle, with its exponent and its size.");
   cli::add_common_options(spec, o.common, {.explain = true, .seed = "the texels to verify"});
 }
 
@@ -104,42 +94,26 @@ void add_report(cli::ToolSpec& spec) {
       {"lobes[].cached", "whether the lobe came from the cache"},
       {"lobes[].degree", "degree of the harmonics"},
       {"lobes[].storage", "one of half and float"},
-      {"lobes[].predicted_time_s", "time that was expected"},
-      {"lobes[].time_s", "time that it took; the first lobe of a method also pays for its tables"},
+      {"lobes[].predicted_time_s, time_s", "expected and measured time"},
       {"lobes[].predicted_error", "relative error that was allowed for, rounding included"},
       {"lobes[].lookup_error", "relative error that a bilinear look-up between texels typically adds"},
-      {"lobes[].max_rel_error", "largest relative error of the verified texels; null without --verify"},
-      {"lobes[].mean_rel_error", "mean relative error of the verified texels; null without --verify"},
-      {"lobes[].verified_texels", "number of texels verified"},
+      {"lobes[].max_rel_error, mean_rel_error, verified_texels", "of the verified texels; null without --verify"},
       {"lobes[].energy_ratio", "flux of the lobe's map over the flux of the environment"},
-      {"spots[].direction", "toward the middle of a bright spot: a unit vector"},
-      {"spots[].radius_deg", "radius of its disc"},
-      {"spots[].share", "part of it in the light of the environment"},
+      {"spots[].direction, radius_deg, share", "unit vector toward a bright spot, its radius, its part of the light"},
       {"layout", "how the maps lie: env, latlong, openexr, mip, ktx2 or dds"},
       {"clipped_to_rec709", "with ktx2 and dds, number of texels with a color beyond Rec.709, which were clipped"},
       {"left_out[].exponent", "exponent that the paints name but do not need"},
       {"left_out[].share", "largest part that it has in the reflectance of any paint"},
       {"source.path", "the image"},
-      {"source.layout",
-       "one of lat-long, cube, cube with texel centers on the edges, angular probe, and mirror ball, which is a "
-       "lat-long map "
-       "from there on"},
-      {"source.ball.x", "middle of the ball: texels from the left edge of the picture"},
-      {"source.ball.y", "middle of the ball: texels from the upper edge of the picture"},
-      {"source.ball.radius", "radius of the ball in texels of the picture"},
-      {"source.width", "texels across"},
-      {"source.height", "texels down"},
-      {"source.nan", "number of texels that were not a number and were set to zero"},
-      {"source.infinite", "number of texels that were infinite and were set to zero"},
-      {"source.negative", "number of texels that were negative and were set to zero"},
+      {"source.layout", "lat-long, cube, cube with texel centers on the edges, angular probe or mirror ball"},
+      {"source.ball.x, y, radius", "middle of the ball from the upper left corner, and its radius, in texels"},
+      {"source.width, height", "texels across and down"},
+      {"source.nan, infinite, negative", "number of texels of each kind, which were set to zero"},
       {"source.out_of_gamut", "number of texels with a color beyond Rec.2020, which were clipped"},
-      {"read_s", "time of reading"},
-      {"filter_s", "time of filtering"},
-      {"verify_s", "time of verifying"},
-      {"open_maps_s", "time of the maps that follow from the others: under a coat, and without the bright spots"},
-      {"write_s", "time of writing"},
+      {"read_s, filter_s, verify_s, open_maps_s, write_s", "time of each stage; open maps are those without spots"},
       {"warnings[]", "what was replaced or is outside the tolerance"}};
-  spec.see_also = {"fit-basis(1)", "render-osmesa(1)", "goniochrome-paint(5)", "goniochrome-theory(7)"};
+  spec.see_also = {"fit-basis(1)", "render-osmesa(1)", "goniochrome-paint(5)",
+                   "goniochrome-prefiltering(7)"};
 }
 
 }  // namespace
@@ -151,29 +125,18 @@ cli::ToolSpec tool_spec(Options& o) {
       "diffuse lobe and for each cosine lobe of the basis, this is a cube map of the integral of radiance times "
       "max(0,cos)^E, normalized so that a constant environment stays itself. For the mirror lobe it is the environment "
       "itself. render-osmesa(1) then lights a paint by one look-up for each lobe.",
-      "The image may be a lat-long map (2:1, +Y up, its center +Z, its left quarter +X). It may be a cube as a strip "
-      "of six faces (+X -X +Y -Y +Z -Z), as a cross (4:3 or 3:4), or as six square files, which are given one by one "
-      "in that order or as one pattern with {face} in the place of px, nx, py and so on. A single square is an angular "
-      "probe, which is what a mirror ball shows, unrolled about +Z; the photograph of a ball itself takes --ball. A "
-      "square with light in its corners, of which an angular probe has none, is reported as a likely photograph. "
-      "Before "
-      "a black ground the two cannot be told apart. Faces are those of OpenGL; an EXR whose envmap "
-      "attribute says cube is read by OpenEXR's own convention. EXR, Radiance HDR, PNG, JPEG, TIFF and PNM are read "
-      "directly; DPX, WebP, BMP and TGA through oiiotool, where OpenImageIO is installed. Values are Rec.709, linear "
-      "in floats and sRGB in whole numbers, unless the file says otherwise, and are converted to linear Rec.2020.",
-      "An EXR is read in its display window: black where it has no pixels, and without overscan. Its colors are the "
-      "channels R, G and B, or Y, in any case; those without a layer, or else of the only layer that has them. "
-      "FILE[LAYER] names one of several. Of Radiance HDR the order of rows and columns, PRIMARIES, EXPOSURE, "
-      "COLORCORR and XYZE are heeded: values are those before any exposure. Values of XYZE are taken as they are, "
-      "with even X, Y and Z as white. Other pictures are turned as their EXIF orientation says, and a PNG has the "
-      "colors of its cICP or cHRM. ICC profiles, the primaries of a TIFF and the Adobe RGB of EXIF are heeded.",
-      "Every texel counts as a patch of constant radiance with its exact solid angle; a lat-long map is not resampled "
-      "first. Several methods are used. Smooth lobes are filtered by zonal harmonics, with a proven bound on the "
-      "degrees that are left out. Lobes that bend at the horizon are filtered by harmonics of all but the brightest "
-      "texels, which are convolved one by one. Lobes of exponents below 1 end too steeply at the horizon for harmonics "
-      "alone, and so does the diffuse lobe at small tolerances: the texels in a band beside the horizon are summed one "
-      "by one as well. Very sharp lobes are sums over the texels that they reach, or walks over blocks of texels where "
-      "these are too many. --explain shows the choice for each lobe."};
+      "# Images\nThe layout of an image follows from its shape:\n- 2:1: a lat-long map, +Y up, its center +Z, its left "
+      "quarter +X.\n- 6:1 or 1:6: a cube as a strip of faces (+X -X +Y -Y +Z -Z); 4:3 or 3:4: a cross.\n- Six square "
+      "files, one by one in that order, or one pattern with {face} in the place of px, nx, py and so on.\n- A single "
+      "square: an angular probe. The photograph of a mirror ball takes --ball.\nFaces are those of OpenGL; an EXR "
+      "whose envmap attribute says cube is read by OpenEXR's own convention.",
+      "# Formats and colors\nEXR, Radiance HDR, PNG, JPEG, TIFF and PNM are read directly; DPX, WebP, BMP and TGA "
+      "through oiiotool. Values are Rec.709, linear in floats and sRGB in whole numbers, unless the file states "
+      "otherwise, and are converted to linear Rec.2020. An EXR is read in its display window; FILE[LAYER] names one of "
+      "several layers. The header of Radiance HDR, EXIF orientation, ICC profiles, and cICP or cHRM of PNG are heeded.",
+      "# Methods\nEvery texel counts as a patch of constant radiance with its exact solid angle. --explain shows the "
+      "method of each lobe: zonal harmonics with a proven bound for smooth lobes, brightest texels and bands along the "
+      "horizon for lobes with a kink there, and sums over texels or blocks of texels for very sharp lobes."};
   spec.inputs = {"IMAGE", "an HDR image, or six, one for each face of a cube; - or none is standard input", &o.images,
                  0, 6};
   add_options(spec, o);

@@ -58,7 +58,7 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"operator", "coefficients k of the operator, by output channel"},
                  {"pixels", "number of pixels"},
                  {"warnings[]", "negative colors, and what was done about them"}};
-  spec.see_also = {"prefilter-envmap(1)", "render-osmesa(1)", "goniochrome-theory(7)"};
+  spec.see_also = {"prefilter-envmap(1)", "render-osmesa(1)", "goniochrome-color(7)"};
   return spec;
 }
 

@@ -98,9 +98,8 @@ void add_light(cli::ToolSpec& spec, Options& o) {
   spec.option("operator", "OP[,SHARES]", "iso,0.1", &o.reflection, "how colored light and paint multiply")
       .more(
           "It is fitted (to published spectra), plain (each channel by itself), iso (the table for camera sensors), "
-          "iso709, estimated (from color-matching functions) or a JSON file; see COLORED LIGHT in "
-          "goniochrome-theory(7). SHARES, one number from 0 to 1 or three, are what each channel takes from the "
-          "others.");
+          "iso709, estimated (from color-matching functions) or a JSON file; see goniochrome-color(7), \"COLORED "
+          "LIGHT\". SHARES, one number from 0 to 1 or three, are what each channel takes from the others.");
   spec.option("critical-angle", "NAME", "clip", &o.critical_angle, "what color maps do beyond the critical angle")
       .one_of({"clip", "slide", "slide-map", "index"})
       .more("Under an environment only integral and path show color maps; the others show tilted lobes.");
@@ -318,7 +317,8 @@ cli::ToolSpec tool_spec(Options& o) {
   add_examples(spec);
   add_report(spec);
   add_gone(spec);
-  spec.see_also = {"fit-paint(1)", "prefilter-envmap(1)", "goniochrome-paint(5)", "goniochrome-theory(7)"};
+  spec.see_also = {"fit-paint(1)",           "prefilter-envmap(1)", "goniochrome-paint(5)",
+                   "goniochrome-rendering(7)", "goniochrome-plan(7)", "goniochrome-paths(7)"};
   return spec;
 }
 

@@ -12,8 +12,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .needed()
       .more(
           "An EXR of render-osmesa --aov normal,aspecular,lambert,mask,part has all that is needed. With transport "
-          "among them the picture may have shadows and bounced light, which are then part of what the paint is sought "
-          "in; --env is not needed.");
+          "among them the picture may have shadows and bounced light, and --env is not needed.");
   spec.option("view", "VIEW", "'ACES SDR'", &o.view, "view that a display picture went through")
       .more(
           "auto is the view that a PNG of render-osmesa names, or Paint where a picture names none; plain is no view. "
@@ -26,9 +25,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .one_of({"auto", "always", "never"})
       .more(
           "A scan has another size than the buffers, and may be turned, by up to 5 degrees, and moved. auto looks for "
-          "its scale, turn and shift where the sizes differ, always looks in any case, and never refuses such a "
-          "picture. "
-          "A mask of the picture's size goes the same way.");
+          "scale, turn and shift where the sizes differ; never refuses such a picture.");
   spec.heading = "light";
   spec.option("env,e", "FILE", "studio.env.exr", &o.env, "prefiltered environment that the picture was rendered under");
   spec.option("basis", "FILE", "testdata/b7.basis.xml", &o.basis, "lobes that the picture was rendered with")
@@ -43,17 +40,16 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("pixels", "WHICH", "all", &o.pixels, "pixels that are taken")
       .one_of({"auto", "changed", "all"})
       .more(
-          "changed are those that were edited, all are those of the paint. auto takes the changed pixels, or all of "
-          "them where none were changed, where the picture was laid on the buffers by its edges, and where more than "
-          "half were touched, unless a tenth are as they were and four of five of those touched were plainly edited.");
+          "changed are those that were edited, all are those of the paint. auto takes the changed pixels where an edit "
+          "is plain, and else all.");
   spec.option("glare", "DEG", "15", &o.glare_deg, "aspecular angle below which a pixel shows gloss and not the paint")
       .from(0, 45);
   spec.option("max-de", "DE", "5", &o.most_de76, "median difference above which the matt color is the answer")
       .from(0, 200)
       .in("units of CIE 1976 color difference")
       .more(
-          "The matt color that explains the pixels best is also the answer where they show too few angles. The report "
-          "and a warning say so, and the exit status stays 0.");
+          "The matt color is also the answer where the pixels show too few angles. A warning says so, and the exit "
+          "status stays 0.");
   spec.heading = "output";
   spec.option("start", "PAINT", "fitted.xml#candy_red", &o.start, "paint that the picture was drawn in before the edit")
       .more(
@@ -62,9 +58,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("name", "NAME", "dawn", &o.name, "name of the paint found");
   spec.option("residual", "FILE", "residual.png", &o.residual, "PNG of picture, paint found and their difference")
       .more(
-          "The used pixels of the picture stand on the left, the paint found in the middle, and their differences on "
-          "the right, from black through red and yellow to white at 20 units of CIE 1976. Pixels left out are dark "
-          "blue.");
+          "Left the used pixels, in the middle the paint found, right the differences, from black through red and "
+          "yellow to white at 20 units of CIE 1976. Pixels left out are dark blue.");
   spec.option("output,o", "FILE", "sketch.paints.xml", &o.output, "paint XML to write; - is standard output");
   cli::add_common_options(spec, o.common, {.explain = true});
 }
@@ -83,7 +78,11 @@ void add_report(cli::ToolSpec& spec) {
        "render-osmesa --mesh testdata/speed-shape.obj --paint fitted.xml#candy_red --env studio.env.exr --aov "
        "normal,aspecular,lambert,mask,part -o studio-scene.exr && "
        "sketch-fit --image studio-scene.exr --buffers studio-scene.exr --env studio.env.exr -o sketch.paints.xml",
-       "do the same under a studio"}};
+       "do the same under a studio"},
+      {"render-osmesa --mesh testdata/speed-shape.obj --paint testdata/paints.paints.xml#candy_red --light 30,50 --aov "
+       "aspecular,lambert,mask,part -o scene.exr && sketch-fit --image scene.exr --buffers scene.exr --start "
+       "testdata/paints.paints.xml#candy_red -o sketch.paints.xml",
+       "take the light of an EXR, and the gloss of a known paint where the picture shows none"}};
   spec.report = {
       {"status", "one of fitted and diffuse_fallback"},
       {"reason", "reason of the fallback; else null"},
@@ -125,7 +124,7 @@ void add_report(cli::ToolSpec& spec) {
       {"color_space", "color space that the picture was taken for"},
       {"fit_s", "time of the fit, without reading and writing"},
       {"regions_de00[], unsure[]", "not written any more: see residual[]"}};
-  spec.see_also = {"render-osmesa(1)", "fit-paint(1)", "paint-pick(1)", "goniochrome-theory(7)"};
+  spec.see_also = {"render-osmesa(1)", "fit-paint(1)", "paint-pick(1)", "goniochrome-sketches(7)"};
 }
 
 }  // namespace
@@ -134,39 +133,25 @@ cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec{.name = "sketch-fit",
                      .summary = "the paint that an edited or drawn picture of a painted mesh shows"};
   spec.description = {
-      "sketch-fit takes a picture and the buffers that were rendered with it. The picture began as a rendering by "
-      "render-osmesa(1), and was then edited in an image editor, painted over, or drawn on a trace of it. The tool "
-      "finds the paint that it shows: Lab at the export angles, face, flop, travel and gloss.",
-      "Under one directional light, the buffers tell the aspecular angle and the cosine of the light at every pixel. "
-      "Pixels of equal angles are gathered, outliers among them are put aside, and a curve is fitted to them for each "
-      "channel: cosine lobes, or, where it explains the pixels better, the clamped quadratic, whose travel is scanned.",
-      "With --env, the light is an environment. The lobes of any paint are then found with the renderer's own "
-      "equations on the buffers, without drawing again, and after them face, flop, travel and gloss where these "
-      "explain the picture as well. The search knows the effects that were drawn: Fresnel reflectance, the horizon, "
-      "bright spots and the operator of colored light. It does not know brushed paint, the travel of color maps, and "
-      "textures; it warns "
-      "where the buffers have them.",
-      "Buffers with a transport hold the light that each lobe gathers at every pixel, with shadows and with light that "
-      "the body sends to itself. The picture is then linear in the paint, and is solved in that light. Without it the "
-      "light is that which nothing blocks, and a message says so.",
-      "The picture may be an EXR, HDR, PNG, JPEG, TIFF, PNM, DPX, WebP, BMP or TGA. Whole numbers (PNG, JPEG, TIFF) "
-      "are what a display shows: sRGB, or what an "
-      "embedded ICC profile says, be it of RGB, of gray or of CMYK, after the view and the exposure of render-osmesa. "
-      "Floats (EXR) are light. Pixels are "
-      "left out at edges, at grazing light, near specular, where they are clipped or transparent, and outside the "
-      "mask.",
-      "Under a lamp that spans an angle, which the buffers tell, the search knows its highlight and its mirror image, "
-      "and "
-      "gloss is what explains them. It is undetermined where readings more than 10 units apart explain the pixels as "
-      "well. Under a point, "
-      "gloss comes from the shape of the highlight where it is seen unclipped, and else from its contrast with the "
-      "paint "
-      "around it; where no highlight is seen, it is undetermined. With --env, "
-      "it comes from the search where other pixels contradict the highlight.",
-      "A warning names the export angles that no pixel shows, and the angles at which the picture is farthest from the "
-      "paint found. The report has that difference for every ten degrees, and --residual draws picture, paint and "
-      "difference side by side.",
-      "A picture that seems to be moved against the buffers is told with the shift to give."};
+      "sketch-fit finds the paint that a picture shows: Lab at the export angles, face, flop, travel and gloss. The "
+      "picture began as a rendering by render-osmesa(1), and was then edited in an image editor, painted over, or "
+      "drawn on a trace of it. Buffers that were rendered with it give the angles at every pixel.",
+      "# Pictures\nThe picture is an EXR, HDR, PNG, JPEG, TIFF, PNM, DPX, WebP, BMP or TGA. Whole numbers are signals "
+      "of a display: sRGB, or as an embedded ICC profile states, after the view and the exposure of render-osmesa. "
+      "Floats are light. Pixels are left out at edges, at grazing light, near specular, where they are clipped or "
+      "transparent, and outside the mask. For a picture that seems moved, a message names the shift to give.",
+      "# Under one lamp\nPixels of equal angles are gathered, and a curve is fitted to them for each channel: cosine "
+      "lobes, or the clamped quadratic where it explains the pixels better.",
+      "# Under an environment\nWith --env, the lobes of any paint are found with the renderer's own equations on the "
+      "buffers, and after them face, flop, travel and gloss where these explain the picture as well. Brushed paint, "
+      "color maps and textures are not searched; a warning names them.",
+      "# With a transport\nBuffers with a transport hold the light that each lobe gathers at every pixel, with shadows "
+      "and light between parts. The picture is linear in the paint, and is solved in that light.",
+      "# Gloss\nUnder a lamp that spans an angle, gloss is the reading that explains highlight and mirror image; it is "
+      "undetermined where readings more than 10 units apart explain the pixels as well. Under a point, gloss comes "
+      "from the shape of the highlight, or from its contrast where it is clipped.",
+      "# Residual\nA warning names the export angles that no pixel shows, and the angles at which the picture is "
+      "farthest from the paint found. The report has that difference for every ten degrees."};
   add_options(spec, o);
   add_report(spec);
   return spec;

@@ -177,9 +177,7 @@ void add_report(cli::ToolSpec& spec) {
       {"geometries[].light_deg", "beside it stand view_deg, azimuth_deg, aspecular_deg, aspecular_b_deg and weight"},
       {"geometries[].de_before", "difference there in the same paint; de_after is that with the paint found"},
       {"left_out[]",
-       "the light_deg, view_deg, azimuth_deg and aspecular_deg of the pairs that are left out because they are within "
-       "10 "
-       "degrees of the mirror direction"},
+       "light_deg, view_deg, azimuth_deg and aspecular_deg of pairs near the mirror direction"},
       {"undetermined[]", "parameters that the views leave open"},
       {"at_bound[]", "parameters that a bound holds back"},
       {"solid", "whether face and flop were moved together"},
@@ -187,14 +185,14 @@ void add_report(cli::ToolSpec& spec) {
       {"time_ms", "time of the fit; starts tells from how many points it was begun"},
       {"misalignment_deg", "with --mesh: low, median and high misalignment of the seam"},
       {"traced[].paint", "with --environment: name of a paint whose light was traced"},
-      {"traced[].worth_de76", "what the mesh changes in the difference of the panels (CIE 1976), at 95 % of the views"},
+      {"traced[].worth_de76", "change of the difference by the mesh (CIE 1976), at 95 % of the views"},
       {"traced[].noise_de76", "standard deviation of that difference by the random rays, at 95 % of the views"},
-      {"traced[].panels_not_found", "panels under whose edge no ray found them, and that get open light"},
+      {"traced[].panels_not_found", "panels that no ray found, and that get unoccluded light"},
       {"seam[].rms_before",
        "with --mesh, for each place; beside it stand rms_after, run, distance_m and fold_deg. geometries[] is left out "
        "then, and views counts all of them"},
       {"fits[]", "where there is more than one answer: all of these for each, with name and light_deg"}};
-  spec.see_also = {"goniogeom-index(1)", "paint-edit(1)", "fit-paint(1)", "goniochrome-theory(7)"};
+  spec.see_also = {"goniogeom-index(1)", "paint-edit(1)", "fit-paint(1)", "goniochrome-panels(7)"};
 }
 
 }  // namespace
@@ -202,26 +200,22 @@ void add_report(cli::ToolSpec& spec) {
 cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec{.name = "trompe-fit", .summary = "the paint for a misaligned panel that hides the misalignment"};
   spec.description = {
-      "trompe-fit takes a paint, and the angle by which a second panel is turned against the first one. It finds the "
-      "paint for the second panel that looks most like the first one over a set of lights and viewers. Paints are "
-      "written with the face, flop and travel found, and with the rows that an instrument would read. Gloss and class "
-      "stay; lobes and color maps are dropped.",
-      "Lights, views and named sets are those of goniogeom-index(1). So are the colors: the clamped quadratic of face, "
-      "flop and travel at the aspecular angle of each panel, times the cosine of its light, without gloss. Differences "
-      "are CIE 1976.",
-      "In the plane of incidence, a panel that is turned by b shows an aspecular angle that is smaller by 2b. The "
-      "first guess is therefore a curve moved by 2b: for a panel that is turned away from the light, the travel is "
-      "longer by as much and the face is brighter. Viewers on both sides of the mirror direction ask for opposite "
-      "changes, which no paint can make.",
-      "With --mesh and --seam A,B, the misalignment is that of every place along the seam of two parts, as "
-      "goniogeom-index(1) finds it, and B gets the paint found. At every place, lights and viewers stand to the first "
-      "panel as they would to a flat one, with the light from either side, which no single paint can serve. By "
-      "--light-from and --view-from they stand in the world instead. With --environment the light is that of a "
-      "prefiltered environment, and paints are fitted to its own lobes. What the mesh takes from that light and sends "
-      "back is traced while all parts wear the first paint, unless --open is given.",
-      "A solid paint has no travel, and its face and flop move together. A paint counts as solid by its class, or "
-      "where face and flop are closer than 1. Parameters that the views do not determine stay near those of the paint "
-      "given, and are named. The exit status is 1 where a paint is not improved."};
+      "trompe-fit finds the paint for a misaligned panel that looks most like the first panel, over a set of lights "
+      "and viewers. It is written with the face, flop and travel found, and with the rows that an instrument would "
+      "read. Gloss and class stay; lobes and color maps are dropped. The exit status is 1 where a paint is not "
+      "improved.",
+      "# Colors\nLights, views and named sets are those of goniogeom-index(1). The colors are the clamped quadratic of "
+      "face, flop and travel at the aspecular angle of each panel, times the cosine of its light, without gloss. "
+      "Differences are CIE 1976.",
+      "# What to expect\nIn the plane of incidence, a panel that is turned by b shows an aspecular angle that is "
+      "smaller by 2b. Viewers on both sides of the mirror direction ask for opposite changes, which no paint can make. "
+      "A solid paint has no travel, and its face and flop move together. Parameters that the views do not determine "
+      "stay near those of the paint given, and are named.",
+      "# Seams of a mesh\nWith --mesh and --seam A,B, the misalignment is that of every place along the seam, as "
+      "goniogeom-index(1) finds it, and B gets the paint found. Lights and viewers stand to the first panel as to a "
+      "flat one, or in the world by --light-from and --view-from. With --environment the light is a prefiltered "
+      "environment; the light that the mesh blocks and sends is traced while all parts wear the first paint, unless "
+      "--open is given."};
   spec.inputs = {"PAINTS",
                  "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.inputs};
