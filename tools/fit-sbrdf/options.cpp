@@ -24,13 +24,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("method,m", "METHOD", "dictionary", &o.method, "how the lobes are found")
       .one_of({"best", "dictionary", "nonlinear"})
       .more(
-          "dictionary chooses lobes from a dictionary by weights that are not negative, weighs shadows, saturated "
-          "values and outliers down, refines the lobes, and takes neighbors into account. nonlinear is that of the "
-          "first paper on such maps: least squares from one start, for each texel by itself, with one or two lobes. It "
-          "takes less time and takes every value for good. best tries both on 64 texels, a fifth of whose photographs "
-          "it does not show them, and takes nonlinear where that predicts them better by a tenth. The summary and the "
-          "report tell the "
-          "error and the time of each.");
+          "See Methods.");
   spec.option("noise", "SHARE", "0.01", &o.noise, "relative standard deviation of a value, besides its rounding")
       .from(1e-4, 0.5)
       .in("parts of the value")
@@ -126,7 +120,12 @@ cli::ToolSpec tool_spec(Options& o) {
       "One camera sees each texel from one side only, so that lobes that turn with the view need a second one.",
       "A gantry: light and camera go to any direction. 40 photographs over the hemisphere, up to 65 degrees from the "
       "normal, and 40 with the light within 20 degrees of the mirror direction of the camera, settle two lobes. For "
-      "both, write parallel rays or the places of the stage."};
+      "both, write parallel rays or the places of the stage.",
+      "# Methods\ndictionary chooses lobes from a dictionary by weights that are not negative, weighs shadows, "
+      "saturated values and outliers down, refines the lobes, and takes neighbors into account. nonlinear is least "
+      "squares from one start, for each texel by itself, with one or two lobes, as in the first paper on such maps; it "
+      "takes less time and takes every value for good. best tries both on 64 texels, a fifth of whose photographs it "
+      "does not show them, and takes nonlinear where that predicts them better by a tenth."};
   spec.inputs = {"TABLE", "table of photographs (CSV); - or none is standard input", &o.table, 0, 1};
   add_options(spec, o);
   spec.examples = {

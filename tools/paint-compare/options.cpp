@@ -51,12 +51,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   add_table_options(spec, o.output, o.format, "the samples, each with its verdict in an element of its own", "sample");
   spec.option("chart", "PATH", "page.html", &o.chart, "page of charts to write, .html, or a folder of pages")
       .more(
-          "The page needs no other file and prints on A4. It has control charts of dL at each geometry from three "
-          "samples on, against the date where every sample has one and else in the order of the samples, with points "
-          "beyond three sigma in red; and for each sample its verdict, a picture that is split between standard and "
-          "sample, the table, the a*b* plane with the tolerance of the first formula at each geometry, and dE by "
-          "angle. One page shows up to 200 samples one by one, those that fail first; a folder has a page "
-          "for each. Charts hold all samples in memory.");
+          "A page shows up to 200 samples, those that fail first; a folder has a page for each. See Charts.");
   spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh, "mesh of the pictures of --chart")
       .more("Without it they show a ball.");
   spec.option("env,e", "FILE", "studio.env.exr", &o.env, "prefiltered environment of the pictures of --chart")
@@ -122,7 +117,12 @@ cli::ToolSpec tool_spec(Options& o) {
       "dE (by the first formula), dE_FORMULA, flop_index, chroma_index, hue_shift_index, hue_travel_deg, gloss20, "
       "gloss60, gloss85, metamerism_ILLUMINANT, or texture:NAME with the instrument's name of it. One of low and high "
       "may be empty. Formulas and illuminants that the limits name need no option. Numbers within 1e-9 of a limit "
-      "keep it."};
+      "keep it.",
+      "# Charts\nThe page of --chart needs no other file and prints on A4. It has control charts of dL at each "
+      "geometry from three samples on, against the date where every sample has one and else in the order of the "
+      "samples, with points beyond three sigma in red. Each sample has its verdict, a picture that is split between "
+      "standard and sample, the table, the a*b* plane with the tolerance of the first formula at each geometry, and dE "
+      "by angle. Charts hold all samples in memory."};
   spec.inputs = {
       "PAINTS",
       "samples: paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",

@@ -71,7 +71,11 @@ cli::ToolSpec tool_spec(Options& o) {
       "clearcoat. Renderers that read such a file as plain glTF show another color.",
       "What no instrument has measured is not invented: no target gets flakes or sparkle. Color maps and anisotropy of "
       "a paint are left out, with a warning. AxF is not written: the layers of paint in its container are not openly "
-      "specified, and there is no reader to test a writer with."};
+      "specified, and there is no reader to test a writer with.",
+      "# Names\nIn the names of files and of materials, every character of a name but ASCII letters, digits and "
+      "underscores is an underscore, an underscore stands before a digit at the beginning, and names that would be "
+      "equal get a number. The file keeps the name of the paint too. The folder must be there. A pattern without "
+      "{name} is the file of a single paint; with - the table is left out."};
   spec.inputs = {"PAINTS",
                  "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.inputs};
@@ -83,11 +87,7 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.heading = "output";
   spec.option("output,o", "PATTERN", "car-{name}", &o.output, "names of the files; {name} stands for the paint")
       .more(
-          "In the names of files and of materials, every character of a paint's name but ASCII letters, digits and "
-          "underscores is an underscore, an underscore stands before a digit at the beginning, and names that would be "
-          "the same get a number. The file keeps the paint's own name beside that. A pattern that ends in {name} gets "
-          "the ending of the target. The folder must be there. A pattern without {name} is the file of a single paint; "
-          "- writes that to standard output, without the table.");
+          "A pattern that ends in {name} gets the ending of the target; - is standard output of one paint; see Names.");
   cli::add_common_options(spec, o.common, {.explain = true});
   spec.examples = {
       {"fit-paint -q --basis testdata/b7.basis.xml testdata/paints.paints.xml#silver_fine | paint-export --to rgl -o "

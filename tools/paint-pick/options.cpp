@@ -11,7 +11,18 @@ cli::ToolSpec tool_spec(Options& o) {
       "or IMAGE@X,Y,RADIUS, in pixels from the upper left. Colors are averaged in linear light over the disc of the "
       "dropper, which has a radius of 5 pixels where none is given. Where only one of face and flop is picked, the "
       "paint is solid.",
-      "Instead of single droppers, --palette proposes paints for one picture, and --board reads a whole mood board."};
+      "Instead of single droppers, --palette proposes paints for one picture, and --board reads a whole mood board.",
+      "# Mood boards\nA mood board is a text file. Its lines are title TEXT, image NAME PATH (relative to the board) "
+      "and paint NAME, and below a paint face NAME@X,Y[,R], flop, gloss, travel DEG and retro; # begins a comment. The "
+      "page needs no other file; it shows the pictures, the droppers on them, and a drawing of every paint. Where the "
+      "name of the output ends in .session.json, it is a session of paint-studio(1) with the pictures and the droppers "
+      "of the first paint; the other paints stand in its palette.",
+      "# Pixels\nFor --probe the picture is an EXR of render-osmesa(1) with --aov normal,part. The columns are:\n- the "
+      "part and its material;\n- the angle between the mirror direction of the viewer and each light of the picture "
+      "or, where it has none, the direction of the largest irradiance of the environment;\n- the angle of the viewer "
+      "from the normal, and the normal;\n- the radiance in linear Rec.2020, without the exposure of the file;\n- L*, "
+      "a* and b* of that radiance relative to the brightest that a white diffuser can be in this light.\nBeside the "
+      "mesh there is a color alone."};
   spec.inputs = {"IMAGE", "the picture of --palette or --probe", &o.images, 0, 1};
   spec.heading = "droppers";
   spec.option("face", "DROPPER", "sheet.jpg@250,120", &o.face, "where the color near specular is");
@@ -35,23 +46,12 @@ cli::ToolSpec tool_spec(Options& o) {
           "dark end.");
   spec.option("board,b", "FILE", "spring.board", &o.board, "take pictures and droppers from a mood board")
       .more(
-          "A mood board is a text file. Its lines are title TEXT, image NAME PATH (relative to the board) and paint "
-          "NAME, and below a paint face NAME@X,Y[,R], flop, gloss, travel DEG and retro; # begins a comment. The "
-          "output is the paints, or a page where its name ends in .html. The page needs no other file; it shows the "
-          "pictures, the droppers on them, and a drawing of every paint. Where the name ends in .session.json, the "
-          "output is a session of paint-studio(1) with the pictures and the droppers of the first paint; the other "
-          "paints stand in its palette.");
+          "The output is the paints, or a page where its name ends in .html. See Mood boards.");
   spec.heading = "single pixels";
   spec.option("probe", "X,Y", "320,180", &o.probes, "tell what this pixel of a picture with buffers shows")
       .in("pixels from the upper left, from 0")
       .more(
-          "The picture is an EXR of render-osmesa(1) with --aov normal,part. The word - in the place of X,Y takes them "
-          "from the lines of standard input, and answers each at once. The output is a table with the part and its "
-          "material; the angle between the mirror direction of the viewer and each light of the picture, or, where it "
-          "has none, to where the environment's irradiance is largest; the angle of the viewer from the normal; the "
-          "normal; the radiance in linear Rec.2020, without the exposure of the file; and L*, a* and b* of that "
-          "radiance relative to the brightest that a white diffuser can be in this light. Beside the mesh there is a "
-          "color alone.");
+          "- takes pixels from the lines of standard input, and answers each at once. See Pixels.");
   spec.heading = "page of a board";
   spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh,
               "mesh that the paints are drawn on; glass, tires and the like are dressed")

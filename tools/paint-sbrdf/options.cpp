@@ -59,10 +59,7 @@ void add_lobes(cli::ToolSpec& spec, Options& o) {
   spec.option("lobes", "N", "3", &o.lobes, "most lobes of a texel; 0 for as many as mixtures need")
       .from(0, 16)
       .more(
-          "A mixture is the sum of the lobes of its surfaces, which is exact: where two surfaces are brushed in "
-          "different directions, each lobe keeps its own. A renderer takes as much longer as there are more lobes. "
-          "Where a texel has room for fewer, new lobes in one common direction are fitted to samples of that sum. With "
-          "0, a map that is resampled keeps its number of lobes, and no texel has more than 16.");
+          "With 0, a map that is resampled keeps its number of lobes, and no texel has more than 16. See Mixtures.");
   spec.option("mirror", "EXPONENT", "3000", &o.mirror, "exponent of the lobes that mirrors become; 0 to choose")
       .from(0, 1e6)
       .in("the exponent of a cosine")
@@ -95,7 +92,10 @@ cli::ToolSpec tool_spec(Options& o) {
       "the "
       "map has an alpha below 1 and shows what lies beneath it, such as the paint of a car beneath a decal.",
       "Where surfaces meet in a texel, their reflections are mixed, and not the parameters of their lobes. The mean of "
-      "the parameters of two lobes is a third lobe that looks like neither."};
+      "the parameters of two lobes is a third lobe that looks like neither.",
+      "# Mixtures\nA mixture is the sum of the lobes of its surfaces, which is exact: where two surfaces are brushed "
+      "in different directions, each lobe keeps its own. A renderer takes as much longer as there are more lobes. "
+      "Where a texel has room for fewer, new lobes in one common direction are fitted to samples of that sum."};
   spec.inputs = {"SURFACE",
                  "paints (FILE#NAME), maps (*.sbrdf.exr), pictures and none; - is paints or a map from standard input",
                  &o.inputs, 1};

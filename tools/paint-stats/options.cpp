@@ -1,7 +1,6 @@
 #include "tool.h"
 
 #include "color/color_difference.h"
-#include "color/spectrum.h"
 #include "paint/metrics.h"
 #include "table_output.h"
 
@@ -39,7 +38,22 @@ cli::ToolSpec tool_spec(Options& o) {
       "passes so close to gray that the sense of the hue travel is noise; gamut, where the working space loses more "
       "than 1 dE00 of some color; no_color, where there are neither rows nor a curve.",
       "The report and --format json hold the same figures as the table; and, as textures, what an instrument told of "
-      "sparkle, graininess or coarseness, with its geometry, the version of its scale and the instrument."};
+      "sparkle, graininess or coarseness, with its geometry, the version of its scale and the instrument.",
+      "# Conditions\nA condition of --where compares metrics, numbers and the texts name, code, class, source and "
+      "flags by < <= > >= == !=. Comparisons are joined by && || ! (or by the words and, or, not) and parentheses, as "
+      "in \"class==metallic and not flags==dark\". A figure that does not apply makes a comparison false; "
+      "hue_shift_index==na asks for it. Where no paint matches, the exit status is 1.",
+      "# Scores\n--score compares the curve of a paint, its lobes and its color map, where it has them, with measured "
+      "directions. Directions less than 10 degrees from specular or more than 75 degrees from the normal are left out "
+      "and counted. The table has one line for each model: the number of directions, and the mean, the 95th percentile "
+      "and the largest difference by --formula, and the mean and the 95th percentile of the CIE 1976 difference. A "
+      "measured BRDF is for the paint that has the name of its file, or else for all paints.",
+      "# Other light\n--illuminant adds a column inconstancy_NAME for each light: the color difference between the "
+      "color under the illuminant of the readings and under this one, to an eye that has adapted to each of them by "
+      "CMCCAT2000, at the geometry where it is largest. It is n/a for paints without spectra. With --standard there is "
+      "also metamerism_NAME, the special metamerism index of CIE 15 at the geometry where it is largest: the "
+      "difference under this light of two paints that match under the light of the readings. The columns stand behind "
+      "all others, and --where does not know them."};
   spec.inputs = {"PAINTS",
                  "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.inputs};
@@ -47,10 +61,7 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.option("where,w", "CONDITION", "'flop_index>=17 && chroma_index<5'", &o.where,
               "write only the paints for which this holds")
       .more(
-          "A condition compares metrics, numbers and the texts name, code, class, source and flags by < <= > >= == !=. "
-          "Comparisons are joined by && || ! (or by the words and, or, not) and parentheses, as in \"class==metallic "
-          "and not flags==dark\". A figure that does not apply makes a comparison false; hue_shift_index==na asks for "
-          "it. Where no paint matches, the exit status is 1.");
+          "Metrics, numbers and texts are compared by < <= > >= == !=, and joined by && || !. See Conditions.");
   spec.flag("classify", &o.classify, "infer the class of paints that state none from their readings")
       .more(
           "See goniochrome-paint(7), \"CLASSES\". --where and --format paints see the inferred class, and a "
@@ -60,25 +71,13 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.heading = "comparison";
   spec.option("score", "TABLE", "cayman.brdf", &o.score, "compare the models of paints with measured directions")
       .more(
-          "TABLE is a measured BRDF, or paint XML or CSV with readings of paints of the same names. The models are the "
-          "curve of a paint, its lobes and its color map, where it has them. Directions less than 10 degrees from "
-          "specular or more than 75 degrees from the normal are left out and counted. The table has one line for each "
-          "model: how many directions were compared, and the mean, the 95th percentile and the largest difference by "
-          "--formula, and the mean and the 95th percentile of the CIE 1976 difference. A measured BRDF is for the "
-          "paint that has the name of its file; if there is none, it is for all paints.");
+          "TABLE is a measured BRDF, or paint XML or CSV with readings of paints of the same names. See Scores.");
   spec.option("illuminant", "NAME,...", "A,F11", &o.illuminants, "tell how the colors change in other light")
       .more(
-          "The names are " + color::spectral_illuminants() +
-          ". The table has a column inconstancy_NAME for each: the color difference between the color under the "
-          "illuminant of the readings and under this one, to an eye that has adapted to each of them by CMCCAT2000, at "
-          "the geometry where it is largest. It is n/a for paints without spectra; paint-convert keeps those of CxF "
-          "and of measured BRDFs. The columns stand behind all others, and --where does not know them.");
+          "goniochrome-paint(5), \"ILLUMINANTS\", lists the names. See Other light.");
   spec.option("standard", "PAINT", "fitted.xml#candy_red", &o.standard, "pair each paint with this one")
       .more(
-          "With --illuminant the table has a column metamerism_NAME for each illuminant: the special metamerism index "
-          "of CIE 15 at the geometry where it is largest. It tells how much two paints that match in "
-          "the light of the readings differ in this one. What they differ by in the light of the readings is taken "
-          "off before, by a factor for each of X, Y and Z. PAINT is a file with one paint, or FILE#NAME.");
+          "PAINT is a file with one paint, or FILE#NAME. With --illuminant the table has metamerism. See Other light.");
   spec.option("formula", "FORMULA", "cmc:2:1", &o.formula, "formula of these color differences")
       .more("It is one of " + color::formula_words() +
             "; see goniochrome-color(7), \"COLOR DIFFERENCES\". With --score its columns are named after it, de00 "

@@ -49,7 +49,12 @@ cli::ToolSpec tool_spec(Options& o) {
       "has come to rest, in up to 96 MB of the graphics' memory, so that edits are shown several times sooner.",
       "The compiled library lies in ../lib/goniochrome beside the program, as the files studio.wasm and "
       "studio.html, or in $GONIOCHROME_MODULE_PATH. Where the compiler for WebAssembly was missing when the tools "
-      "were built, paint-studio says which packages it takes, and the exit status is 3."};
+      "were built, paint-studio says which packages it takes, and the exit status is 3.",
+      "# Traced views\nThe page lists the views of --transport beside the lights. It shows every edit of the paint on "
+      "them with shadows, with the floor and with the light that parts send to each other: direct light exactly, and "
+      "bounced light scaled to the paint, as render-osmesa --gbuffer does from the same file. The page says where a "
+      "paint is so far from the traced one that this is doubtful. Neither camera nor light of a view can be moved. Its "
+      "light is packed in some 30 bytes a point, and the page tells the error."};
   spec.inputs = {"PAINTS",
                  "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.paints};
@@ -64,12 +69,7 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.option("transport", "FILE", "view.exr", &o.transports,
               "traced view of the mesh, made by render-osmesa(1) with --aov transport")
       .more(
-          "The page lists it beside the lights. It shows every edit of the paint on it with shadows, with the floor "
-          "and with the light that parts send to each other: light that comes straight to the mesh exactly, and light "
-          "that it sends to itself scaled to the paint, as render-osmesa --gbuffer does from the same file. The page "
-          "says where a paint is so far from the one that was traced that this is doubtful. A view stays as it is, and "
-          "neither its camera nor its light can be moved. The file needs the lobes of the basis and the parts of the "
-          "mesh. Its light is packed in some 30 bytes a point, and what that changes is told.");
+          "The file needs the lobes of the basis and the parts of the mesh. See Traced views.");
   spec.option("basis,b", "FILE", "testdata/b7.basis.xml", &o.basis, "basis that the page fits paints to")
       .more("Without it there are seven lobes, with exponents from 1.3 to 3000, and the mirror.");
   spec.option("title", "TEXT", "Spring", &o.title, "title of the page; the name of the mesh by default");

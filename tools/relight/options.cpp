@@ -14,14 +14,15 @@ cli::ToolSpec tool_spec(Options& o) {
       "Some illuminants cannot be divided by, because a color channel would have to come out of nothing. They are "
       "refused, and the message tells their condition number.",
       "The output is an EXR in linear Rec.2020. Colors may become negative where the old light cannot have shown them. "
-      "They are counted, and kept unless --negative says zero."};
+      "They are counted, and kept unless --negative says zero.",
+      "# Operators\n" + color::operator_sentences()};
   spec.inputs = {"IMAGE", "an HDR image (EXR, HDR, TIFF or the like); - or none is standard input", &o.image, 0, 1};
   spec.heading = "light";
   spec.option("from", "LIGHT", "D65", &o.from, "illuminant of the image: R,G,B, " + color::spectral_illuminants());
   spec.option("to", "LIGHT", "0.2,0.4,1", &o.to, "illuminant to change to: R,G,B, " + color::spectral_illuminants());
   spec.heading = "product of colors";
   spec.option("operator", "OP[,SHARES]", "iso709", &o.op, "how colored light and surfaces multiply")
-      .more(color::operator_sentences());
+      .more("It is fitted, plain, iso, iso709, estimated or a JSON file. See Operators.");
   spec.option("transfer", "K,K,K", "0.1,0.1,0.1", &o.transfer, "what red, green and blue receive from other channels")
       .from(0, 1)
       .more(
