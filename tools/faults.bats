@@ -1,4 +1,4 @@
-# What no tool may do when its world breaks: lose the old file, leave half of a new one, end on a signal, or say nothing.
+# Faults that no tool may have when its world breaks: lose the old file, leave half of a new one, end on a signal, or say nothing.
 #
 # FAULT_KILLS is how often every tool is killed [1]; FAULT_SEED starts the random moments [1].
 bats_require_minimum_version 1.5.0

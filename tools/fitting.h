@@ -1,4 +1,4 @@
-// What fit-basis and fit-paint share: their inputs, and two options that say what is fitted.
+// Options that fit-basis and fit-paint share: their inputs, and two options about the target.
 #pragma once
 
 #include <optional>

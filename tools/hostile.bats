@@ -1,12 +1,12 @@
-# What no tool may do with files, names and surroundings that nobody would wish for: end by a signal or as a bug, run on, or
-# take memory out of proportion.
+# Faults that no tool may have with files, names and surroundings that nobody would wish for: end by a signal or as a bug, run on, or take
+# memory out of proportion.
 bats_require_minimum_version 1.5.0
 
 setup() {
   cd "$BATS_TEST_TMPDIR" || exit 1
 }
 
-# Whether a sanitizer watches the tools: it takes terabytes of addresses for itself, and a multiple of the memory.
+# True if a sanitizer watches the tools: it takes terabytes of addresses for itself, and a multiple of the memory.
 sanitized() {
   ldd "$(command -v render-osmesa)" | grep -q libasan
 }

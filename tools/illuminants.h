@@ -1,4 +1,4 @@
-// What the tools share that look at paints in other light than that of their readings: the option --illuminant.
+// The option --illuminant, which tools share that look at paints in other light than that of their readings.
 #pragma once
 
 #include <algorithm>

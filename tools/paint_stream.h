@@ -1,6 +1,6 @@
-// What the tools that take paints in and give paints out share. They open all inputs, carry the history and the foreign
-// elements of these over to the output, and write each paint as soon as it is done, so that a library of any size
-// passes in constant memory.
+// Parts that the tools that take paints in and give paints out share. They open all inputs, carry the history and the
+// foreign elements of these over to the output, and write each paint as soon as it is done, so that a library of any
+// size passes in constant memory.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@
 
 namespace goniochrome::tool {
 
-// What stands before the first paint of a stream: the steps that made it, and elements of other vocabularies.
+// The head of a stream before its first paint: the steps that made it, and elements of other vocabularies.
 struct Prolog {
   std::vector<formats::Processing> processing;
   std::vector<std::string> foreign;

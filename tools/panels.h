@@ -1,4 +1,4 @@
-// What goniogeom-index and trompe-fit share: the options for lights, viewers and seams, and the picture of one paint.
+// Options that goniogeom-index and trompe-fit share: for lights, viewers and seams, and the picture of one paint.
 #pragma once
 
 #include <optional>
@@ -95,7 +95,7 @@ inline std::optional<panels::TracedSeam> traced_seam(const panels::SeamTexts& te
   return std::nullopt;
 }
 
-// What was traced for a paint, and how well; nothing of open light.
+// Reports the tracing of a paint, and its noise; nothing of unoccluded light.
 inline void tell_traced(const panels::SeamLights& lights, std::size_t views, const std::string& paint,
                         cli::Session& session) {
   if (lights.noise_de76 == 0 && lights.worth_de76 == 0 && lights.beside == 0) return;

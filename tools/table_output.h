@@ -1,4 +1,4 @@
-// What the tools that write tables share: the options --output and --format, and texts that stay in their field.
+// Options that the tools that write tables share: --output and --format, and texts that stay in their field.
 #pragma once
 
 #include <algorithm>

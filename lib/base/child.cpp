@@ -66,7 +66,7 @@ void limit(int resource, rlim_t most, rlim_t grace = 0) {
 // A quarter of the memory that this child may take, for a signal handler; 0 in a process that is no child.
 std::size_t quarter = 0;
 
-// Whether a quarter of what the child may take is not to be had any more. Want of memory is then taken for the cause of
+// True if a quarter of what the child may take is not to be had any more. Want of memory is then taken for the cause of
 // whatever went wrong.
 bool child_is_short_of_memory() {
   return mmap(nullptr, quarter, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) == MAP_FAILED;
@@ -79,7 +79,7 @@ bool child_is_short_of_memory() {
   raise(number);
 }
 
-// What a child does first: it dies of any signal and with its parent, keeps within the limits, and prints nothing.
+// A child begins so: it dies of any signal and with its parent, keeps within the limits, and prints nothing.
 void confine(const ChildLimits& limits, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(kRefused);

@@ -20,7 +20,7 @@ struct ChildLimits {
   int waiting_factor = 20;
 };
 
-// What a child process made: bytes in memory that is shared with nobody any more.
+// The result of a child process: bytes in memory that is no longer shared.
 class ChildBytes {
  public:
   ChildBytes(const char* bytes, std::size_t size) : bytes_(bytes), size_(size) {}
@@ -56,7 +56,7 @@ std::optional<std::size_t> addresses_left();
 Result<ChildBytes> made_by_child(const std::string& name, const ChildLimits& limits,
                                  const std::function<Result<void>(ChildOutput&)>& work);
 
-// What was lacking where a thread cannot start, and what to do about it; the beginning of a sentence.
+// The beginning of a sentence for a thread that cannot start: the missing resource, and the remedy.
 inline constexpr const char* kNoThread =
     "no thread can be started, because the system allows no more of them (`ulimit -u`, or the limit of a container): "
     "raise the limit, or end other processes";

@@ -86,7 +86,7 @@ TEST(Child, MemoryBeyondTheLimitIsAnError) {
               HasSubstr("64 MB"));
 }
 
-// As libraries do that do not look at what malloc() returned: what they lacked is told, and not a damaged file.
+// Libraries that ignore a null from malloc() crash: the error names the memory, and not a damaged file.
 TEST(Child, CrashForWantOfMemoryIsToldAsThat) {
   for (const int number : {SIGABRT, SIGSEGV})
     EXPECT_THAT(error_of([&](ChildOutput&) -> Result<void> {

@@ -57,7 +57,7 @@ std::string doubled_quotes(std::string_view text) {
   return doubled;
 }
 
-// Whether a spreadsheet would take the text for a formula and work it out. Apostrophes before one count as part of it,
+// True if a spreadsheet would take the text for a formula and work it out. Apostrophes before one count as part of it,
 // so that one more can be taken off again.
 bool looks_like_formula(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of('\''), text.size()));

@@ -6,11 +6,11 @@
 
 namespace goniochrome {
 
-// As base64 with padding.
+// Encodes bytes as base64 with padding.
 std::string base64(std::string_view bytes);
 
-// As a part of an address: letters, digits and -._~ stay, and each other byte becomes % and its two hexadecimal digits.
-// `kept` are more that stay.
+// Encodes bytes as a part of an address: letters, digits and -._~ stay, and each other byte becomes % and its two
+// hexadecimal digits. `kept` are more that stay.
 std::string percent_encoded(std::string_view bytes, std::string_view kept = "");
 
 }  // namespace goniochrome

@@ -20,7 +20,7 @@ class InputFile {
   InputFile& operator=(InputFile&&) = delete;
   ~InputFile();
 
-  // What errors call it: the path, or "standard input".
+  // The name in errors: the path, or "standard input".
   const std::string& name() const { return name_; }
 
   // The first bytes, as many as one read gives (none only where the input is empty); read() still returns them.

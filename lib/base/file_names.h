@@ -20,7 +20,7 @@ std::string safe_file_name(std::string_view text);
 // The pattern and its words in braces: {name}, {code} and {index}.
 class FileNames {
  public:
-  // Whether the text has one of the words in braces.
+  // True if the text has one of the words in braces.
   static bool is_pattern(std::string_view text);
 
   // For the name of one file, which may have braces of its own. Error (usage): it has letters in braces that are none
@@ -32,7 +32,7 @@ class FileNames {
   static Result<FileNames> create(const std::string& pattern, const std::vector<std::string>& words,
                                   const std::string& option);
 
-  // Whether the pattern has this word.
+  // True if the pattern has this word.
   bool has(std::string_view word) const;
 
   // The file of the next thing. `index` has four digits or more, and a thing without a code is called by its name.

@@ -23,7 +23,7 @@ TEST(LargePages, AVectorKeepsItsValuesAndGetsZeros) {
   EXPECT_EQ(values, (std::vector<std::uint32_t>{1, 2, 3}));
 }
 
-// What lies in the pages at the ends of an array belongs to others as well.
+// Data in the pages at the ends of an array belong to others as well.
 TEST(LargePages, WhatIsThereAlreadyStays) {
   std::vector<std::uint32_t> values(kMany);
   std::iota(values.begin(), values.end(), 0U);

@@ -24,10 +24,10 @@ std::string relative_path(const std::string& path, const std::string& folder);
 // Makes the folder and those above it, unless they are there. Error: the system's reason.
 Result<void> make_folder(const std::string& path);
 
-// What tells a file from every other: its device and number there. Nothing if there is no such file.
+// The identity of a file: its device and number there. Nothing if there is no such file.
 std::optional<std::pair<unsigned long, unsigned long>> file_identity(const std::string& path);
 
-// Whether OutputFile could write `path` now; nothing is left of the attempt. A device or a pipe is not tried.
+// True if OutputFile could write `path` now; nothing is left of the attempt. A device or a pipe is not tried.
 Result<void> can_be_written(const std::string& path);
 
 }  // namespace goniochrome

@@ -10,7 +10,7 @@
 
 namespace goniochrome {
 
-// What went wrong decides the exit status of a tool: see exit_status() in cli/tool.h.
+// The kind of an error decides the exit status of a tool: see exit_status() in cli/tool.h.
 enum class ErrorKind {
   kUsage,  // the command line is off
   kInput,  // bad input or I/O

@@ -36,7 +36,7 @@ std::string upper(std::string_view text);
 // How many letters must be added, removed or replaced to turn one word into the other: for "did you mean".
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-// Whether XML can hold `text`: it is valid UTF-8 and has no control characters except tabs and ends of lines.
+// True if XML can hold `text`: it is valid UTF-8 and has no control characters except tabs and ends of lines.
 bool is_plain_utf8(std::string_view text);
 
 // `text` with a "?" in place of every byte that is_plain_utf8() objects to.

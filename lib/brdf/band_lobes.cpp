@@ -76,7 +76,7 @@ double angle_deg(const Vec3& direction) {
   return math::atan2(math::hypot(direction.x, direction.y), direction.z) / kDegree;
 }
 
-// What an instrument reads of a paint at a geometry, in one channel.
+// The reading of a paint by an instrument at a geometry, in one channel.
 double read_of(const paint::LobeFit& fit, const paint::Geometry& geometry) {
   const auto [light, view] = paint::directions(geometry);
   return flake_reflectance_factor(at_view(fit, angle_deg(view)), paint::aspecular_angle_deg(geometry), angle_deg(light),
@@ -84,7 +84,7 @@ double read_of(const paint::LobeFit& fit, const paint::Geometry& geometry) {
       .y;
 }
 
-// The same paint whose only weight is this one, of 1.
+// Makes the paint whose only weight is this one, of 1.
 paint::LobeFit with_weight_alone(const paint::BandLobes& lobes, const Weight& weight) {
   paint::LobeFit fit;
   fit.coat_index = lobes.coat_index;

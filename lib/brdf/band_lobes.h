@@ -1,5 +1,5 @@
-// The lobes of a fitted paint in bands of wavelength, from the spectra that it keeps. goniochrome-theory(7), LIGHT IN
-// BANDS.
+// The lobes of a fitted paint in bands of wavelength, from the spectra that it keeps.
+// goniochrome-color(7), "LIGHT IN BANDS".
 #pragma once
 
 #include "base/result.h"

@@ -1,5 +1,5 @@
 // A rough coat as paths draw it: what its facets send from one direction to another, and directions that are drawn by
-// them. Lobes stand for the same coat where maps are looked up. goniochrome-theory(7), SATIN.
+// them. Lobes stand for the same coat where maps are looked up. goniochrome-coats(7), "SATIN".
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace goniochrome::brdf {
 // All directions are unit vectors in the frame whose z is the normal; that to the viewer lies above the horizon.
 class CoatFacets {
  public:
-  // Of a coat of that refractive index.
+  // Facets of a coat of that refractive index.
   CoatFacets(const RoughCoat& coat, double index) : coat_(coat), index_(index) {}
 
   // f cos_i, and the density that drawn() gives the direction, both in 1/sr. Both are 0 below the horizon.
@@ -45,10 +45,10 @@ class CoatFacets {
   double index_;
 };
 
-// Whether the gloss of a paint stands for a rough coat, as set_gloss_views() gives it to the paint: gray weights that
+// True if the gloss of a paint stands for a rough coat, as set_gloss_views() gives it to the paint: gray weights that
 // change with the view, at all of kCoatViews_deg.
 bool stands_for_coat(const paint::LobeFit& fit);
-// That coat, which reads what these lobes read; none where they stand for none. The weights hold at the incidence
+// The coat with the readings of these lobes; none where they stand for none. The weights hold at the incidence
 // `gloss_deg`.
 std::optional<RoughCoat> coat_of_lobes(const paint::LobeFit& fit, double gloss_deg);
 

@@ -1,7 +1,7 @@
 // Three readings do not tell the three numbers of a coat of two scales equally well, nor how its slopes are
-// distributed. Of the coats that have given readings to what meters repeat, the most probable one is taken: that of one
-// scale where a single number explains all three readings, since that is no coincidence, and else the one that lies
-// nearest to what is usual.
+// distributed. Among coats with the given readings, to the accuracy of meters, the most probable one is taken: one of
+// one scale where a single number explains all three readings, since that is no coincidence, and else the one nearest
+// to the usual series.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,7 +34,7 @@ RoughCoat series_coat(std::size_t view, double gu) {
   return of_series(0.5 * (low + high));
 }
 
-// What is known of a coat: readings, which have this standard deviation.
+// The given data of a coat: readings, which have this standard deviation.
 struct Wanted {
   struct Reading {
     std::size_t view;
@@ -88,11 +88,11 @@ Found of_one_scale(const Wanted& wanted, Slopes slopes) {
 class CoatSearch {
  public:
   CoatSearch(const Wanted& wanted, Slopes slopes) : wanted_(wanted), slopes_(slopes) {}
-  // Of coats with this haze alone.
+  // A search among coats with this haze alone.
   CoatSearch(const Wanted& wanted, Slopes slopes, double haze)
       : wanted_(wanted), slopes_(slopes), least_(math::log(haze)), most_(least_), free_(2) {}
 
-  // What a coat costs as it is.
+  // The cost of a coat as it is.
   Found at(const RoughCoat& coat) const {
     return {coat, squares(residuals({math::log(coat.slope), coat.k, math::log(coat.haze)}))};
   }
@@ -208,8 +208,8 @@ RoughCoat end_of_range(const Wanted& wanted, const Found& found, bool up) {
   return last;
 }
 
-// What the readings say of the coat alone, relative to black glass as a coat of the usual index would read; none where
-// they are those of a smooth coat, or too dull for any.
+// The readings of the coat alone, relative to black glass as a coat of the usual index would read; none where they are
+// those of a smooth coat, or too dull for any.
 Result<std::optional<Wanted>> wanted_of(const std::vector<paint::GlossReading>& readings, double index,
                                         double deviation_gu) {
   constexpr double kSmooth_gu = 1;

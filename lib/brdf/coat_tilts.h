@@ -1,6 +1,6 @@
-// What stands for a rough coat where prefiltered maps are looked up. At oblique views the light of the coat is wider in
-// the plane of incidence than across it, which several cosine lobes show whose axes are tilted in that plane.
-// goniochrome-theory(7), SATIN, What maps draw.
+// Lobes that stand for a rough coat where prefiltered maps are looked up. At oblique views the light of the coat is
+// wider in the plane of incidence than across it, which several cosine lobes show whose axes are tilted in that plane.
+// goniochrome-coats(7), "What maps draw".
 #pragma once
 
 #include <vector>

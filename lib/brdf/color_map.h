@@ -1,6 +1,6 @@
 // The color map of a flake paint holds its color at every pair of directions in one plane with the normal. Every other
 // pair has the color of the pair in plane that lies on its isoline, or, where a map says so, of a pair in plane that
-// has its aspecular angle. goniochrome-theory(7), ISOCHROMATIC LINES; [Kirchner], figure 2
+// has its aspecular angle. goniochrome-interference(7), "ISOCHROMATIC LINES"; [Kirchner], figure 2
 #pragma once
 
 #include <vector>

@@ -21,11 +21,12 @@ namespace {
 constexpr double kFlat_rad = 3e-4;
 // cos^E below exp(-kTail) of its largest value on the disc is left out.
 constexpr double kTail = 40;
-// Of Gauss's rule over the rings of a lobe, which are at most 9 standard deviations wide together. The substitution of
-// lobe_of_disc() makes the integrand smooth at both ends, so that the error falls exponentially with the rings.
+// Points of Gauss's rule over the rings of a lobe, which are at most 9 standard deviations wide together. The
+// substitution of lobe_of_disc() makes the integrand smooth at both ends, so that the error falls exponentially with
+// the rings.
 constexpr int kRings = 48;
-// The same for the nodes of tables, which are floats and between which lines are drawn: they err by less than 1e-6 of
-// the largest value.
+// Points for the nodes of tables, which are floats and between which lines are drawn: they err by less than 1e-6 of the
+// largest value.
 constexpr int kRingsOfNodes = 20;
 
 // A ring at the part sin^2(x) of the way across the rings, and its weight times the derivative of that.
@@ -103,8 +104,8 @@ double disc_irradiance(double cosine, double radius_rad) {
   return std::max(0.0, irradiance / (kPi * square(sine_radius)));
 }
 
-// What is below is a sector of the disc less a spherical triangle: pi - 2 alpha - 2 psi_0 cos R, with
-// sin alpha = sin e / sin R.
+// The part below the horizon is a sector of the disc less a spherical triangle: pi - 2 alpha - 2 psi_0 cos R, with sin
+// alpha = sin e / sin R.
 double disc_above(double cosine, double radius_rad) {
   const double sine_radius = math::sin(radius_rad);
   if (cosine >= sine_radius) return 1;

@@ -1,5 +1,5 @@
 // Light from a disc of even radiance, such as the sun or a lamp, and what a cosine lobe gathers of it.
-// goniochrome-theory(7), RENDERING, Lamps.
+// goniochrome-rendering(7), "LAMPS".
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ double disc_irradiance(double cosine, double radius_rad);
 // The part of the disc's solid angle that is above the horizon.
 double disc_above(double cosine, double radius_rad);
 
-// What a lobe cos^E about a direction r gathers of the disc about the direction l, horizon apart:
+// The light that a lobe cos^E about a direction r gathers of the disc about the direction l, horizon apart:
 //   power = integral of cos^E,   integral of cos^E times the direction = by_light l + by_mirror r
 // with both directions unit, and r the mirror direction. cos^E is 0 beyond 90 degrees.
 struct LobeOfDisc {
@@ -87,12 +87,12 @@ struct DiscHorizonTable {
 // Kept as those of lobes are.
 std::shared_ptr<const DiscHorizonTable> disc_horizon_table(double radius_rad);
 
-// What a table has at that chord, computed.
+// The node of the table at that chord, computed.
 DiscLobeTable::Node disc_lobe_node(double exponent, double radius_rad, double chord);
 
 // The table of this lobe and disc. Tables are kept, so that asking again costs nothing. Any number of threads.
 std::shared_ptr<const DiscLobeTable> disc_lobe_table(double exponent, double radius_rad);
-// What that table has at a chord. Each thread remembers the tables that it asked for last, so that asking at every
+// The value of that table at a chord. Each thread remembers the tables that it asked for last, so that asking at every
 // point of a picture waits for no other thread.
 DiscLobeTable::Node disc_lobe(double exponent, double radius_rad, double chord);
 

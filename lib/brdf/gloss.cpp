@@ -221,9 +221,9 @@ void meet_reading(const GlossTable& table, const GlossColumns& meter, double gu,
   weights[to] += share * all / energy(to);
 }
 
-// K_G and mirror for one view of a rough coat. Rows are the shares within rings, relative to what a smooth surface of
-// index 1.5 reflects, of which the last is all the light, and what the nearest meter would read. These two count so
-// much that the other rings bend to them. Unknowns are energies, so that the columns are of one size.
+// K_G and mirror for one view of a rough coat. Rows are the shares within rings, relative to the reflectance of a
+// smooth surface of index 1.5, of which the last is all the light, and the reading of the nearest meter. These two
+// count so much that the other rings bend to them. Unknowns are energies, so that the columns are of one size.
 std::vector<double> coat_weights(const GlossTable& table, const RoughCoat& coat, std::size_t view, double gloss_deg,
                                  bool has_mirror, double coat_index) {
   constexpr double kAllWeight = 30, kReadingWeight = 3;  // of 1 GU

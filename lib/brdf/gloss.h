@@ -1,5 +1,5 @@
 // This is a simulated gloss meter (ASTM D523): it tells what a meter reads of a paint, and finds the weights of the
-// gloss lobes that make it read given values. goniochrome-theory(7), GLOSS.
+// gloss lobes that make it read given values. goniochrome-coats(7), "GLOSS".
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@ constexpr double kBlackGlassIndex = 1.567;  // the standard that reads 100 GU
 
 constexpr double kGlossAngles_deg[] = {20, 60, 85};  // at which meters read
 
-// What the meter at 20, 60 or 85 deg reads, in gloss units (GU), for each part of the lobe model with weight 1.
+// Readings of the meter at 20, 60 or 85 deg, in gloss units (GU), for each part of the lobe model with weight 1.
 struct GlossColumns {
   double angle_deg = 60;
   double diffuse = 0;                       // K_D = 1/sr
@@ -53,7 +53,7 @@ Result<double> smooth_gloss(double angle_deg, double coat_index);
 // above 0. Error: an angle that no meter has.
 Result<double> coat_index_of(const std::vector<paint::GlossReading>& readings);
 
-// The index of the coat of a paint: what it states or, where its gloss asks for more, what that asks for. A paint that
+// The index of the coat of a paint: the stated one or, where its gloss asks for more, that of the gloss. A paint that
 // states kNoCoat has none. `assumed` are the readings of a paint that states no gloss. Error: as above.
 Result<double> coat_index_of_paint(const paint::Paint& paint, const std::vector<paint::GlossReading>& assumed = {});
 
@@ -89,7 +89,8 @@ Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector
 Result<void> set_gloss_views(const GlossTable& table, const std::vector<paint::GlossReading>& readings,
                              paint::LobeFit& fit);
 
-// What these readings, of which the base of `fit` is a part, leave open of its rough coat; see rough_coat_range().
+// The range of rough coats that these readings leave open, with the base of `fit` as a part of them; see
+// rough_coat_range().
 Result<std::optional<CoatRange>> coat_range(const GlossTable& table, const std::vector<paint::GlossReading>& readings,
                                             const paint::LobeFit& fit);
 

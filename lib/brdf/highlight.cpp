@@ -35,7 +35,7 @@ double edge_exponent(double edge_rad, double radius_rad) {
 }  // namespace
 
 // The highlight falls to half at the edge, which gives the exponent of a single lobe. The total energy of the lobe is
-// the Fresnel reflectance of the coat; see goniochrome-theory(7), GLOSS.
+// the Fresnel reflectance of the coat; see goniochrome-coats(7), "GLOSS".
 Result<double> gloss_of_edge(double edge_deg, double meter_deg, double extent_deg) {
   const double exponent = edge_exponent(std::clamp(edge_deg, 0.0, 89.0) * kDegree, 0.5 * extent_deg * kDegree);
   const double energy = fresnel_dielectric(math::cos(meter_deg * kDegree), kCoatIndex);

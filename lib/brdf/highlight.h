@@ -1,5 +1,5 @@
-// How wide the highlight of a lamp is on a glossy paint, and which gloss makes it that wide. goniochrome-theory(7),
-// GLOSS.
+// How wide the highlight of a lamp is on a glossy paint, and which gloss makes it that wide.
+// goniochrome-coats(7), "GLOSS".
 #pragma once
 
 #include "base/result.h"

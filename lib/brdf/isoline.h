@@ -4,7 +4,7 @@
 //   t_flake = angle(a + b, n)   and   t_incidence = angle(a, a + b)
 //
 // One pair on each line lies in one plane with the normal and stands for all of them.
-// goniochrome-theory(7), ISOCHROMATIC LINES; [Kirchner]
+// goniochrome-interference(7), "ISOCHROMATIC LINES"; [Kirchner]
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ struct FlakeAngles {
 // For unit directions above the surface (z >= 0, normal = z) and a coat of index >= 1. Absolute error 4e-16.
 FlakeAngles flake_angles(const Vec3& to_light, const Vec3& to_viewer, double index);
 
-// What to do where the steeper in-coat angle, flake + incidence, is beyond the critical angle, so that no light comes
+// Treatments where the steeper in-coat angle, flake + incidence, is beyond the critical angle, so that no light comes
 // in or out there: 30 % of cosine-weighted pairs at index 1.5.
 enum class CriticalAngle {
   kClip,      // the steeper direction lies at 90 deg, the other stays
@@ -53,7 +53,7 @@ struct InPlaneAngles {
   double light_rad = 0, view_rad = 0;
 };
 
-// The same, with the light where `to_light` is the steeper one.
+// Variant with the light where `to_light` is the steeper one.
 InPlaneAngles equivalent_in_plane_angles(const Vec3& to_light, const Vec3& to_viewer, double index,
                                          CriticalAngle treatment);
 

@@ -22,7 +22,7 @@ Vec3 direction(double polar_rad, double azimuth_rad) {
           std::cos(polar_rad)};
 }
 
-// The same formulas on exact angles, in long double: the half vector of both refracted directions.
+// The formulas on exact angles, in long double: the half vector of both refracted directions.
 struct Exact {
   long double flake, incidence;
 };

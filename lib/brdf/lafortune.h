@@ -1,5 +1,5 @@
 // Generalized cosine lobes describe a spatially varying surface: every texel has a set of its own.
-// goniochrome-theory(7), SPATIALLY VARYING SURFACES; [McAllister2002], after Lafortune and others 1997.
+// goniochrome-surfaces(7), "SPATIALLY VARYING SURFACES"; [McAllister2002], after Lafortune and others 1997.
 #pragma once
 
 #include <vector>
@@ -28,7 +28,8 @@ double scaled_power(double scale, double x, double exponent);
 // f(wi,wo) in 1/sr; 0 where a direction is below the surface.
 color::Rgb brdf(const Lafortune& surface, const Vec3& to_light, const Vec3& to_viewer);
 
-// What a lobe fetches from a prefiltered environment: L = weight * P_n(direction), P_n of theory PREFILTERING.
+// The look-up of a lobe in a prefiltered environment: L = weight * P_n(direction), P_n of
+// goniochrome-prefiltering(7), "PREFILTERING".
 struct LobeFetch {
   Vec3 direction = {0, 0, 1};  // unit, in the frame of the surface
   color::Rgb weight;           // rho_s |p|^n max(0, n.p/|p|) 2 pi/(n+1); 0 where the lobe's peak is below the surface

@@ -77,7 +77,7 @@ struct Part {
   }
 };
 
-// What the union of two lobes gets wrong: for each viewer the energy that is not where it was. Lobes whose widths or
+// The error of the union of two lobes: for each viewer the energy that is not where it was. Lobes whose widths or
 // middles differ by little are hardly told apart; where they differ by more than a width, all of the weaker is lost.
 double loss(const Part& a, const Part& b) {
   const double width = a.log_n1 - b.log_n1, n1 = std::exp(0.5 * (a.log_n1 + b.log_n1)), wide = 0.5 * width * width;
@@ -198,7 +198,7 @@ double mean_cosine(double middle, double exponent) {
   return 0.5 * mean * std::erfc(-at / std::numbers::sqrt2) + deviation * std::exp(-0.5 * at * at) / std::sqrt(2 * kPi);
 }
 
-// What a lobe of albedo 1 reflects to each witness of light from all around.
+// The reflection of a lobe of albedo 1 to each witness, in light from all around.
 std::array<double, kWitnesses> reflected(const TurnedLobe& turned) {
   const AxesMatrix axes(turned);
   const double n = turned.lobe.exponent;

@@ -1,5 +1,5 @@
 // Surfaces with fewer lobes, fast enough for every texel of a texture. Where time does not matter, fit/surface_refit.h
-// is nearer. goniochrome-theory(7), SPATIALLY VARYING SURFACES, Minification.
+// is nearer. goniochrome-surfaces(7), "Minification".
 #pragma once
 
 #include "brdf/lobe_surface.h"

@@ -1,5 +1,5 @@
 // The lobe model of a paint is a constant plus cosine lobes about the mirror direction. [ShimizuMeyer] 3.1
-// goniochrome-theory(7), LOBE MODEL.
+// goniochrome-lobes(7), "LOBE MODEL".
 #pragma once
 
 #include "base/vec3.h"
@@ -13,8 +13,8 @@ double fresnel_dielectric(double cos_i, double index);
 
 constexpr double kCoatIndex = 1.5;
 
-// What a coat of that index lets through at an angle of that cosine: 1 less its Fresnel reflectance. Light passes it
-// twice on its way to the viewer. Exactly 1 without a coat. goniochrome-theory(7), COAT.
+// The transmission of a coat of that index at an angle of that cosine: 1 less its Fresnel reflectance. Light passes it
+// twice on its way to the viewer. Exactly 1 without a coat. goniochrome-coats(7), "COAT".
 double coat_transmission(double cosine, double coat_index);
 
 // Its mean over the hemisphere, weighted by the cosine: what even light is left of. Relative error 1e-6.
@@ -26,11 +26,11 @@ struct CoatedCosine {
 };
 CoatedCosine coated_cosine(double cosine, double coat_index);
 
-// What the passages leave of the light of a base that is lit and seen there, relative to the light without a coat.
+// The light of a base after both passages, relative to the light without a coat.
 double coat_passages(double coat_index, double cos_i, double cos_o);
 
-// What one coat leaves of a base's light relative to what another leaves of it: of light that falls in at 45 deg and is
-// seen at the angle of this cosine.
+// The light of a base under one coat relative to that under another: light falls in at 45 deg and is seen at the angle
+// of this cosine.
 double base_change(double cos_o, double from_index, double to_index);
 
 // How bright the mirror image in one coat is, relative to that in another, at the angle of this cosine.
@@ -60,11 +60,11 @@ constexpr double kGlossIncidence_deg = 45;
 // The incidence at which the mirror lobe shows the same under every coat: that of a gloss meter.
 constexpr double kMirrorReading_deg = 60;
 
-// What gloss is multiplied by under a clear coat: its Fresnel reflectance where light and viewer are each at an angle
-// of that cosine from the normal between them, over that at the incidence `gloss_deg`.
+// The factor of gloss under a clear coat: its Fresnel reflectance where light and viewer are each at an angle of that
+// cosine from the normal between them, over that at the incidence `gloss_deg`.
 double coat_fresnel(double cos_half, double gloss_deg = kGlossIncidence_deg);
 
-// As brdf(), with gloss lobes times coat_fresnel().
+// Evaluates brdf() with gloss lobes times coat_fresnel().
 color::Rgb coated_brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal,
                        double gloss_deg = kGlossIncidence_deg);
 
@@ -79,7 +79,7 @@ color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_
 // The angle from the normal at which a multi-angle instrument views a surface that is lit at 45 deg, in the plane of
 // incidence. Beyond 110 deg, where no instrument reads, the viewer is taken to stay at 65 deg.
 double instrument_view_deg(double aspecular_deg);
-// What such an instrument reads.
+// The reading of such an instrument.
 color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg);
 
 }  // namespace goniochrome::brdf

@@ -159,7 +159,7 @@ TEST(Coat, IsPassedTwiceByTheBaseAndNotByTheGloss) {
       EXPECT_NEAR(flake_reflectance_factor(fit, aspecular, -in, out).y,
                   kPi * passages * brdf(base, at(in), at(out), normal).y, 1e-12);
     }
-  // What an instrument reads: light at 45 deg.
+  // An instrument reads with light at 45 deg.
   EXPECT_EQ(flake_reflectance_factor(fit, 15), flake_reflectance_factor(fit, 15, 45, 30));
   EXPECT_EQ(flake_reflectance_factor(fit, 110), flake_reflectance_factor(fit, 110, 45, 65));
 }

@@ -1,5 +1,5 @@
 // Sums of generalized cosine lobes whose frames may differ: a texel, a paint as a texture holds it, or a mixture of
-// such surfaces. goniochrome-theory(7), SPATIALLY VARYING SURFACES, Mixtures.
+// such surfaces. goniochrome-surfaces(7), "Mixtures".
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ LobeSurface lobe_surface(const SbrdfTexture& texture, int column, int row, std::
 // albedo, so that mixtures of paints on one basis have no more lobes than the basis. The sum is exact.
 void add_surface(LobeSurface& sum, const LobeSurface& part, double share);
 
-// Whether one frame serves all lobes, as a texel needs it.
+// True if one frame serves all lobes, as a texel needs it.
 bool has_one_frame(const LobeSurface& surface);
 
 // Writes the surface to the values of a texel with so many lobes, ascending in exponent; lobes that are not needed get

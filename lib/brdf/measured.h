@@ -1,6 +1,6 @@
 // Measured BRDFs in the file formats of the laboratories that measured them: MERL tables, Cornell spectra, NVIDIA
 // MBSDF, RGL tensor files and tables of OpenMATERIAL. This header tells what a file says at a pair of directions, how
-// far it can be trusted, and what a multi-angle instrument would have read. goniochrome-theory(7), MEASURED BRDFS.
+// far it can be trusted, and what a multi-angle instrument would have read. goniochrome-fitting(7), "MEASURED BRDFS".
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 
 namespace goniochrome::brdf {
 
-// What the file says of itself and of its samples.
+// Statements of the file about itself and its samples.
 struct MeasuredTraits {
   std::string format = {};       // merl | cornell | mbsdf | rgl | openmaterial
   std::string description = {};  // the file's own words, or empty
@@ -70,7 +70,7 @@ class MeasuredBrdf {
 // .brdf".
 std::string measured_formats();
 
-// Whether a file that begins with `head` (200 bytes are enough) is one of these formats; Cornell's text is told by its
+// True if a file that begins with `head` (200 bytes are enough) is one of these formats; Cornell's text is told by its
 // name's ending `.brdf`.
 bool looks_measured(std::string_view path, std::string_view head);
 
@@ -109,7 +109,7 @@ class ChannelColorimeter {
   std::optional<color::SpectralColorimeter> meter_;
 };
 
-// What a multi-angle instrument reads.
+// A reading of a multi-angle instrument.
 struct MeasuredReading {
   paint::Geometry geometry;
   color::Lab lab;

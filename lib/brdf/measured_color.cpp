@@ -1,5 +1,5 @@
-// What a multi-angle instrument would have read: reflectance factor pi f, then Lab. goniochrome-theory(7), MEASURED
-// BRDFS.
+// Readings that a multi-angle instrument would have made: reflectance factor pi f, then Lab.
+// goniochrome-fitting(7), "MEASURED BRDFS".
 #include <algorithm>
 #include <cmath>
 

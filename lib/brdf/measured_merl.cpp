@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kHalf = 90, kDifference = 90, kAzimuth = 180, kBins = kHalf * kDifference * kAzimuth;
 constexpr std::size_t kHeader = 3 * sizeof(std::int32_t);
-// What turns the stored doubles into 1/sr ([Matusik2003], the data's own reader).
+// Factors that turn the stored doubles into 1/sr ([Matusik2003], the data's own reader).
 constexpr std::array<double, 3> kScale = {1.0 / 1500, 1.15 / 1500, 1.66 / 1500};
 
 // Rusinkiewicz's angles of a pair: half vector from the normal; light from the half vector, and its azimuth about it,

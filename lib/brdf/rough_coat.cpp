@@ -69,7 +69,7 @@ Meter meter_at(std::size_t view) {
   return meter;
 }
 
-// What a meter reads in GU of f cos_i cos_o = f(wi, wo), which is about so wide around its peak in the plane of
+// The reading of a meter in GU for f cos_i cos_o = f(wi, wo), which is about so wide around its peak in the plane of
 // incidence and across it, in tangents, and 0 beyond `reach` times that.
 template <class Function>
 double window_reading(const Meter& meter, double width_par, double width_perp, double reach, const Function& f) {
@@ -96,7 +96,7 @@ double window_reading(const Meter& meter, double width_par, double width_perp, d
   return 100 * read / standard;
 }
 
-// Of one scale that gets all the light.
+// The reading of one scale that gets all the light.
 double facets_reading(const Meter& meter, const Facets& facets) {
   const double width = 2 * facets.slope, reach = facets.slopes == Slopes::kGaussian ? kGaussianReach : kAll;
   return window_reading(meter, width, width * math::cos(meter.angle_deg * kDegree), reach,
@@ -148,7 +148,7 @@ Vec3 viewer(std::size_t view) {
   return {math::sin(t), 0, math::cos(t)};
 }
 
-// What each ring adds, without and with (wi.h)^2.
+// Contributions of each ring, without and with (wi.h)^2.
 struct FacetRings {
   Rings light, times_cos2;
 };
@@ -166,7 +166,7 @@ FacetRings facet_rings(const Facets& facets, std::size_t view) {
   return {each(false), each(true)};
 }
 
-// Of one scale, by log slope.
+// The slope at a node of the table of one scale, by log slope.
 double node_slope(std::size_t node) {
   return kLeastSlope * math::pow(kMostSlope / kLeastSlope, static_cast<double>(node) / (kSlopes - 1));
 }

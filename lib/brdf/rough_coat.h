@@ -1,5 +1,5 @@
 // A clear coat with a rough surface, from satin to matt: what gloss meters read of it, which coat has given readings,
-// and where it sends the light of each view. goniochrome-theory(7), SATIN.
+// and where it sends the light of each view. goniochrome-coats(7), "SATIN".
 #pragma once
 
 #include <optional>
@@ -35,7 +35,8 @@ inline constexpr double kLeastSlope = 5e-4, kMostSlope = 0.8;
 // The share of the reflected light that the fine scale leaves together, at an angle of that cosine.
 double sharp_share(const RoughCoat& coat, double cosine);
 
-// What a meter at 20, 60 or 85 deg reads of such a coat of that index alone, in GU. Error: no meter has that angle.
+// The reading of a meter at 20, 60 or 85 deg for such a coat of that index alone, in GU. Error: no meter has that
+// angle.
 Result<double> coat_reading(const RoughCoat& coat, double angle_deg, double index);
 
 // The standard deviation of a reading that somebody states: meters print tenths.
@@ -48,9 +49,9 @@ inline constexpr double kStatedDeviation_gu = 0.1;
 Result<std::optional<RoughCoat>> rough_coat_of(const std::vector<paint::GlossReading>& readings, double index,
                                                double deviation_gu = kStatedDeviation_gu);
 
-// What readings leave open of a coat of two scales: all coats from one to the other have them within two standard
-// deviations, with numbers as usual. The haze is what readings tell least, so that they are sorted by it. Of three
-// readings to a tenth, coats may have nearly the same and differ in pictures by several units of CIEDE2000.
+// The range of coats of two scales that readings leave open: all coats from one to the other have the readings within
+// two standard deviations, with numbers as usual. The haze is what readings tell least, so that they are sorted by it.
+// Of three readings to a tenth, coats may have nearly the same and differ in pictures by several units of CIEDE2000.
 struct CoatRange {
   RoughCoat least_haze, probable, most_haze;
 };
@@ -72,8 +73,8 @@ std::span<const double> ring_angles_rad();
 // ring has one share.
 std::vector<double> coat_within(const RoughCoat& coat, std::size_t view);
 
-// What the nearest meter would read there of the coat, of a gloss lobe cos^E of weight F(theta_h), and of the mirror,
-// all of index 1.5, in GU.
+// The reading of the nearest meter for the coat, for a gloss lobe cos^E of weight F(theta_h), and for the mirror, all
+// of index 1.5, in GU.
 double coat_reading_at(const RoughCoat& coat, std::size_t view);
 double lobe_reading_at(double exponent, std::size_t view);
 double mirror_reading_at(std::size_t view);

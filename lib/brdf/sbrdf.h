@@ -1,5 +1,5 @@
 // A spatially varying surface is a texture here: each texel has a sum of generalized cosine lobes and the direction to
-// which its frame is turned. goniochrome-theory(7), SPATIALLY VARYING SURFACES; [McAllister2002]
+// which its frame is turned. goniochrome-surfaces(7), "SPATIALLY VARYING SURFACES"; [McAllister2002]
 #pragma once
 
 #include <array>

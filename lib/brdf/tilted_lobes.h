@@ -1,5 +1,6 @@
 // Tilted lobes stand for a color map in image light, since prefiltered maps hold lobes alone. At each angle of the
-// viewer they are a sum of cosine lobes about axes beside the mirror direction. goniochrome-theory(7), TILTED LOBES.
+// viewer they are a sum of cosine lobes about axes beside the mirror direction.
+// goniochrome-interference(7), "TILTED LOBES".
 #pragma once
 
 #include "base/vec3.h"
@@ -16,7 +17,7 @@ constexpr double kFullTilt_deg = 15;
 // It may lie below the surface.
 Vec3 tilted_axis(const paint::TiltedLobe& lobe, double view_deg);
 
-// The same axis as a combination of vectors that need no frame: a r + s n + c (n x o) has its direction, where r is the
+// The axis as a combination of vectors that need no frame: a r + s n + c (n x o) has its direction, where r is the
 // mirror direction, n the normal and o the direction to the viewer; the other axis of a pair has -c. All three numbers
 // are finite at every view, and at the normal the combination is n itself.
 struct AxisSum {

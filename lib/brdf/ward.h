@@ -1,5 +1,5 @@
 // Ward's anisotropic lobe reflects light off brushed surfaces. Prefiltered maps hold isotropic lobes only, so it is
-// resolved into such lobes about tilted normals. goniochrome-theory(7), ANISOTROPY; [Ward1992], [Shimizu2009] 2.5.3
+// resolved into such lobes about tilted normals. goniochrome-lobes(7), "ANISOTROPY"; [Ward1992], [Shimizu2009] 2.5.3
 #pragma once
 
 #include <vector>

@@ -25,7 +25,7 @@ struct Band {
   std::vector<PhotoPixel> pixels;
 };
 
-// What the photographs say, and which of them the fit may use.
+// A job holds the data of the photographs, and which of them the fit may use.
 class Job {
  public:
   Job(const PhotoTable& table, const PhotoStack& stack, const MapFitOptions& options)
@@ -75,7 +75,7 @@ class Job {
   std::vector<char> fitted_;   // whether the fit sees the photograph
   TexelOptions chosen_;
 
-  // What the first fit of a texel was like, besides the map.
+  // Results of the first fit of a texel, besides the map.
   struct First {
     float spread = 1;
     std::uint16_t used = 0, left_out = 0;

@@ -1,5 +1,5 @@
-// From photographs of a surface to its map: the lobes of every texel. goniochrome-theory(7), SPATIALLY VARYING
-// SURFACES.
+// From photographs of a surface to its map: the lobes of every texel.
+// goniochrome-surfaces(7), "SPATIALLY VARYING SURFACES".
 #pragma once
 
 #include <functional>
@@ -28,7 +28,7 @@ struct MapFitOptions {
   std::function<void(const std::string& stage, double share)> progress = {};
 };
 
-// What a fit says of one photograph.
+// Results of a fit for one photograph.
 struct PhotoFigures {
   double exposure_factor = 1;  // its values over those that the others predict
   bool wrong_exposure = false;
@@ -36,7 +36,7 @@ struct PhotoFigures {
   double rel_error = 0;  // median
 };
 
-// What a method makes of a sample of texels, a fifth of whose photographs it does not see.
+// Errors of a method on a sample of texels, a fifth of whose photographs it does not see.
 struct MethodFigures {
   MapMethod method = MapMethod::kDictionary;
   double rel_error = 0;  // median over the values that it does not see

@@ -38,7 +38,7 @@ struct PhotoTable {
 // file, line and value.
 Result<PhotoTable> read_photo_table(const std::string& path);
 
-// Whether these photographs can tell how the surface reflects. `width` and `height` are those of the surface, whose
+// True if these photographs can tell how the surface reflects. `width` and `height` are those of the surface, whose
 // middle is the origin and whose normal is z. Error: a light or a camera that is not above the surface; fewer
 // photographs than `least`; all from one side of the highlight; or all lights in one place.
 Result<void> check_stations(const PhotoTable& table, double width, double height, int least);

@@ -68,7 +68,7 @@ std::vector<File> named_files(const ToolSpec& spec, bool written) {
   return files;
 }
 
-// Whether two names lead to one file, be it there or not.
+// True if two names lead to one file, be it there or not.
 bool same_file(const std::string& a, const std::string& b) {
   const auto first = file_identity(a), second = file_identity(b);
   if (first || second) return first == second;

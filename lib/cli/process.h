@@ -1,4 +1,4 @@
-// What a tool does with its process before it does anything else, and what becomes of it when memory runs out.
+// The first steps of a tool's process, and its end when memory runs out.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ void open_closed_descriptors();
 // an allocation fails; where then no large block of addresses is to be had, want of memory is taken for the cause.
 void expect_memory_to_run_out(const std::string& tool);
 
-// Whether a large block of addresses (512 MB) cannot be had any more.
+// True if a large block of addresses (512 MB) cannot be had any more.
 bool is_short_of_memory();
 
 }  // namespace goniochrome::cli

@@ -1,4 +1,4 @@
-// What becomes of a tool where the system starts no more threads.
+// The end of a tool where the system starts no more threads.
 //
 // The libraries that tools use do not survive that. OpenEXR and TBB abort; OSMesa waits for ever. A tool cannot catch it behind them, so thread_start.cpp defines pthread_create() itself. The
 // dynamic loader takes the program's own function before that of the C library, for every library, also for those that

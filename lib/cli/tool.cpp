@@ -19,7 +19,7 @@ namespace goniochrome::cli {
 
 namespace {
 
-// What --help, --version and --generate ask for; set by the table like any other option.
+// Requests by --help, --version and --generate; set by the table like any other option.
 struct Requests {
   bool help = false;
   bool version = false;

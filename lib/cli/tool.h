@@ -1,5 +1,5 @@
-// What every tool does around its work: it parses, runs, reports and exits. The exit statuses are a contract, which
-// every man page states.
+// The frame of every tool: it parses, runs, reports and exits. The exit statuses are a contract, which every man page
+// states.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace goniochrome::cli {
 
-// What a finished run says of its work.
+// The verdict of a finished run on its work.
 enum class Verdict {
   kDone = 0,
   kNegative = 1,  // over threshold, no match, not converged
@@ -67,7 +67,7 @@ class Session {
   mutable bool progress_shown_ = false;
 };
 
-// What main() does in a tool: parses argv by the table, which writes into the caller's options; answers --help,
+// The main function of a tool parses argv by the table, which writes into the caller's options; answers --help,
 // --version and --generate; sets the number of threads; runs; writes the report; prints an error as `tool: message`.
 // Returns the exit status.
 int tool_main(int argc, char** argv, const ToolSpec& spec, const CommonOptions& common,

@@ -1,4 +1,4 @@
-// Light and reflectance in 31 bands of wavelength, 400 to 700 nm by 10. goniochrome-theory(7), LIGHT IN BANDS.
+// Light and reflectance in 31 bands of wavelength, 400 to 700 nm by 10. goniochrome-color(7), "LIGHT IN BANDS".
 #pragma once
 
 #include <array>

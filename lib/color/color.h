@@ -1,5 +1,5 @@
 // Colors: CIELAB, XYZ and the working space, which is linear Rec.2020 (D65); the conversions between them by Bradford's
-// adaptation; and color differences. goniochrome-theory(7), CONVENTIONS.
+// adaptation; and color differences. goniochrome-color(7), "COLOR".
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ struct Xyz {
 // The working space: linear Rec.2020, D65; 1 = perfect diffuser (reflectance factor) or scene radiance.
 using Rgb = Vec3;
 
-// What a Lab value is relative to. The default is the condition that the paint industry uses.
+// The condition that a Lab value is relative to. The default is the condition that the paint industry uses.
 struct ViewingCondition {
   std::string illuminant = "D65";  // D65 | D50 | A ...
   int observer_deg = 10;           // 2 | 10

@@ -1,5 +1,5 @@
-// Spectra for colors: a light or a reflectance of which three channels are known, in bands. goniochrome-theory(7),
-// LIGHT IN BANDS.
+// Spectra for colors: a light or a reflectance of which three channels are known, in bands.
+// goniochrome-color(7), "LIGHT IN BANDS".
 #pragma once
 
 #include "color/bands.h"

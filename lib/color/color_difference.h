@@ -1,6 +1,6 @@
 // Color differences of a sample from a standard by the formulas of the industry. Every difference is sample minus
 // standard. CIE 1994 and CMC weigh it by the standard alone, so that they change where the two trade places.
-// goniochrome-theory(7), COLOR DIFFERENCES.
+// goniochrome-color(7), "COLOR DIFFERENCES".
 #pragma once
 
 #include <string>

@@ -16,8 +16,8 @@ ReflectionOperator component_wise() {
 }
 
 // By scripts/fit-operator with the tables of testdata/, in thousandths: a step of 0.001 in one of the numbers changes
-// the mean difference over the pairs that it was fitted to by less than 0.001. What it has beyond the plain product is
-// 0.7 of what is best for these pairs within the limits that keep red paint red in cyan light.
+// the mean difference over the pairs that it was fitted to by less than 0.001. Its part beyond the plain product is 0.7
+// of the best part for these pairs within the limits that keep red paint red in cyan light.
 ReflectionOperator fitted_operator() {
   return nearest_coherent({{{{{{0.950, -0.012, 0.062}, {-0.012, 0.095, -0.083}, {0.062, -0.083, 0.021}}},
                              {{{0.052, -0.021, -0.031}, {-0.021, 0.995, 0.026}, {-0.031, 0.026, 0.005}}},

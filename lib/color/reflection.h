@@ -1,5 +1,5 @@
 // Reflection of colored light without spectra. Light and reflectance are often multiplied channel by channel; here each
-// channel of the result depends on all channels of both, by a bilinear product. goniochrome-theory(7), COLORED LIGHT;
+// channel of the result depends on all channels of both, by a bilinear product. goniochrome-color(7), "COLORED LIGHT";
 // [GranierDamez2004]
 #pragma once
 
@@ -30,7 +30,7 @@ ReflectionOperator fitted_operator();
 // applied to working-space values as they are, although it was made for other primaries.
 ReflectionOperator iso_rgb_operator();
 
-// The same table in its own primaries, those of Rec.709: both colors are taken there, and the product is taken back.
+// The table in its own primaries, those of Rec.709: both colors are taken there, and the product is taken back.
 ReflectionOperator iso_rec709_operator();
 
 // The operator of the working space, linear Rec.2020, estimated from the CIE 1931 color-matching functions. Its

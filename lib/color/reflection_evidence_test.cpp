@@ -123,7 +123,7 @@ class Room {
     constexpr double kOpposite = 0.19982489569838746;
     return i == j ? 0 : i / 2 == j / 2 ? kOpposite : (1 - kOpposite) / 4;
   }
-  // What each wall sends out where wall i makes reflect(i, E) of the light E that it receives.
+  // The light that each wall sends out where wall i makes reflect(i, E) of the light E that it receives.
   template <class Light>
   static std::array<Light, kWalls> radiosity(const Light& ceiling, const Light& dark,
                                              const std::function<Light(std::size_t, const Light&)>& reflect,

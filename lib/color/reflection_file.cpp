@@ -85,16 +85,14 @@ Result<ReflectionOperator> on_working_space(const Table& table) {
 
 std::string operator_sentences() {
   return "fitted is a bilinear product that is fitted to published spectra and keeps red paint red in cyan light; it "
-         "errs less than plain on all kinds of spectra that were held out but one: goniochrome-theory(7), COLORED "
-         "LIGHT, has the table. plain "
-         "multiplies each channel by itself. iso is the published table for camera sensors, applied to Rec.2020 "
-         "values; it was the default before. iso709 is the same table in the primaries of Rec.709, for which it was "
-         "made. estimated comes from color-matching functions. none is another name for plain, and working and "
-         "rec2020 are other names for estimated. A JSON file holds a table, and may name the primaries that it is "
-         "for; goniochrome-paint(5) describes it. A number from 0 to 1 after a comma says how much each channel "
-         "takes from the others, and three numbers say it for red, green and blue, in the primaries of the table; "
-         "estimated has them in those of Rec.709. A channel that keeps all of itself, as each of plain, takes no such "
-         "number but 0.";
+         "errs less than plain on all kinds of spectra that were held out but one; see goniochrome-color(7), \"COLORED "
+         "LIGHT\". plain multiplies each channel by itself. iso is the published table for camera sensors, applied to "
+         "Rec.2020 values; it was the default before. iso709 is the same table in the primaries of Rec.709, for which "
+         "it was made. estimated comes from color-matching functions. none is another name for plain, and working and "
+         "rec2020 are other names for estimated. A JSON file holds a table, and may name the primaries that it is for; "
+         "goniochrome-paint(5) describes it. A number from 0 to 1 after a comma says how much each channel takes from "
+         "the others, and three numbers say it for red, green and blue, in the primaries of the table; estimated has "
+         "them in those of Rec.709. A channel that keeps all of itself, as each of plain, takes no such number but 0.";
 }
 
 Result<ReflectionOperator> chosen_operator(const std::string& text, const std::optional<Rgb>& shares) {

@@ -1,4 +1,5 @@
-// Reflection operators by name, as options of tools have them, and in JSON files. goniochrome-theory(7), COLORED LIGHT.
+// Reflection operators by name, as options of tools have them, and in JSON files.
+// goniochrome-color(7), "COLORED LIGHT".
 #pragma once
 
 #include <optional>
@@ -19,7 +20,7 @@ constexpr const char* kDefaultOperator = "fitted";
 // text may be; of input, a channel that takes nothing from the others or keeps more than 1; or of the file.
 Result<ReflectionOperator> chosen_operator(const std::string& text, const std::optional<Rgb>& shares = {});
 
-// What each of these is, in sentences for those who choose among them.
+// Sentences about each of these, for those who choose among them.
 std::string operator_sentences();
 
 // The operator as the text of a JSON file, {"k": [[[..3..],[..],[..]], [..], [..]]}, by output channel and then by both

@@ -174,7 +174,7 @@ TEST(Reflection, RelightingThereAndBack) {
   expect_near(product(back->matrix, product(there->matrix, color)), color, 1e-12);
   expect_near(product(there->matrix, reflected(op, blue_sky, color)), reflected(op, yellow, color), 1e-14);
   EXPECT_FALSE(relighting(op, {0, 0, 0}, yellow).ok());
-  // The same light changes nothing.
+  // Light that does not change leaves the color.
   expect_near(product(relighting(op, yellow, yellow)->matrix, color), color, 1e-13);
 }
 

@@ -1,5 +1,5 @@
-// Turns spectral reflectance into color by the CIE's tables of illuminants and observers. goniochrome-theory(7),
-// SPECTRA.
+// Turns spectral reflectance into color by the CIE's tables of illuminants and observers.
+// goniochrome-color(7), "SPECTRA".
 #pragma once
 
 #include <array>

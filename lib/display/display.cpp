@@ -191,7 +191,7 @@ Result<Display> Display::make(const std::string& view) {
 
 namespace {
 
-// What is in front of the backdrop, in the working space.
+// The color in front of the backdrop, in the working space.
 color::Rgb over_backdrop(const float* rgba, double gain) {
   return gain * color::Rgb{rgba[0], rgba[1], rgba[2]} + (1 - rgba[3]) * kBackdrop;
 }

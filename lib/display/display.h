@@ -1,6 +1,6 @@
 // Pictures of scene-linear light as a display shows them, by a view that has a name. Whoever uses it loads
-// OpenColorIO; paint_view.h has the arithmetic of the default view, which is shown without it. goniochrome-theory(7),
-// RENDERING.
+// OpenColorIO; paint_view.h has the arithmetic of the default view, which is shown without it.
+// goniochrome-rendering(7), "RENDERING".
 #pragma once
 
 #include <memory>
@@ -28,8 +28,8 @@ class Display {
   // signals in 0..1. Error: a pixel is not finite.
   Result<image::Image> image(const image::Image& picture, double stops) const;
 
-  // The same as 8 bits, rounded to the nearest, into `shown`, whose memory is used again. The view "Paint" is exact
-  // here and takes 10 ns a pixel. `shown.signal` is that of the display, or none where its name does not tell.
+  // Shows a picture as 8 bits, rounded to the nearest, into `shown`, whose memory is used again. The view "Paint" is
+  // exact here and takes 10 ns a pixel. `shown.signal` is that of the display, or none where its name does not tell.
   Result<void> show(const image::Image& picture, double stops, image::ByteImage& shown) const;
 
   // Brings the signals of the display, R G B in 0..1, back to light in the working space, exposed as it was shown, by

@@ -1,5 +1,5 @@
 // The arithmetic of the built-in view "Paint" and of an sRGB display: the way from light to a screen, and the way back
-// from a picture of a screen to light. Nothing here loads OpenColorIO. goniochrome-theory(7), RENDERING.
+// from a picture of a screen to light. Nothing here loads OpenColorIO. goniochrome-rendering(7), "RENDERING".
 //
 // Light is linear, and 1 is the white of the display.
 #pragma once
@@ -24,8 +24,8 @@ color::Rgb paint_view(const color::Rgb& rec709);
 // another.
 color::Rgb paint_view_undone(const color::Rgb& rec709);
 
-// What is left of a working-space color on an sRGB display: the color itself, or where a Rec.709 channel is negative,
-// its mixture with the gray of its luminance at which that channel is 0.
+// The rest of a working-space color on an sRGB display: the color itself, or where a Rec.709 channel is negative, its
+// mixture with the gray of its luminance at which that channel is 0.
 color::Rgb in_display_gamut(const color::Rgb& rgb);
 
 // The sRGB signal (IEC 61966-2-1), 0..1, of one channel or of a luminance; light below 0 counts as 0 and above 1 as 1.

@@ -1,6 +1,6 @@
 // This is an environment as a tree of blocks of texels. Each block holds the sums over its texels. A walk over the tree
 // starts at the largest blocks, and goes into a block only where the caller asks for its parts.
-// goniochrome-theory(7), PREFILTERING, Blocks.
+// goniochrome-prefiltering(7), "Blocks".
 #pragma once
 
 #include <algorithm>

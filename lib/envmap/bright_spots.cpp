@@ -13,7 +13,7 @@ namespace goniochrome::envmap {
 
 namespace {
 
-// Of the mean radiance: what is brighter by this is in a spot, and what is brighter by that can be a sun.
+// Factors of the mean radiance: above the first, light is in a spot; above the second, it can be a sun.
 constexpr double kBright = 3, kSunny = 30;
 // Spots go on being cut while the spread of one, by its share of the light, exceeds this.
 constexpr double kSpread = 1e-4;
@@ -32,7 +32,7 @@ color::Rgb texel(const Environment& environment, int column, int row) {
   return {rgb[0], rgb[1], rgb[2]};
 }
 
-// What a texel has beyond a level.
+// The light of a texel beyond a level.
 struct Excess {
   int column = 0, row = 0;
   color::Rgb radiance;

@@ -1,6 +1,6 @@
 // The bright part of an environment as a few discs, such as its sun, its windows and its lamps. What is bright and
-// small can then be cut by the horizon of each point, and asked for by single rays. goniochrome-theory(7),
-// ENVIRONMENTS.
+// small can then be cut by the horizon of each point, and asked for by single rays.
+// goniochrome-prefiltering(7), "ENVIRONMENTS".
 #pragma once
 
 #include <optional>
@@ -36,7 +36,7 @@ struct SunlitSky {
 // None where the environment has no such sun, or where it gives little of the light.
 std::optional<SunlitSky> sunlit_sky(const Environment& environment);
 
-// As files keep them: seven numbers to a spot. Error: what is wrong with the text, without its place.
+// Spots as files keep them: seven numbers to a spot. Error: what is wrong with the text, without its place.
 std::string text_of_spots(const std::vector<Spot>& spots);
 Result<std::vector<Spot>> spots_of_text(const std::string& text);
 

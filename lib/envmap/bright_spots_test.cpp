@@ -72,7 +72,7 @@ TEST(BrightSpots, AStripIsCutIntoCompactSpots) {
   }
   EXPECT_THAT(bright_spots(strip, 1), IsEmpty()) << "one is too wide to be a spot";
   EXPECT_THAT(bright_spots(strip, 0), IsEmpty());
-  // What it exceeds the threshold by is all but a few parts in a hundred.
+  // All but a few parts in a hundred of the excess is found.
   EXPECT_GT(light, 0.85 * irradiance(strip, {0, 0, 1}).x / kPi);
 }
 

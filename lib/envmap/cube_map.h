@@ -1,6 +1,6 @@
 // Cube maps tell which direction a texel has and which texel a direction meets, how large a texel is on the sphere, and
 // what lies between texels. The order of the faces (+X -X +Y -Y +Z -Z) and their orientation are OpenGL's; texel
-// centers are at (i+.5)/N. goniochrome-theory(7), PREFILTERING.
+// centers are at (i+.5)/N. goniochrome-prefiltering(7), "PREFILTERING".
 #pragma once
 
 #include <cstddef>

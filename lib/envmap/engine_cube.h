@@ -1,5 +1,5 @@
 // Mip-mapped cubes in the files that real-time engines load: KTX2, whose metadata tells the exponent of every level,
-// and DDS, which is older and holds no metadata. goniochrome-theory(7), PREFILTERING, Mip-mapped lobes.
+// and DDS, which is older and holds no metadata. goniochrome-prefiltering(7), "Mip-mapped lobes".
 #pragma once
 
 #include <cstddef>

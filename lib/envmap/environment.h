@@ -1,5 +1,5 @@
 // An environment is the radiance from every direction, kept as it came from its file, without resampling.
-// [McAllister2002] 6.1 for cubes; goniochrome-theory(7), ENVIRONMENTS.
+// [McAllister2002] 6.1 for cubes; goniochrome-prefiltering(7), "ENVIRONMENTS".
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@
 
 namespace goniochrome::envmap {
 
-// What is left of a texel when its excess is taken away: one above `most` in some channel is scaled so that its largest
-// channel is `to`.
+// A clip takes away the excess of a texel: one above `most` in some channel is scaled so that its largest channel is
+// `to`.
 struct Clip {
   float most = std::numeric_limits<float>::infinity(), to = 0;
 
@@ -58,7 +58,7 @@ class Environment {
   static Result<Environment> read_ball(const std::string& path, const std::optional<BallDisc>& outline,
                                        BadPixels bad_pixels);
 
-  // The same from six files, in the order +X -X +Y -Y +Z -Z, in OpenGL's orientation.
+  // Reads six files, in the order +X -X +Y -Y +Z -Z, in OpenGL's orientation.
   static Result<Environment> read_faces(const std::vector<std::string>& paths, BadPixels bad_pixels);
 
   // From pixels that are in the working space already.
@@ -67,7 +67,7 @@ class Environment {
   static Environment from_cube(const CubeMap& map, const std::string& name);
   static Result<Environment> from_cube_edges(image::Image strip, BadPixels bad_pixels, const std::string& name);
 
-  // The same radiance on finer texels, none wider or higher than `most_rad`: each texel is cut into equal parts, so
+  // Copies the radiance to finer texels, none wider or higher than `most_rad`: each texel is cut into equal parts, so
   // nothing changes on the sphere. What is that fine already comes back as it is.
   Environment cut_to(double most_rad) const;
   // With every value times `factor`. Error: the first texel whose value a float cannot hold.
@@ -83,7 +83,7 @@ class Environment {
   const std::string& source() const { return source_; }
   // The outline of the mirror ball that it was unrolled from, if it was.
   const std::optional<BallDisc>& ball() const { return ball_; }
-  // Whether it was read as an angular probe whose corners hold light, which suits the photograph of a ball better.
+  // True if it was read as an angular probe whose corners hold light, which suits the photograph of a ball better.
   bool lit_corners() const { return lit_corners_; }
   const std::vector<float>& values() const { return rgb_; }  // row by row, three to a texel
 

@@ -1,5 +1,5 @@
 // These files hold one mip-mapped cube with a lobe in every level. They serve paints whose exponent varies from point
-// to point. [McAllister2002] 6.2; goniochrome-theory(7), PREFILTERING, Mip-mapped lobes.
+// to point. [McAllister2002] 6.2; goniochrome-prefiltering(7), "Mip-mapped lobes".
 #pragma once
 
 #include <string>

@@ -13,7 +13,7 @@ namespace goniochrome::envmap {
 
 namespace {
 
-// What is darker than this part of the picture's mean counts as dark ground.
+// Pixels darker than this part of the picture's mean count as dark ground.
 constexpr double kDark = 1e-3;
 
 double brightness(const image::Image& rgb, int x, int y) {

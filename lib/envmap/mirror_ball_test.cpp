@@ -21,8 +21,8 @@ Vec3 scene(const Vec3& d) {
   return {2 + d.x + 0.3 * d.y * d.z, 1.5 + d.y - 0.4 * d.x, 3 + 0.8 * d.z + 0.5 * d.x * d.y};
 }
 
-// What a camera at +Z sees: rays that run along -Z meet a ball and leave by the law of reflection. Each texel is the
-// mean of 8 x 8 rays; those that miss the ball see `ground`.
+// The picture of a camera at +Z: rays that run along -Z meet a ball and leave by the law of reflection. Each texel is
+// the mean of 8 x 8 rays; those that miss the ball see `ground`.
 image::Image photograph(int width, int height, const BallDisc& disc,
                         const std::function<Vec3(double, double)>& ground) {
   constexpr int kRays = 8;

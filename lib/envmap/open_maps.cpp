@@ -37,7 +37,7 @@ void take_out(const std::vector<Spot>& spots, const OfSpot& of_spot, const std::
   });
 }
 
-// What spots give to the diffuse map and to that under a coat.
+// Light of the spots in the diffuse map and in that under a coat.
 class DiffuseOfSpots {
  public:
   explicit DiffuseOfSpots(const std::vector<Spot>& spots) : spots_(spots) {
@@ -57,7 +57,7 @@ class DiffuseOfSpots {
   }
 
  private:
-  // Whether all of the spot is above the horizon.
+  // True if all of the spot is above the horizon.
   bool is_whole(std::size_t k, double cosine) const { return cosine >= sines_[k]; }
   double irradiance(std::size_t k, double cosine) const {
     if (cosine <= -sines_[k]) return 0;

@@ -1,8 +1,8 @@
 // Maps that follow from those of a prefiltered environment: the diffuse map under a coat, and each map without the
 // bright spots. Bright spots are drawn as lamps, which each horizon cuts exactly. What maps have of them is taken out
 // of these, so that maps and lamps together have the light of the environment: in the shape that it really has, apart
-// from the horizon. To make these maps takes longer than to read them, so that files keep them. goniochrome-theory(7),
-// RENDERING, Bright spots and Coat in image light.
+// from the horizon. To make these maps takes longer than to read them, so that files keep them.
+// goniochrome-rendering(7), "Bright spots" and Coat in image light.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ namespace goniochrome::envmap {
 // The map of the lobe of this exponent less what the spots give to it. Texels may come out below 0.
 CubeMap without_spots(CubeMap map, double exponent, const std::vector<Spot>& spots);
 
-// The same of the diffuse map or, where `coated`, of coat_diffuse_map().
+// Variant for the diffuse map or, where `coated`, for coat_diffuse_map().
 CubeMap diffuse_without_spots(CubeMap map, bool coated, const std::vector<Spot>& spots);
 
 // Maps that the environment keeps or, where it does not, that are made now. They may share storage with the

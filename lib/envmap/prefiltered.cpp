@@ -28,7 +28,7 @@ constexpr const char* kTexels = "goniochrome:texels";
 constexpr const char* kColorSpace = "lin_rec2020_scene";
 constexpr const char* kExponent = "goniochrome:exponent";
 constexpr const char* kSpots = "goniochrome:brightSpots";
-// Of parts with maps that follow from others. A reader that knows another version makes them itself.
+// An attribute of parts with maps that follow from others. A reader that knows another version makes them itself.
 constexpr const char* kVersion = "goniochrome:version";
 constexpr int kKnownVersion = 1;
 constexpr const char* kOpen = "open-";  // before the name of the part that the spots are taken out of

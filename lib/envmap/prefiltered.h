@@ -1,5 +1,5 @@
 // A prefiltered environment (`*.env.exr`) has one map for each lobe, with the error that was measured.
-// goniochrome-theory(7), PREFILTERING; the file format is in goniochrome-paint(5).
+// goniochrome-prefiltering(7), "PREFILTERING"; the file format is in goniochrome-paint(5).
 #pragma once
 
 #include <functional>

@@ -166,7 +166,7 @@ TEST_F(EnvFile, MapsThatFollowFromOthersComeBackRoundedToTheHalvesOfTheFile) {
     EXPECT_LE(apart(*kept->lobes[i].open, *open_map(*plain, plain->lobes[i], all)), 0x1p-11);
   }
   EXPECT_GT(apart(*kept->lobes[0].open, plain->lobes[0].map), 0.01);
-  // Of fewer spots, and of none, maps are made anew.
+  // For fewer spots, and for none, maps are made anew.
   EXPECT_EQ(open_map(*kept, kept->lobes[1], 1)->texels, open_map(*plain, plain->lobes[1], 1)->texels);
   EXPECT_EQ(open_map(*kept, kept->lobes[1], 0).get(), &kept->lobes[1].map);
 }

@@ -1,5 +1,5 @@
 // A grid tells how the texels of an image lie on the sphere: their directions, their exact solid angles and which texel
-// a direction meets. goniochrome-theory(7), ENVIRONMENTS.
+// a direction meets. goniochrome-prefiltering(7), "ENVIRONMENTS".
 #pragma once
 
 #include <cstddef>
@@ -40,8 +40,9 @@ class SphereGrid {
   // d(solid angle)/d(column, row) at a point: what a quadrature over a part of a texel weighs it by.
   double solid_angle_density(double column, double row) const;
 
-  // Of a lat-long map: the polar angle of a row and the longitude of a column. A quadrature that has many points in a
-  // row or in a column finds their sines once, and then the direction and the density of solid angle from them.
+  // The turn of a lat-long map: the polar angle of a row and the longitude of a column. A quadrature that has many
+  // points in a row or in a column finds their sines once, and then the direction and the density of solid angle from
+  // them.
   struct Turn {
     double sine, cosine;
   };

@@ -22,7 +22,7 @@ CubeMap cube(int n, const Radiance& radiance) {
   return map;
 }
 
-// As the coat's: nothing from grazing directions.
+// The share falls as the coat's: nothing comes from grazing directions.
 double share(double c) {
   const double d = 1 - c;
   return 1 - d * d * d * d * d;

@@ -515,7 +515,7 @@ class Search {
                             .time_s = clock.elapsed_s()});
   }
 
-  // Of a search on some of the targets: the worst of the others join until none has a larger error than these, and the
+  // A search on some of the targets: the worst of the others join until none has a larger error than these, and the
   // search goes on from where it was.
   void meet_all(Best& best, BasisError& error, int& evaluations) {
     constexpr double kBeyond = 1e-3;

@@ -1,6 +1,6 @@
 // The basis that serves a whole database of paints best: the m exponents with which max + mean of the paints' errors is
-// least, each paint fitted to them with non-negative weights. [Shimizu2009] 2.3.4. goniochrome-theory(7), CHOOSING THE
-// BASIS.
+// least, each paint fitted to them with non-negative weights. [Shimizu2009] 2.3.4.
+// goniochrome-lobes(7), "CHOOSING THE BASIS".
 #pragma once
 
 #include <array>

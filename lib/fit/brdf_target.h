@@ -1,6 +1,6 @@
 // Measured BRDFs as fits see them: reflectance factors of the working space at thousands of pairs of directions, in the
-// plane of incidence and out of it; and how far a model of a BRDF is from what was measured. goniochrome-theory(7),
-// FITTING.
+// plane of incidence and out of it; and how far a model of a BRDF is from what was measured.
+// goniochrome-fitting(7), "FITTING".
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@
 
 namespace goniochrome::fit {
 
-// What was measured at one pair of directions. All file formats are isotropic, so three angles tell the pair.
+// A measurement at one pair of directions. All file formats are isotropic, so three angles tell the pair.
 struct BrdfSample {
   double aspecular_rad = 0;            // from specular
   double light_deg = 0, view_deg = 0;  // from the normal

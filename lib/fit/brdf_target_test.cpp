@@ -8,7 +8,7 @@
 namespace goniochrome::fit::brdf_target_test {
 namespace {
 
-// The same in all directions.
+// A BRDF that is equal in all directions.
 class Gray final : public brdf::MeasuredBrdf {
  public:
   explicit Gray(double reflectance) : brdf::MeasuredBrdf({.format = "test"}), f_(reflectance / kPi) {}

@@ -1,6 +1,6 @@
-// What is read of a paint stays the same when its coat is drawn: readings that lobes meet without the coat are met
-// under it, by weights for views where no weights for all views can. Without those the report names what is lost. All
-// paints of testdata/, and those of shared data where GONIOCHROME_DATA names it.
+// Readings of a paint stay when its coat is drawn: readings that lobes meet without the coat are met under it, by
+// weights for views where no weights for all views can. Without those the report names what is lost. All paints of
+// testdata/, and those of shared data where GONIOCHROME_DATA names it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -84,7 +84,7 @@ std::vector<color::Rgb> weights_for_all(const paint::LobeFit& fit) {
   return weights;
 }
 
-// The same fit by flake_fit() alone, which knows nothing of what is met without the coat.
+// The fit by flake_fit() alone, which does not hold the readings that are met without the coat.
 std::set<std::size_t> met_unheld(const paint::Paint& paint, double coat_index) {
   const color::Xyz white = *color::white_point(paint::condition_of(paint));
   const FitOptions options;

@@ -201,8 +201,8 @@ bool is_beyond_critical(const brdf::FlakeAngles& angles, double index) {
   return angles.flake_rad + angles.incidence_rad > std::asin(1 / index) + kRounding_rad;
 }
 
-// What is usable of the rows: those that the map goes through, and those that it can be compared with alone, because no
-// place of the map is theirs or because they are not to be part of it.
+// The usable rows: those that the map goes through, and those that it is only compared with, because they have no place
+// on the map or are not to be part of it.
 struct Usable {
   std::vector<Knot> knots;
   std::vector<ColorMapRow> others;

@@ -1,5 +1,5 @@
 // Color maps, which tell the color of a paint for every pair of directions, from readings at several angles of
-// incidence or from a measured BRDF. goniochrome-theory(7), ISOCHROMATIC LINES.
+// incidence or from a measured BRDF. goniochrome-interference(7), "ISOCHROMATIC LINES".
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@
 
 namespace goniochrome::fit {
 
-// What carries the readings to other directions: isolines, or the aspecular angle in air alone. Near-matt paints, whose
-// color hardly depends on the flakes' angle of incidence, are told better by the latter.
+// The model that carries readings to other directions: isolines, or the aspecular angle in air alone. Near-matt paints,
+// whose color hardly depends on the flakes' angle of incidence, are told better by the latter.
 enum class ColorMapModel { kBetter, kIsolines, kAspecular };
 
 struct ColorMapOptions {

@@ -255,7 +255,7 @@ TEST(ColorMapFit, AGrazingRingHasNoPartInTheMap) {
   EXPECT_GT((*brdf)->value(wi, wo).f[0], 0.3) << "the control: what the file gives between its rings";
 }
 
-// What was measured in plane, and what is to be predicted from it: aspecular > 12 deg, viewer < 70 deg.
+// Rows measured in plane, and rows to predict from them: aspecular > 12 deg, viewer < 70 deg.
 struct MeasuredRows {
   std::vector<ColorMapRow> in_plane, beside;
   color::Xyz white;
@@ -352,7 +352,7 @@ MeasuredRows sampled_rows(const brdf::MeasuredBrdf& brdf) {
 // Mean differences, printed as one line of the table.
 struct Comparison {
   double aspecular_only, clip, slide, slide_map, index;
-  // Of pairs that need no treatment: by isolines, by the aspecular angle alone, and how many there are.
+  // Errors of pairs that need no treatment: by isolines, by the aspecular angle alone, and their number.
   double inside, aspecular_inside;
   int inside_rows;
 };
@@ -402,8 +402,7 @@ TEST(ColorMapFit, CornellInPlaneRowsPredictAllOthersRealData) {
   }
 }
 
-// Of the two NVIDIA files, whose values are not reciprocal and partly negative, the isolines win one and lose the
-// other.
+// On the two NVIDIA files, whose values are not reciprocal and partly negative, the isolines win once and lose once.
 TEST(ColorMapFit, OtherMeasurementsAgreeRealData) {
   const char* data = std::getenv("GONIOCHROME_DATA");
   if (data == nullptr) GTEST_SKIP() << "GONIOCHROME_DATA is not set";

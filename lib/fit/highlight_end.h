@@ -1,5 +1,5 @@
-// How the color of flakes goes on from the reading that is nearest to specular toward specular. goniochrome-theory(7),
-// FITTING.
+// How the color of flakes goes on from the reading that is nearest to specular toward specular.
+// goniochrome-fitting(7), "FITTING".
 #pragma once
 
 #include <vector>

@@ -44,7 +44,7 @@ std::vector<double> chosen_exponents(const FitOptions& options, const FlakeTarge
   return chosen;
 }
 
-// What a fit for all views found.
+// The result of a fit for all views.
 struct FlakeStart {
   FlakeModel model;              // its lobes
   std::vector<FlakePoint> lost;  // where the rows stand that they meet without a coat and not under it

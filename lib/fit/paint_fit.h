@@ -1,5 +1,5 @@
 // Paints and measured BRDFs fitted to a basis of cosine lobes: the weights, how well they meet what was measured, and
-// the proof that no other weights do better. [ShimizuMeyer] 4, [Shimizu2009] 2.4, goniochrome-theory(7), FITTING.
+// the proof that no other weights do better. [ShimizuMeyer] 4, [Shimizu2009] 2.4, goniochrome-fitting(7), "FITTING".
 #pragma once
 
 #include <functional>
@@ -93,7 +93,7 @@ struct BrdfFigures {
   std::optional<double> albedo_error = {};                // see brdf_target.h; the caller may fill it in
 };
 
-// What weights for each view gain: the mean color difference at the readings, or over the fitted directions of a
+// The gain by weights for each view: the mean color difference at the readings, or over the fitted directions of a
 // measured BRDF, with these weights and with the weights for all views.
 struct ViewFigures {
   double de00_mean = 0, de00_mean_without = 0;
@@ -108,7 +108,7 @@ struct ViewFloor {
   std::vector<double> largest_de00;  // for each shared angle, at the worse of its readings
 };
 
-// What the readings at one angle of incidence and those at the others say of each other.
+// The agreement of the readings at one angle of incidence with those at the others.
 struct IncidenceFigures {
   double incidence_deg = 45;
   std::size_t readings = 0;
@@ -169,9 +169,9 @@ class PaintFitter {
   // the angle of a reading.
   Result<PaintFit> fit(const paint::Paint& paint) const;
 
-  // The same for a measured BRDF. The flake lobes are fitted to all directions beyond glare and not steeper than the
-  // options say; then the gloss of a clear coat and the sharp part of the flake to what is left near specular. The
-  // gloss holds at brdf::kGlossIncidence_deg. Error: no direction is left.
+  // Fits a measured BRDF. The flake lobes are fitted to all directions beyond glare and not steeper than the options
+  // say; then the gloss of a clear coat and the sharp part of the flake to what is left near specular. The gloss holds
+  // at brdf::kGlossIncidence_deg. Error: no direction is left.
   Result<PaintFit> fit(const BrdfTarget& brdf) const;
 
   const formats::Basis& basis() const { return basis_; }

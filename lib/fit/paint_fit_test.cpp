@@ -30,7 +30,7 @@ paint::Paint paint_with(const std::vector<std::pair<double, color::Lab>>& rows) 
   return paint;
 }
 
-// What an instrument would read off known lobes.
+// The readings of known lobes by an instrument.
 paint::Paint paint_from(const paint::LobeFit& lobes, const std::vector<double>& angles_deg) {
   const color::Xyz white = *color::white_point({});
   std::vector<std::pair<double, color::Lab>> rows;
@@ -133,8 +133,8 @@ TEST(PaintFit, OneReadingBlackAndNonMonotoneStayFinite) {
   }
 }
 
-// What is read of a paint does not change where a coat takes its part: the base is fitted to what it leaves. The
-// control is the base of a paint without a coat, seen through one.
+// Readings of a paint do not change where a coat takes its part: the base is fitted to the rest. The control is the
+// base of a paint without a coat, seen through one.
 TEST(PaintFit, ReadingsAreMetThroughACoat) {
   paint::Paint solid = paint_with({{15, {96, -1, 2}}, {45, {96, -1, 2}}, {110, {96, -1, 2}}});
   solid.gloss = {{60, 92}};

@@ -25,7 +25,7 @@ constexpr int kMostSteps = 40;
 constexpr double kGoodEnough = 0.01;  // an error that spares the second start
 constexpr double kLeastExponent = 0.02, kMostExponent = 1e6;
 
-// A pair of directions, what the target reflects there and the root of what an error there counts.
+// A pair of directions, the reflectance of the target there and the root of the weight of an error there.
 struct Sample {
   Vec3 to_light, to_viewer;
   color::Rgb target;
@@ -176,7 +176,7 @@ std::vector<Sample> samples_of(const LobeSurface& target) {
   return samples;
 }
 
-// What the target reflects: the mean of f.
+// The light that the target reflects: the mean of f.
 double whole_of(const std::vector<Sample>& samples) {
   double whole = 0;
   for (const Sample& sample : samples) {

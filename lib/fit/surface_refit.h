@@ -1,6 +1,5 @@
 // Fewer lobes that reflect as many do. A mixture of two surfaces is the sum of their lobes; where a texel has room for
-// fewer, new lobes are fitted to samples of the sum [McAllister2002, 7]. goniochrome-theory(7), SPATIALLY VARYING
-// SURFACES, Mixtures.
+// fewer, new lobes are fitted to samples of the sum [McAllister2002, 7]. goniochrome-surfaces(7), "Mixtures".
 #pragma once
 
 #include "brdf/lobe_surface.h"

@@ -367,7 +367,7 @@ class TiltSearch {
     }
     return best;
   }
-  // Whether another candidate serves better in the place of a chosen one, which it then takes.
+  // True if another candidate serves better in the place of a chosen one, which it then takes.
   bool improved(std::size_t place) {
     const double before = error();
     const std::size_t old = chosen_[place];

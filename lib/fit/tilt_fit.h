@@ -1,5 +1,5 @@
 // Tilted lobes fitted to a color map, so that pictures by prefiltered maps come close to the map's own integral in any
-// image light. goniochrome-theory(7), TILTED LOBES.
+// image light. goniochrome-interference(7), "TILTED LOBES".
 #pragma once
 
 #include <vector>

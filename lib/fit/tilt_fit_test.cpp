@@ -87,7 +87,7 @@ std::array<color::Rgb, 3> lit(const std::function<color::Rgb(const Vec3& light)>
   return sums;
 }
 
-// What a set is off by at a quarter of the way between the views of `at`, in the mean over lamps about the mirror
+// The error of a set at a quarter of the way between the views of `at`, in the mean over lamps about the mirror
 // direction.
 double error_between(const paint::TiltedLobes& set, const std::vector<paint::TiltedView>& at) {
   double error = 0;

@@ -20,7 +20,7 @@ class PaintBatches {
   // has names, paints of other names are passed over. Error: the first input that cannot be opened.
   static Result<PaintBatches> open(std::vector<std::string> paths, const std::vector<std::string>& only = {});
 
-  // What stood before the first paint of each input, in the order of the inputs.
+  // The steps before the first paint of each input, in the order of the inputs.
   std::vector<Processing> processing() const;
   std::vector<std::string> foreign() const;
 

@@ -15,7 +15,7 @@ std::string document(const std::string& paints) {
   return "<paints xmlns=\"urn:goniochrome:paint:1\" version=\"1\">" + paints + "</paints>";
 }
 
-// What comes of all batches.
+// The result of all batches.
 struct Outcome {
   std::vector<std::string> names;
   std::vector<std::size_t> sizes;

@@ -53,7 +53,7 @@ std::string unquoted(std::string_view text) {
   return std::string(trimmed(text));
 }
 
-// What follows `key` in `text`, up to white space.
+// The text after `key` in `text`, up to white space.
 std::string_view after(std::string_view text, std::string_view key) {
   const auto at = text.find(key);
   if (at == std::string_view::npos) return {};
@@ -401,7 +401,8 @@ class CgatsParser {
     return std::optional(std::move(spectrum));
   }
 
-  // What the row states, or else the header, or else the options, or else D50/2, which is the standard's condition.
+  // The condition that the row states, or else the header, or else the options, or else D50/2, which is the standard's
+  // condition.
   Result<color::ViewingCondition> condition_of_row() {
     color::ViewingCondition condition = stated_;
     if (!cell(columns_.observer).empty()) {

@@ -13,7 +13,7 @@
 
 namespace goniochrome::formats {
 
-// Whether a file that begins with `head` is CGATS text.
+// True if a file that begins with `head` is CGATS text.
 bool looks_cgats(std::string_view head);
 
 // Reads LAB_ or XYZ_ columns, and spectra (SPECTRAL_NM_400, nm400, SPEC_400), from which it integrates colors where

@@ -39,7 +39,7 @@ TEST_F(Cgats, WriterRefusesAPaintWithoutReadings) {
   EXPECT_THAT(writer->write(paint).error().message, HasSubstr("\"empty\" has no readings"));
 }
 
-// What a densitometer program wrote: tabs, bare spaces in names, a degree sign in Latin-1, doubled quotation marks,
+// A file of a densitometer program: tabs, bare spaces in names, a degree sign in Latin-1, doubled quotation marks,
 // CRLF, a comment, a wrong count.
 TEST_F(Cgats, ReadsTheTableOfAnotherProgram) {
   const auto paints = good(

@@ -33,9 +33,9 @@ class CsvPaintReader {
 
   // The line (from 1) of the first row of the paint last returned.
   int line() const;
-  // Whether the table is a wide one.
+  // True if the table is a wide one.
   bool is_wide() const;
-  // What the header leaves open: columns that are not read, and a viewing condition that is assumed.
+  // Warnings about the header: columns that are not read, and a viewing condition that is assumed.
   const std::vector<std::string>& warnings() const;
   // Assumptions about the rows so far.
   std::vector<std::string> closing_warnings() const;

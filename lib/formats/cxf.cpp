@@ -181,7 +181,7 @@ class CxfHandler final : public XmlHandler {
 
   bool has_spectra() const { return !spectra_.empty(); }
 
-  // What was read since this was last called.
+  // Takes the objects that were read since the last call.
   std::vector<CxfObject> take_objects() { return std::exchange(objects_, {}); }
   std::vector<std::string> take_skipped() { return std::exchange(skipped_, {}); }
   std::size_t objects_seen() const { return objects_seen_; }

@@ -17,7 +17,7 @@
 
 namespace goniochrome::formats {
 
-// Whether a file that begins with `head` is CxF.
+// True if a file that begins with `head` is CxF.
 bool looks_cxf(std::string_view head);
 
 // Reads objects with CIELAB, CIELCh or reflectance spectra at angles, paint by paint. Spectra are integrated under the
@@ -38,7 +38,7 @@ class CxfReader {
   // and next() goes on behind it; otherwise it is final.
   Result<std::optional<paint::Paint>> next();
 
-  // What was left out or assumed so far.
+  // Warnings about parts that were left out or assumed so far.
   std::vector<std::string> warnings() const;
 
  private:

@@ -20,7 +20,7 @@ bool has_word(const std::string& illuminant) {
   return std::ranges::find(kWords, illuminant) != kWords.end();
 }
 
-// Whether the schema of CxF3 allows the spectrum.
+// True if the schema of CxF3 allows the spectrum.
 bool allowed(const paint::SpectrumReading& spectrum) {
   constexpr std::array kSteps_nm = {1.0, 2.0, 5.0, 10.0, 20.0};
   return spectrum.from_nm >= 360 && spectrum.from_nm <= 400 && spectrum.from_nm == std::floor(spectrum.from_nm) &&

@@ -44,7 +44,7 @@ Result<void> check_lab(const color::Lab& lab) {
 
 namespace {
 
-// Whether every number that it was given is finite.
+// True if every number that it was given is finite.
 class Finite {
  public:
   Finite& numbers(std::initializer_list<double> numbers) {

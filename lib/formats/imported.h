@@ -1,4 +1,4 @@
-// What all readers of paints share: numbers and words as files spell them, remarks about what was read, names that are
+// Parts that all readers of paints share: numbers and words as files spell them, remarks about the file, names that are
 // given only once, and the rule that a paint has one viewing condition and one reading at each geometry.
 #pragma once
 
@@ -29,10 +29,10 @@ Result<double> number_in(std::string_view text, Domain domain = Domain::kAny);
 Result<paint::PaintClass> class_in(std::string_view text);
 Result<int> observer_in(std::string_view text);
 
-// Whether L*, a* and b* are numbers of a color. The error lacks the place: `L* is 1e+50: ...`.
+// Checks that L*, a* and b* are numbers of a color. The error lacks the place: `L* is 1e+50: ...`.
 Result<void> check_lab(const color::Lab& lab);
 
-// Whether every reading and number of the paint can be written: it is finite, and a CIELAB coordinate is within its
+// Checks that every reading and number of the paint can be written: it is finite, and a CIELAB coordinate is within its
 // domain. The error names the paint. An exponent may be infinite, which is a mirror.
 Result<void> check_writable(const paint::Paint& paint);
 

@@ -11,8 +11,8 @@ namespace goniochrome::formats {
 
 namespace {
 
-// Whether the whole of `text` is what `pattern` says. The last * is the only one that is ever tried again, so that the
-// time is at most the product of the lengths.
+// True if the whole of `text` fits `pattern`. The last * is the only one that is ever tried again, so that the time is
+// at most the product of the lengths.
 bool matches(std::string_view pattern, std::string_view text) {
   constexpr std::size_t kNone = std::string_view::npos;
   std::size_t p = 0, t = 0, star = kNone, resumed = 0;

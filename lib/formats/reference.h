@@ -27,7 +27,7 @@ class WantedName {
   const std::string& name() const { return name_; }
   void see(std::string_view other);
 
-  // That no paint has the name, and which name may have been meant.
+  // The message that no paint has the name, and which name may have been meant.
   std::string not_found() const;
 
  private:
@@ -41,10 +41,10 @@ class NameChoice {
  public:
   explicit NameChoice(std::string names);
 
-  // Whether the paint of this name is meant. Names are taken letter by letter.
+  // True if the paint of this name is meant. Names are taken letter by letter.
   bool takes(const std::string& name);
 
-  // What is to be told at the end of a file: the first of the names that no paint had. Error: names it.
+  // Checks, at the end of a file, that some paint had each of the names. Error: names it.
   Result<void> check_all_met(const std::string& file) const;
 
  private:

@@ -32,7 +32,7 @@ struct TextureColumn {
   int at = 0;
 };
 
-// What the columns below a row of headings mean.
+// The meaning of the columns below a row of headings.
 struct Table {
   int name = kNoColumn, code = kNoColumn, date = kNoColumn, serial = kNoColumn, geometry = kNoColumn,
       illuminant = kNoColumn, observer = kNoColumn;
@@ -146,7 +146,7 @@ std::string_view without_percent(std::string_view text) {
   return text.ends_with('%') ? trimmed(text.substr(0, text.size() - 1)) : text;
 }
 
-// Whether the row is a title such as `Reflectance [%]`.
+// True if the row is a title such as `Reflectance [%]`.
 bool states_reflectance(const SheetRow& row) {
   const std::string text = row.cells.empty() ? "" : lower(row.cells[0].text);
   return (text.find("reflect") != std::string::npos || text.find("remission") != std::string::npos) &&
@@ -348,7 +348,7 @@ Result<void> WorkbookReader::read_textures(const Sheet& sheet, const SheetRow& r
   return {};
 }
 
-// Whether the row says in which unit the spectra below are.
+// True if the row says in which unit the spectra below are.
 bool WorkbookReader::is_row_of_units(const SheetRow& row, const Table& table) {
   if (table.wavelengths.size() < kFewestWavelengths) return false;
   const std::string_view cell = row.at(table.wavelengths.front().at);
@@ -420,7 +420,7 @@ Result<void> WorkbookReader::read(const Sheet& sheet) {
   return {};
 }
 
-// What makes factors of the reflectances of all sheets. Error: their scale cannot be known.
+// The unit that makes factors of the reflectances of all sheets. Error: their scale cannot be known.
 Result<double> WorkbookReader::unit_of_all() {
   ScaleJudge judge;
   for (const Gathered& paint : paints_)

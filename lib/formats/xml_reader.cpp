@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kRoot = "<paints xmlns=\"urn:goniochrome:paint:1\" version=\"1\">";
 
-// What the stream has found: a paint or what is wrong with it.
+// Results of the stream: a paint or its error.
 struct Found {
   Result<paint::Paint> paint;
   int line;

@@ -33,7 +33,7 @@ std::string measured(const std::string& name, const std::string& lab) {
          "</measurement>\n</paint>\n";
 }
 
-// What a document gives, paint by paint.
+// The paints of a document, one by one.
 struct Reading {
   std::vector<paint::Paint> paints;
   std::vector<std::string> errors;

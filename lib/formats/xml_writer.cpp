@@ -16,7 +16,7 @@ std::string attribute(std::string_view name, std::string_view text) {
 std::string attribute(std::string_view name, double value) {
   return fmt::format(" {}=\"{}\"", name, shortest(value));
 }
-// The same, or nothing if the text is empty.
+// The attribute, or nothing if the text is empty.
 std::string optional_attribute(std::string_view name, std::string_view text) {
   return text.empty() ? "" : attribute(name, text);
 }

@@ -109,7 +109,7 @@ Result<int> AovFile::part(const std::string& name) const {
 
 namespace {
 
-// What the plan in a header says of the effects.
+// Reads the effects from the plan in a header.
 void take_plan(const std::string& plan, AovFile& file) {
   const Json effects = Json::parse(plan.empty() ? "[]" : plan, nullptr, false);
   for (const Json& effect : effects) {

@@ -1,5 +1,5 @@
 // The pictures that render-osmesa writes with --aov, read back: the picture itself, the buffers beside it (normals,
-// angles, parts), and what the header tells of camera, lights and effects. goniochrome-theory(7), SKETCH FITTING.
+// angles, parts), and what the header tells of camera, lights and effects. goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
 #include <optional>
@@ -28,7 +28,7 @@ struct AovFile {
   Image image;  // R G B A and the buffers
   // From the file's header; where it does not tell them, the exposure is 0 and the white is 1.
   double exposure_stops = 0, white_luminance = 1;
-  // What brings the light of the buffers to the exposure of a PNG that is exposed automatically.
+  // Stops that bring the light of the buffers to the exposure of a PNG that is exposed automatically.
   double automatic_stops = 0;
   int samples = 1;               // in every pixel of the picture; the buffers have one, in the center of the pixel
   Vec3 light{0, 1, 0};           // the light that the buffers aspecular and lambert are relative to

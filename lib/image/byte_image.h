@@ -30,7 +30,7 @@ struct ByteImage {
 // Values 0..1 as whole numbers 0..255, rounded to the nearest; others are clamped and a NaN is 0. One channel is gray;
 // channels after the third are left out.
 ByteImage byte_image(const Image& image);
-// The same into `bytes`, whose memory is used again.
+// Converts into `bytes`, whose memory is used again.
 void put_bytes(const Image& image, ByteImage& bytes);
 
 // The bytes of a PNG that says which light its signals stand for, with text entries for provenance. Its rows are

@@ -85,7 +85,7 @@ TEST(Png, ReadsBackTheLightOfItsSignals) {
   EXPECT_NEAR(red_in(png_content(red))->data[0], .7538, 1e-3);
   red.signal = SignalCode{9, 16};
   EXPECT_THAT(red_in(png_content(red)).error().message, HasSubstr("its color space is \"cICP 9 16 0 1\""));
-  // The same primaries in units of 1e-5, white first.
+  // The primaries in units of 1e-5, white first.
   red.signal.reset();
   std::string file = png_content(red), chunk = "cHRM";
   for (const std::uint32_t number : {31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000})

@@ -13,7 +13,7 @@ namespace goniochrome::image {
 // Bradford's method. Error: a color space that is not known, and the remedy.
 Result<Image> working_space_rgb(ImagePart part, const std::string& name);
 
-// What a user should know of an image that was read with Inks::kAsRgb: that it was CMYK and how to mend it, or "".
+// The problem of an image that was read with Inks::kAsRgb: it was CMYK, and how to mend it; or "".
 std::string inks_problem(const ImagePart& part, const std::string& name);
 
 }  // namespace goniochrome::image

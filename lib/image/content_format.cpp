@@ -37,7 +37,7 @@ constexpr std::array kWanted = {
     Signature{0, "BM"sv, "bmp"},
 };
 
-// What people also have, in order to call it by its name.
+// Kinds of files that people also have, to name them in errors.
 constexpr std::array kUnwanted = {
     Signature{0, "FOR4"sv, "an IFF picture"},
     Signature{0, "FORM"sv, "an IFF picture"},
@@ -109,7 +109,7 @@ class TiffNumbers {
   bool little_;
 };
 
-// Whether the first picture of a TIFF file is a thumbnail, as in the raw files of most cameras: NewSubfileType (254)
+// True if the first picture of a TIFF file is a thumbnail, as in the raw files of most cameras: NewSubfileType (254)
 // says "reduced", there is a DNGVersion (50706), or Canon's mark stands behind the header. A BigTIFF has none of these.
 bool is_camera_raw(std::string_view content) {
   if (shows(content, {8, "CR"sv, ""})) return true;

@@ -142,7 +142,7 @@ ExrWindow window_of(const Imath::Box2i& box) {
   return {box.min.x, box.min.y, box.max.x - box.min.x + 1, box.max.y - box.min.y + 1};
 }
 
-// Whether a part is shown as it is stored. All parts share one display window, so that parts of sizes of their own, as
+// True if a part is shown as it is stored. All parts share one display window, so that parts of sizes of their own, as
 // those of an environment, begin at its corner; in the pictures of other programs these are crops.
 bool fills_its_window(const Imf::MultiPartInputFile& file, int index, const Attributes& attributes, bool as_picture) {
   const Imath::Box2i &data = file.header(index).dataWindow(), &display = file.header(index).displayWindow();
@@ -344,7 +344,7 @@ Result<PixelType> storage_type(const ImagePart& part) {
   return most > kMostHalf ? PixelType::kFloat : part.type;
 }
 
-// Whether compression is worth its time. Deflate finds next to nothing in floats of high precision: of maps that were
+// True if compression is worth its time. Deflate finds next to nothing in floats of high precision: of maps that were
 // rounded to 19 bits it left 90 %, for ten times the time of writing them as they are. Where the lowest byte of a tenth
 // of the values is 0, as in empty areas and in values that were halves, it does find something.
 bool is_compressible(const ImagePart& part, PixelType type) {

@@ -9,9 +9,9 @@
 
 namespace goniochrome::image {
 
-// What is decoded of an EXR file, which takes most of the time of reading one.
+// The parts of an EXR file to decode; decoding takes most of the time of reading one.
 struct ExrWanted {
-  // Whether the pixels of a part are wanted, by its name and attributes; without the function those of all parts are.
+  // Selects the parts whose pixels are wanted, by name and attributes; without the function all parts are.
   std::function<bool(const std::string& name, const Attributes& attributes)> part = {};
   // The channels of one part, the first, that are wanted, in their order in a pixel, as far as it has them; empty: all.
   std::vector<std::string> channels = {};

@@ -31,7 +31,7 @@ std::string channel(const std::string& name) {
   return name + '\0' + std::string(16, '\1');
 }
 
-// What is enough for attributes that end within the file: sizes are added, and types are not looked at.
+// A check that is enough for attributes that end within the file: sizes are added, and types are not looked at.
 bool ends_within_by_stated_sizes(const std::string& content) {
   std::size_t at = 8;
   while (content[at] != '\0') {

@@ -73,7 +73,7 @@ TEST_F(ExrRows, AreWhatTheLibraryReads) {
       }
     }
   }
-  // Of the subnormal numbers and of what is not finite there were some.
+  // Some of the numbers were subnormal or not finite.
   EXPECT_EQ(std::bit_cast<float>(library[2]), 0x1p-24F);
   EXPECT_EQ(library[2 * 0x7c00], 0x7f800000U);
 }

@@ -11,7 +11,7 @@ namespace goniochrome::image {
 // second. kPpm: PPM pictures of RGB (P6), one behind the other.
 enum class FrameFormat { kY4m, kPpm };
 
-// What comes before the first picture; "" for kPpm.
+// The bytes before the first picture; "" for kPpm.
 std::string frames_head(FrameFormat format, int width, int height);
 
 // One picture.

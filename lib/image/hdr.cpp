@@ -191,7 +191,7 @@ class Rows {
     rgb[2] = scale * static_cast<float>(b);
   }
 
-  // Whether a pixel repeats the one before it. No other pixel has mantissas that are all below 128.
+  // True if a pixel repeats the one before it. No other pixel has mantissas that are all below 128.
   bool repeats(std::size_t at) const { return bytes_[at] == 1 && bytes_[at + 1] == 1 && bytes_[at + 2] == 1; }
 
   std::optional<std::size_t> pixels_end(std::size_t at) const {

@@ -38,7 +38,7 @@ struct DeleteTransform {
 using Profile = std::unique_ptr<void, CloseProfile>;
 using Transform = std::unique_ptr<void, DeleteTransform>;
 
-// Whether each signal passes a curve and a matrix follows. Tables come first where a profile has both.
+// True if each signal passes a curve and a matrix follows. Tables come first where a profile has both.
 bool is_additive(const Profile& profile) {
   if (cmsGetColorSpace(profile.get()) == cmsSigCmykData) return false;
   constexpr cmsTagSignature kTables[] = {cmsSigAToB0Tag, cmsSigAToB1Tag, cmsSigAToB2Tag, cmsSigDToB0Tag,
@@ -75,7 +75,7 @@ class SignalsToLight {
   std::array<color::Rgb, 3> columns_;  // of the matrix from XYZ relative to D50 to the working space
 };
 
-// What a channel of an additive profile adds to the light of black: a curve, tabulated at evenly spaced signals, times
+// A channel of an additive profile adds this to the light of black: a curve, tabulated at evenly spaced signals, times
 // a color.
 struct ProfileChannel {
   std::vector<float> curve;
@@ -88,8 +88,8 @@ struct ProfileChannel {
   }
 };
 
-// Of light at evenly spaced signals, three numbers each: the number that changes most tells the curve, and the place
-// where it changes most tells the color.
+// Takes light at evenly spaced signals, three numbers each: the number that changes most gives the curve, and the place
+// where it changes most gives the color.
 ProfileChannel channel_of(const std::vector<float>& light) {
   const auto change = [&](std::size_t i) { return light[i] - light[i % 3]; };
   std::size_t most = 0;

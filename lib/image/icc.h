@@ -1,4 +1,4 @@
-// Pictures with an embedded ICC profile, brought to light. goniochrome-theory(7), SKETCH FITTING.
+// Pictures with an embedded ICC profile, brought to light. goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
 #include <string>

@@ -71,8 +71,8 @@ enum class ExrStorage { kZip, kPlain };
 Result<std::string> exr_content(const std::string& name, const std::vector<ImagePart>& parts,
                                 ExrStorage storage = ExrStorage::kZip);
 
-// What a CMYK JPEG or TIFF becomes: RGB without regard to its profile, or four channels C, M, Y and K, where 1 is full
-// ink.
+// The result for a CMYK JPEG or TIFF: RGB without regard to its profile, or four channels C, M, Y and K, where 1 is
+// full ink.
 enum class Inks { kAsRgb, kKept };
 
 // The picture in a file, upright, with channels R G B, R G B A, Y or Y A where it is an EXR. Its content tells the

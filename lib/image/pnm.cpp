@@ -91,7 +91,7 @@ std::optional<Header> header_of(char kind, Words& words) {
   return header;
 }
 
-// Whether all numbers were there, each within 0 and the one that stands for 1.
+// True if all numbers were there, each within 0 and the one that stands for 1.
 bool read_text(const Header& header, Words words, std::vector<float>& to) {
   for (float& value : to) {
     const auto number = parse_integer(header.is_bitmap() ? words.next_digit() : words.next());

@@ -100,7 +100,7 @@ std::vector<std::string> turns_of(int lobes) {
   return names;
 }
 
-// What a fitted texture tells of its texels besides their surface.
+// Channels of a fitted texture besides the surface of its texels.
 constexpr std::array<std::string_view, 3> kBeside = {"alpha", "certainty", "error"};
 
 bool may_be_negative(const std::string& name) {
@@ -211,8 +211,8 @@ Result<void> check_axes(const brdf::SbrdfTexture& texture, const std::string& pa
   return {};
 }
 
-// Whether half floats keep every exponent, for which maps were filtered, and |p|^n of every lobe within 1/256: their
-// steps at 1 are 2^-10, of which half is rounded away.
+// The part of a value that half floats lose: they keep every exponent, for which maps were filtered, and |p|^n of every
+// lobe within 1/256, since their steps at 1 are 2^-10, of which half is rounded away.
 float lost_in_half(float value) {
   return std::remainder(value, std::ldexp(1.0F, std::ilogb(value) - 10));
 }

@@ -62,7 +62,7 @@ const std::vector<std::string> kChannels = {"diffuse.R", "diffuse.G", "diffuse.B
 
 class SbrdfFile : public testing::Test {
  protected:
-  // What reading says of a 1x1 texture with these channels.
+  // Reads a 1x1 texture with these channels.
   Result<brdf::SbrdfTexture> read(const std::vector<std::string>& channels, const std::vector<float>& values) {
     const Image image{1, 1, static_cast<int>(channels.size()), values, channels};
     EXPECT_TRUE(write_exr(path_, {{"", image, {}, PixelType::kFloat}}).ok());

@@ -59,7 +59,7 @@ std::span<const paint::MetricColumn> columns() {
   return paint::metric_columns_without_fit();
 }
 
-// What tells one state of a library file from another.
+// The guard distinguishes states of a library file.
 struct Guard {
   std::uint64_t bytes = 0;
   std::int64_t modified_ns = 0;
@@ -298,7 +298,7 @@ class Unpacker {
  public:
   explicit Unpacker(std::string_view bytes) : bytes_(bytes) {}
 
-  // Throws what the JSON library throws, or std::out_of_range, where the file is not what it seems.
+  // Throws as the JSON library does, or std::out_of_range, where the file is damaged.
   template <class T>
   const T* array(const Json& at, std::size_t count) const {
     const auto offset = at.get<std::uint64_t>();

@@ -1,6 +1,6 @@
 // A paint library made ready for searching: its colors in trees by geometry, its names and its metrics. The index is
 // kept in a file beside the library, which later runs map into memory instead of reading the library again.
-// goniochrome-theory(7), NEAREST PAINT.
+// goniochrome-search(7), "NEAREST PAINT".
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // The nearest paints of a library under several illuminants at once: those whose largest distance in any of the lights
-// is least. goniochrome-theory(7), NEAREST PAINT.
+// is least. goniochrome-search(7), "NEAREST PAINT".
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
-// Finds the paints of a library that look most like a given paint. [Shimizu2009] 5.3.5; goniochrome-theory(7), NEAREST
-// PAINT.
+// Finds the paints of a library that look most like a given paint. [Shimizu2009] 5.3.5;
+// goniochrome-search(7), "NEAREST PAINT".
 #pragma once
 
 #include <optional>

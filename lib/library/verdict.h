@@ -1,5 +1,5 @@
-// What a search says of a design: whether paints like it exist, and whether its hue turns like theirs. [Shimizu2009]
-// 5.3.5; goniochrome-theory(7), NEAREST PAINT.
+// The verdict of a search on a design: whether paints like it exist, and whether its hue turns like theirs.
+// [Shimizu2009] 5.3.5; goniochrome-search(7), "NEAREST PAINT".
 #pragma once
 
 #include "library/index.h"

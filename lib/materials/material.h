@@ -1,5 +1,5 @@
 // Paints as the materials of other renderers. A target writes the lobes of a paint in the terms of another program, and
-// tells what that program will show of it, by the program's own model. goniochrome-theory(7), EXPORT.
+// tells what that program will show of it, by the program's own model. goniochrome-export(7), "EXPORT".
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ struct DifferenceAt {
   double de00 = 0;
 };
 
-// What the target will show, in CIEDE2000 under the condition of the paint. The mirror direction is not among the
+// Errors of the target, in CIEDE2000 under the condition of the paint. The mirror direction is not among the
 // geometries, since no instrument reads there.
 struct Shown {
   double de00_mean = 0, de00_max = 0;  // over compared_geometries(), from the lobes of the paint
@@ -32,7 +32,7 @@ struct Shown {
 // 15 to 110 deg off the mirror direction, and one out of it.
 const std::vector<paint::Geometry>& compared_geometries();
 
-// What the paint is called in a file.
+// Names of the paint in a file.
 struct Naming {
   std::string identifier;  // letters, digits and underscores: a name in every format
   std::string display;     // the paint's own name
@@ -62,7 +62,7 @@ extern const Target kRgl, kRglSpectral, kMaterialX, kGltf, kUsd, kStandardSurfac
 // All targets, in the order in which help names them.
 std::span<const Target* const> targets();
 
-// What of a paint no target can take along, as parts of a sentence: "its color map". Empty for most paints.
+// Parts of a paint that no target can take along, as parts of a sentence: "its color map". Empty for most paints.
 std::vector<std::string> left_out(const paint::Paint& paint);
 
 // Makes identifiers out of names, each only once in its life and unlike all others also where a file system does not

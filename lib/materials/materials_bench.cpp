@@ -1,4 +1,4 @@
-// What a file for each target takes, with the error that it has.
+// Times of a file for each target, with its error.
 #include <benchmark/benchmark.h>
 
 #include "materials/internal/paints_for_test.h"

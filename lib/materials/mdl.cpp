@@ -58,7 +58,7 @@ std::vector<paint::Lobe> at_any_view(const paint::LobeFit& lobes) {
   return all;
 }
 
-// What the layer leaves to the base.
+// The light that the layer leaves to the base.
 double left_by_layer(double weight, double index, double cos_i, double cos_o) {
   return 1 - weight * std::max(brdf::fresnel_dielectric(std::min(cos_i, 1.0), index),
                                brdf::fresnel_dielectric(std::min(cos_o, 1.0), index));
@@ -88,7 +88,7 @@ class EvenSteps {
   std::vector<Value> values_;
 };
 
-// What lobes show at one angle of the viewer, in the space of the file, over the sine of half of the aspecular angle
+// The color of lobes at one angle of the viewer, in the space of the file, over the sine of half of the aspecular angle
 // relative to that of 45 deg; beyond there all lobes are 0. Steps are finest where lobes are.
 struct SeenLobes {
   EvenSteps<color::Rgb> base, gloss;

@@ -53,7 +53,7 @@ double luminance(const color::Rgb& rgb) {
   return color::xyz_d65_from_rgb(rgb).Y;
 }
 
-// What the tables are shaped by: a paint as a diffuse ground and lobes, in luminance.
+// Shapes of the tables: a paint as a diffuse ground and lobes, in luminance.
 struct Shapes {
   struct Lobe {
     double weight, exponent;  // of the luminance along the mirror direction, 1/sr; mirror: of the light
@@ -373,7 +373,7 @@ std::string file_of(const Shapes& shapes, const Tables& tables, const std::vecto
   return file.bytes();
 }
 
-// What the file shows, by our own reader of measured BRDFs. `color_of` makes a color of the values at a direction.
+// The contents of the file, by our own reader of measured BRDFs. `color_of` makes a color of the values at a direction.
 template <class ColorOf>
 Result<Material> with_shown(std::string bytes, const paint::Paint& paint, const std::string& name,
                             const ColorOf& color_of) {

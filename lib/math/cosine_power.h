@@ -1,5 +1,5 @@
 // Every lobe is a power of a cosine. These powers are exact for exponents up to 1e6 and for angles down to 1e-8 rad,
-// and 0 from 90 degrees on. goniochrome-theory(7), LOBE MODEL.
+// and 0 from 90 degrees on. goniochrome-lobes(7), "LOBE MODEL".
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ inline double power_of_cosine(double log_cosine, double exponent) {
 // cos(angle)^exponent for 0 <= angle_rad <= pi/2 (0 beyond), exponent 0..1e6, relative error <= 1e-12.
 double cos_power(double angle_rad, double exponent);
 
-// The same from the versine |r - d|^2 / 2 = 1 - cos, which two nearly parallel unit vectors give without cancellation.
+// The power from the versine |r - d|^2 / 2 = 1 - cos, which two nearly parallel unit vectors give without cancellation.
 double cos_power_from_versine(double versine, double exponent);
 
 // max(0, t)^E for t = cos(angle) in [-1,1]; E = 0 is 1 above the horizon and 0 below. Its relative error is E times

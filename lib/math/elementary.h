@@ -18,7 +18,7 @@ double log(double x);
 double log1p(double x);  // log(1 + x)
 double pow(double x, double y);
 
-// Of an angle in radians. Beyond 1e7 in size, which no angle here reaches, they are those of the C library.
+// The sine of an angle in radians. Beyond 1e7 in size, which no angle here reaches, they are those of the C library.
 double sin(double x);
 double cos(double x);
 double tan(double x);

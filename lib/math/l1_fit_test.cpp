@@ -32,7 +32,7 @@ double objective_of(const Problem& p, const double* x) {
   return sum;
 }
 
-// The same program by an independent solver: minimize sum(u+v), Mx + u - v = b. `scaling` 0 is off, 3 its default. Its
+// The program by an independent solver: minimize sum(u+v), Mx + u - v = b. `scaling` 0 is off, 3 its default. Its
 // tolerances are absolute, so columns and target are given with largest entry 1 where `unit`.
 double clp_objective(Problem p, int scaling, bool unit, int* status) {
   const int m = p.m.rows, n = p.m.columns;

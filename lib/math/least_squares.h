@@ -1,5 +1,5 @@
 // Fits with non-negative weights: they minimize |Mx - b| over x >= 0 in the 2-norm (NNLS) or in the 1-norm (a linear
-// program). goniochrome-theory(7), FITTING.
+// program). goniochrome-fitting(7), "FITTING".
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // These sums and values of associated Legendre functions run over many polar angles at once. The functions are
-// normalized so that the integral of |P_lm(cos t) exp(i m p)|^2 over the sphere is 1. goniochrome-theory(7),
-// PREFILTERING, Zonal harmonics.
+// normalized so that the integral of |P_lm(cos t) exp(i m p)|^2 over the sphere is 1.
+// goniochrome-prefiltering(7), "Zonal harmonics".
 #pragma once
 
 #include <cstddef>

@@ -108,8 +108,8 @@ int ActiveSet::best_waiting() const {
   return best >= 0 ? best : best_nearly_dependent();
 }
 
-// What is left of a column that nearly depends on the passive ones is short, and so is its gradient, which is exact to
-// a rounding of either length below the triangle: one beyond that counts by its gain, gradient over length.
+// The independent part of a column that nearly depends on the passive ones is short, and so is its gradient, which is
+// exact to a rounding of either length below the triangle: one beyond that counts by its gain, gradient over length.
 int ActiveSet::best_nearly_dependent() const {
   const double residual = safe_norm(b_.data() + passive_, rows_ - passive_);
   int best = -1;

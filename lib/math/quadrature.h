@@ -1,5 +1,5 @@
-// Gauss quadrature: the points and weights at which sums stand for integrals. goniochrome-theory(7), GLOSS and
-// PREFILTERING.
+// Gauss quadrature: the points and weights at which sums stand for integrals.
+// goniochrome-coats(7), "GLOSS" and goniochrome-prefiltering(7), "PREFILTERING".
 #pragma once
 
 #include <array>

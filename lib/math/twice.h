@@ -17,7 +17,7 @@ constexpr Twice sum_of(double a, double b) {
   return {s, (a - (s - bb)) + (b - bb)};
 }
 
-// The same where |a| >= |b| or a = 0, in half of the operations.
+// Variant for |a| >= |b| or a = 0, in half of the operations.
 constexpr Twice ordered_sum_of(double a, double b) {
   const double s = a + b;
   return {s, b - (s - a)};

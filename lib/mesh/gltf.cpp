@@ -332,7 +332,7 @@ class Reader {
         return refused(where, fmt::format("index {} is beyond its {} vertices", index, count));
     const auto first = static_cast<std::uint32_t>(result_.positions.size());
     GONIO_TRY(add_vertices(arrays.positions, arrays.normals, arrays.texture, matrix, where));
-    // What Draco packs are triangles, whatever they were before.
+    // Draco packs triangles, whatever they were before.
     const int mode = primitive.extensions.contains(kDraco) ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
     return add_faces(arrays.indices, mode, matrix, part, first, with_normals, with_texture, where);
   }

@@ -25,7 +25,7 @@ std::string word(std::size_t value) {
   return {reinterpret_cast<const char*>(&number), sizeof number};
 }
 
-// Whether a buffer says that its bytes are those which an extension unpacks.
+// True if a buffer says that its bytes are those which an extension unpacks.
 bool is_fallback(const Json& buffer) {
   if (!buffer.is_object() || buffer.contains("uri") || !buffer.contains("extensions")) return false;
   const Json& extensions = buffer["extensions"];

@@ -332,7 +332,7 @@ double area(const Mesh& mesh) {
   return sum;
 }
 
-// As current exporters write; it was refused.
+// Current exporters write such files.
 TEST_F(GltfFiles, WhatMeshoptimizerPacksIsUnpacked) {
   const Grid from = grid();
   std::vector<unsigned char> points(meshopt_encodeVertexBufferBound(81, 12));
@@ -359,7 +359,7 @@ TEST_F(GltfFiles, WhatMeshoptimizerPacksIsUnpacked) {
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
   EXPECT_EQ(mesh->triangles.size(), 128U);
   EXPECT_NEAR(area(*mesh), 1, 1e-12);
-  // The same as a GLB file, whose first buffer is the chunk behind the text.
+  // The text as a GLB file, whose first buffer is the chunk behind the text.
   std::string text = written(data, 81);
   const std::string uri = R"(,"uri":"data:application/octet-stream;base64,)" + base64(data) + "\"";
   text.erase(text.find(uri), uri.size());

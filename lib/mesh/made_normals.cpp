@@ -81,7 +81,7 @@ Share share_of(const CornerTriangle& triangle, std::size_t k, const std::vector<
   return {normal, std::atan2(length(cross(a, b)), dot(a, b)) * normal};
 }
 
-// Whether all normals lie within half the crease angle of one axis, so that each lies within the crease angle of each.
+// True if all normals lie within half the crease angle of one axis, so that each lies within the crease angle of each.
 bool is_smooth(const std::vector<Share>& shares) {
   static const double kHalfCosine = std::cos(30 * kDegree);
   Vec3 sum;

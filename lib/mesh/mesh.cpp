@@ -48,7 +48,7 @@ std::vector<Point2> flattened(const std::vector<Vec3>& ring) {
   return flat;
 }
 
-// Whether the corner `at` of the remaining ring can be cut off: it turns left, and no other corner lies in the cut.
+// True if the corner `at` of the remaining ring can be cut off: it turns left, and no other corner lies in the cut.
 bool is_ear(const std::vector<Point2>& flat, const std::vector<std::uint32_t>& left, std::size_t at) {
   const std::size_t n = left.size(), before = (at + n - 1) % n, after = (at + 1) % n;
   const Point2 &a = flat[left[before]], &b = flat[left[at]], &c = flat[left[after]];
@@ -63,7 +63,7 @@ bool is_ear(const std::vector<Point2>& flat, const std::vector<std::uint32_t>& l
 // A triangle whose height is less than this part of its longest edge has no area: its direction is rounding noise.
 constexpr double kFlatness = 1e-10;
 
-// What the faces [begin, end) become.
+// Triangles of the faces [begin, end).
 struct Triangles {
   std::vector<CornerTriangle> triangles;
   Mesh::Repairs repairs;

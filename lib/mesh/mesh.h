@@ -11,8 +11,7 @@
 
 namespace goniochrome::mesh {
 
-// What a material is to look like, as far as the file says more than its name: one that light passes, or polished
-// metal.
+// The look of a material, as far as the file says more than its name: one that light passes, or polished metal.
 enum class Look : std::uint8_t { kUnknown, kClear, kPolishedMetal };
 
 // Triangles of one part are contiguous: [first, first + count). The material is that of the part's first face.

@@ -419,7 +419,7 @@ TEST_F(MeshFiles, CornersFarFromTheOriginKeepTheirPlaces) {
   EXPECT_EQ(float_origin({{-1, 0, 2}, {1, 1, 4}}), (Vec3{})) << "a mesh near the origin stays where it is";
 }
 
-// What a pipe holds is told by its content, since its name has no ending.
+// The content of a pipe gives its format, since its name has no ending.
 TEST_F(MeshFiles, ContentTellsTheFormatWhereTheNameHasNoEnding) {
   const std::string corners = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
   std::string binary(80, ' ');

@@ -44,7 +44,7 @@ class Bytes {
   std::string_view rest_;
 };
 
-// Whether `index` counts one of `count`, or is `none`.
+// True if `index` counts one of `count`, or is `none`.
 bool is_within(std::int32_t index, std::int32_t none, std::size_t count) {
   return index == none || (index >= 0 && static_cast<std::size_t>(index) < count);
 }

@@ -128,7 +128,7 @@ class Patches {
 
 using Edges = std::map<std::pair<Index, Index>, std::vector<Side>>;
 
-// Whether the surface goes on over an edge of two faces. Two sides that run the same way belong to faces of opposite
+// True if the surface goes on over an edge of two faces. Two sides that run the same way belong to faces of opposite
 // sense: then their normals are compared as lines.
 bool goes_on(const Mesh& mesh, const std::vector<Side>& sides, double size, Places& places) {
   const Vec3 a = normalized(doubled_area(mesh, sides[0].triangle));

@@ -1,5 +1,5 @@
 // The seam between two parts of a mesh: where their edges face each other, how wide the gap between them is, and how
-// far one panel stands above the other or turns away from it. goniochrome-theory(7), GONIOGEOMETRIC INDEX.
+// far one panel stands above the other or turns away from it. goniochrome-panels(7), "GONIOGEOMETRIC INDEX".
 #pragma once
 
 #include <string>

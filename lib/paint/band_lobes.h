@@ -1,4 +1,4 @@
-// The lobes of a paint in bands of wavelength. goniochrome-theory(7), LIGHT IN BANDS.
+// The lobes of a paint in bands of wavelength. goniochrome-color(7), "LIGHT IN BANDS".
 #pragma once
 
 #include <vector>
@@ -24,7 +24,7 @@ struct BandLobes {
   std::vector<double> readings_de00 = {};  // how far they are from the spectra, for each, under illuminant A
 };
 
-// The same paint with the mean over the bands in each channel.
+// The paint with the mean over the bands in each channel.
 LobeFit mean_lobes(const BandLobes& bands);
 
 }  // namespace goniochrome::paint

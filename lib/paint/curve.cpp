@@ -353,8 +353,8 @@ Result<TargetCurve> TargetCurve::make(const Paint& paint, Kind kind) {
   return curve;
 }
 
-// Of the offsets from 0 to 10 deg none predicts left-out readings clearly better than another; from 20 deg on, they
-// become worse. The offset keeps the place finite at specular.
+// No offset from 0 to 10 deg predicts left-out readings clearly better than another; from 20 deg on, they become worse.
+// The offset keeps the place finite at specular.
 constexpr double kPlaceOffset_deg = 5;
 
 double curve_place(double aspecular_deg) {

@@ -1,6 +1,6 @@
 // The color of a paint as a curve over the aspecular angle, and how the three representations of a paint (measured
-// rows, curve, face and flop) are made from one another. [Shimizu2009] 3.3.8-3.3.10; goniochrome-theory(7), PAINT
-// REPRESENTATIONS.
+// rows, curve, face and flop) are made from one another. [Shimizu2009] 3.3.8-3.3.10;
+// goniochrome-paint(7), "PAINT REPRESENTATIONS".
 #pragma once
 
 #include <array>
@@ -54,12 +54,12 @@ Result<AppearanceFit> appearance_from_rows(const std::vector<LabReading>& rows);
 // The aspecular angles (deg) at which designed paints are stated: 15/45/110 and 25/45/75. [Shimizu2009] 3.3.3
 constexpr std::array<double, 5> kExportAngles_deg = {15, 25, 45, 75, 110};
 
-// What a designed paint would measure: rows at 45 deg incidence and the export angles.
+// The readings of a designed paint: rows at 45 deg incidence and the export angles.
 std::vector<LabReading> rows_of(const Appearance& appearance);
 
 // Where an aspecular angle (deg, 0..180) stands on the axis on which measured curves are cubics: ln(t + 5 deg). Flakes
 // turn their color fast near specular and slowly far from it, and in this place most paints change about evenly.
-// goniochrome-theory(7), PAINT REPRESENTATIONS, tells what that gains on held-out angles.
+// goniochrome-paint(7), "PAINT REPRESENTATIONS", tells what that gains on held-out angles.
 double curve_place(double aspecular_deg);
 // The angle of a place, and how fast the place changes with the angle (1/deg).
 double angle_of_place_deg(double place);

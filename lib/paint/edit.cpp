@@ -30,7 +30,7 @@ color::Lab mixed(const color::Lab& x, const color::Lab& y, double fraction) {
   return {std::lerp(x.L, y.L, fraction), std::lerp(x.a, y.a, fraction), std::lerp(x.b, y.b, fraction)};
 }
 
-// What a move of the color changes: the appearance and the rows, which move together.
+// The parts of a paint that a move of the color changes: the appearance and the rows, which move together.
 struct Locus {
   Appearance appearance;
   std::vector<LabReading> rows;

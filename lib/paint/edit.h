@@ -1,6 +1,6 @@
 // How a designer changes a paint: its average hue, chroma and lightness, its face, flop, travel and gloss, or its color
 // at one angle; and the variations and gradients that are made in this way. [Shimizu2009] 3.4, 3.6, 5.4.4;
-// goniochrome-theory(7), DESIGN MOVES.
+// goniochrome-paint(7), "DESIGN MOVES".
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace goniochrome::paint {
 
-// What a designer calls the color of a paint as a whole: the means of L*, of chroma, and of a* and b* over the curve at
+// The color of a paint as a whole, as designers call it: the means of L*, of chroma, and of a* and b* over the curve at
 // 15, 45 and 110 deg. The direction of the mean a* and b* is the average hue in [0,360). Below kLeastChroma a paint has
 // no hue that could be set and no chroma that could be scaled.
 struct AverageColor {
@@ -56,7 +56,7 @@ struct Edit {
   double gloss_shift = 0;
 };
 
-// Whether an edit moves the color or the gloss at all, and whether it states a face, flop or travel outright.
+// These are true if an edit moves the color, if it moves the gloss, and if it states a face, flop or travel outright.
 bool moves_color(const Edit& edit);
 bool moves_gloss(const Edit& edit);
 bool states_appearance(const Edit& edit);
@@ -92,7 +92,7 @@ enum class Variation { kFace, kFlop, kTravel, kGloss };
 // dE76 = step. Travel (deg) and gloss (units) have those one to four steps away in either direction. step > 0.
 std::vector<Neighbor> neighbors(Variation variation, double step);
 
-// Whether a neighbor is a paint of its own. It is not if a value was clipped to the end of the gloss scale, since
+// True if a neighbor is a paint of its own. It is not if a value was clipped to the end of the gloss scale, since
 // several neighbors would meet there under different names, or if nothing changed.
 bool is_distinct(const Edited& neighbor, const Paint& of);
 

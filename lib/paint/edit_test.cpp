@@ -87,8 +87,8 @@ TEST(FaceShare, IsOneAtTheFaceAndZeroAtTheFlop) {
 }
 
 TEST(FaceShare, ThePrintedFormMovesTheWrongEnd) {
-  // As printed, R is 0 below 15 deg and 1 beyond the travel, and the face is blended by R: a tweak at the face leaves
-  // the face alone and moves the flop.
+  // In the printed form R is 0 below 15 deg and 1 beyond the travel, and the face is blended by R: a tweak at the face
+  // leaves the face alone and moves the flop.
   const Appearance a = blue();
   const auto printed = [&](double t) { return std::clamp((t - 15) / (a.travel_deg - 15), 0.0, 1.0); };
   Edit edit;
@@ -132,7 +132,7 @@ TEST(Edit, AtAnAngleTheColorChangesByWhatIsAsked) {
   EXPECT_NEAR(worst_blend, 10 * (1 - 0.472), 0.05);
 }
 
-// Of all changes of face and flop that make the change at the angle, ours has the least sum of squares.
+// Among all changes of face and flop that make the change at the angle, ours has the least sum of squares.
 TEST(Edit, AtAnAngleFaceAndFlopChangeLeast) {
   const double t = 40, w = std::pow((72.0 - t) / (72.0 - 15), 2);
   Edit edit;

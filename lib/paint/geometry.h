@@ -1,5 +1,5 @@
 // The measurement geometries of multi-angle instruments (ASTM E2194, E2539), their names such as `45as15`, and the
-// directions of light and detector that they stand for. goniochrome-theory(7), CONVENTIONS.
+// directions of light and detector that they stand for. goniochrome-paint(7), "CONVENTIONS".
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// The class of a paint that states none, as far as its readings tell it. goniochrome-theory(7), CLASSES.
+// The class of a paint that states none, as far as its readings tell it. goniochrome-paint(7), "CLASSES".
 #pragma once
 
 #include <optional>

@@ -1,6 +1,6 @@
 // A paint in numbers: how much its lightness, chroma and hue change from face to flop, its gloss, how well the curve
 // describes it, and how far it lies outside the working space; and conditions on these numbers, such as
-// `flop_index>=17 && (class==metallic or chroma_index<5)`. [Shimizu2009] 5.3.3; goniochrome-theory(7), PAINT METRICS.
+// `flop_index>=17 && (class==metallic or chroma_index<5)`. [Shimizu2009] 5.3.3; goniochrome-paint(7), "PAINT METRICS".
 #pragma once
 
 #include <functional>
@@ -61,8 +61,8 @@ struct PaintMetrics {
   std::vector<const char*> flags;
 };
 
-// Whether a curve is fitted to every paint that states none (this takes some 10 us), or only where the indices need it.
-// Without a fit such a paint has no travel and no residual.
+// Fits a curve to every paint that states none (this takes some 10 us), or only where the indices need it. Without a
+// fit such a paint has no travel and no residual.
 enum class CurveFit { kAlways, kWhereNeeded };
 
 // Error: a viewing condition without a known white point.

@@ -1,5 +1,5 @@
 // One paint in its three representations: rows measured at aspecular angles, a curve, and a face and a flop; and the
-// lobes that were fitted to it. [Shimizu2009] 3.3; goniochrome-theory(7), PAINT REPRESENTATIONS; goniochrome-paint(5)
+// lobes that were fitted to it. [Shimizu2009] 3.3; goniochrome-paint(7), "PAINT REPRESENTATIONS"; goniochrome-paint(5)
 // describes the file format.
 #pragma once
 
@@ -30,7 +30,7 @@ struct SpectrumReading {
   double to_nm() const { return from_nm + step_nm * (static_cast<double>(factors.size()) - 1); }
 };
 
-// What an instrument tells of the texture of a paint, such as its sparkle. Such values are on the instrument's own
+// A reading of the texture of a paint by an instrument, such as its sparkle. Such values are on the instrument's own
 // scale: they compare only with those of the same instrument and version, and nothing computes them from others.
 struct TextureReading {
   std::string quantity;  // as the instrument calls it: "Sparkle Grade"
@@ -40,8 +40,8 @@ struct TextureReading {
   double value = 0;
 };
 
-// What an instrument or a designer stated: Lab at several geometries, all under one viewing condition; and the spectra
-// behind them, where they are known. Whoever changes rows removes the spectra.
+// Statements of an instrument or a designer: Lab at several geometries, all under one viewing condition; and the
+// spectra behind them, where they are known. Whoever changes rows removes the spectra.
 struct Measurement {
   color::ViewingCondition condition;
   std::string instrument;
@@ -98,7 +98,7 @@ struct ViewLobes {
 
 // A lobe cos^E about an axis that stands beside the mirror direction: turned by `tilt_deg` away from the normal within
 // the plane of incidence, then by `out_deg` out of that plane. Where out_deg is not 0 there are two such lobes, one on
-// either side of the plane. goniochrome-theory(7), TILTED LOBES.
+// either side of the plane. goniochrome-interference(7), "TILTED LOBES".
 struct TiltedLobe {
   double exponent = 1;
   double tilt_deg = 0, out_deg = 0;
@@ -116,7 +116,7 @@ struct TiltedView {
   bool operator==(const TiltedView&) const = default;
 };
 
-// What stands for the color map of a paint in image light, in the place of K_D and K_DD.
+// Lobes that stand for the color map of a paint in image light, in the place of K_D and K_DD.
 struct TiltedLobes {
   double mean_de00 = 0;  // from the map, in the lights that the lobes were fitted in
   std::vector<TiltedLobe> lobes;

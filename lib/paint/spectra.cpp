@@ -31,7 +31,7 @@ class Meter {
     }
     return colorimeter_->xyz(spectrum.factors);
   }
-  // Of the spectrum that was integrated last.
+  // The white of the spectrum that was integrated last.
   const color::Xyz& white() const { return colorimeter_->white(); }
 
  private:

@@ -1,4 +1,4 @@
-// Paints in other light, from their spectra. goniochrome-theory(7), SPECTRA.
+// Paints in other light, from their spectra. goniochrome-color(7), "SPECTRA".
 #pragma once
 
 #include <optional>

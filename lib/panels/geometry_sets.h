@@ -1,5 +1,5 @@
 // Which lights and viewers look at two panels: the lists, ranges and names that a command line spells.
-// goniochrome-theory(7), GONIOGEOMETRIC INDEX.
+// goniochrome-panels(7), "GONIOGEOMETRIC INDEX".
 #pragma once
 
 #include <string>

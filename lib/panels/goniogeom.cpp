@@ -45,7 +45,7 @@ color::Lab shaded(const color::Lab& reflectance, double c, double k) {
 
 // No color changes by more than this when its cosine goes from c to another and cbrt of it by one, as long as cbrt
 // stays above `least_k`. On the cube root d Lab'/dk is (L + 16, a, b); below the knee L' changes more slowly still, and
-// a', b' at most three times as fast (see goniochrome-theory(7)).
+// a', b' at most three times as fast (goniochrome-panels(7), "Shading").
 double shading_reach(const color::Lab& reflectance, double least_k) {
   const double f = (reflectance.L + 16) / 116;
   const double darkest = least_k * std::min({f, f + reflectance.a / 500, f - reflectance.b / 200});

@@ -1,5 +1,5 @@
 // Two panels of one paint that meet at an angle: what color each shows, and the angle at which the difference is seen.
-// [Shimizu2009] 4.3, goniochrome-theory(7), GONIOGEOMETRIC INDEX.
+// [Shimizu2009] 4.3, goniochrome-panels(7), "GONIOGEOMETRIC INDEX".
 #pragma once
 
 #include <array>
@@ -93,8 +93,8 @@ class TiltedPair {
   // panel toward the light.
   static TiltedPair make(const LightView& geometry, double seam_deg);
 
-  // What the panel at b sees: its aspecular angle (deg) and the cosines to the light (0 where it is in its own shadow)
-  // and to the viewer.
+  // The state of the panel at b: its aspecular angle (deg) and the cosines to the light (0 where it is in its own
+  // shadow) and to the viewer.
   struct State {
     double aspecular_deg = 0, cos_light = 0, cos_view = 1;
 
@@ -109,7 +109,7 @@ class TiltedPair {
   // The b (deg) at which the second panel is lit at the largest cosine, and that cosine.
   double brightest_deg() const { return light_phase_deg_; }
   double largest_cos() const { return light_radius_; }
-  // The same of the viewer.
+  // The angle of the viewer.
   double frontal_deg() const { return view_phase_deg_; }
   double largest_cos_view() const { return view_radius_; }
 

@@ -93,8 +93,8 @@ TEST(FlakeCurve, IsTheCurveItStandsFor) {
   }
 }
 
-// The same highlight by hand: f(t) = f(15) (cos t / cos 15)^e with the exponent between 15 and 25 deg, of the base
-// under the coat. The control holds the curve constant below its first reading.
+// The highlight by hand: f(t) = f(15) (cos t / cos 15)^e with the exponent between 15 and 25 deg, of the base under the
+// coat. The control holds the curve constant below its first reading.
 TEST(FlakeCurve, ContinuesTheHighlightBelowItsFirstReading) {
   const color::Xyz white = *color::white_point({"D65", 10});
   for (const double gloss : {0.0, 90.0}) {

@@ -1,6 +1,6 @@
-// Two parts of a mesh that meet at a seam: who looks at it in what light, what color each part shows there, and a
-// camera that sees it. Lights and viewers stand to every place of the seam alike, or in the world; light may also come
-// from an environment. goniochrome-theory(7), GONIOGEOMETRIC INDEX.
+// Two parts of a mesh that meet at a seam: its viewers and lights, the colors of both parts there, and a camera that
+// sees it. Lights and viewers stand to every place of the seam alike, or in the world; light may also come from an
+// environment. goniochrome-panels(7), "GONIOGEOMETRIC INDEX".
 #pragma once
 
 #include <memory>
@@ -53,7 +53,7 @@ std::vector<SeamView> views_in_world(const mesh::Seam& seam, const std::vector<V
 // geometry that comes again at every n-th place is neither favored nor missed.
 std::vector<std::size_t> spread_places(std::size_t count, std::size_t most);
 
-// What a viewer sees of both panels. The view must have a light.
+// The view of both panels by one viewer. The view must have a light.
 PanelView panel_view(const mesh::Seam& seam, const SeamView& view);
 
 // The differences at one place of a seam, over `views` views; NaN where there are none.
@@ -74,7 +74,7 @@ class EnvironmentPanels {
                                         const color::ViewingCondition& condition, double coat_index = paint::kNoCoat);
 
   // The light that a lobe model needs at a place: P of the normal, and of the mirrored view for every lobe. It is what
-  // the coat lets through, as the engines draw it: goniochrome-theory(7), COAT.
+  // the coat lets through, as the engines draw it: goniochrome-coats(7), "COAT".
   struct Light {
     color::Rgb diffuse;
     std::vector<color::Rgb> lobes;
@@ -103,11 +103,11 @@ class EnvironmentPanels {
 enum class SeamSide { kA, kB };
 PanelColors seam_colors(const EnvironmentPanels& panels, const mesh::Seam& seam, const std::vector<SeamView>& views,
                         SeamSide side);
-// The same in light that is known, one for each view.
+// Colors in known light, one for each view.
 PanelColors seam_colors(const EnvironmentPanels& panels, std::vector<EnvironmentPanels::Light> lights);
 
-// What the options of a tool say of a seam: the file of a mesh, its two parts as A,B, its unit (auto | m | cm | mm),
-// lights and viewers in the world as AZIMUTH,ELEVATION of render::orbit_direction(), and the file of an environment.
+// Words of the options about a seam: the file of a mesh, its two parts as A,B, its unit (auto | m | cm | mm), lights
+// and viewers in the world as AZIMUTH,ELEVATION of render::orbit_direction(), and the file of an environment.
 struct SeamTexts {
   std::string mesh, seam, unit = "auto", environment;
   double max_gap_mm = 0;
@@ -116,7 +116,7 @@ struct SeamTexts {
   bool names_anything_but_mesh() const;
 };
 
-// What those words mean. Error (usage): an option has a value that it does not take, or lights lack viewers or the
+// The meaning of those words. Error (usage): an option has a value that it does not take, or lights lack viewers or the
 // other way round.
 struct SeamWorld {
   std::string part_a, part_b;
@@ -145,7 +145,7 @@ std::string seam_light_text(const SeamTexts& texts, const SeamWorld& world, cons
 // of the picture over its height. With `margin` 1 the seam just fits in.
 render::Camera seam_camera(const mesh::Seam& seam, double aspect, double fov_deg, double margin);
 
-// The same from a direction, such as orbit_direction().
+// The camera from a direction, such as orbit_direction().
 render::Camera seam_camera_from(const mesh::Seam& seam, const Vec3& direction, double aspect, double fov_deg,
                                 double margin);
 

@@ -14,7 +14,7 @@ namespace goniochrome::panels {
 
 namespace {
 
-// Of each view: so many independent sequences of directions, and directions of each. Lobes of 512 directions have a
+// Each view has so many independent sequences of directions, and directions of each. Lobes of 512 directions have a
 // noise of some .3 dE, of which both sides of a place share the most.
 constexpr int kSequences = 8, kDirections = 64, kBounces = 4;
 constexpr double kBeside = 1e-3;  // of the mesh's size
@@ -175,7 +175,7 @@ Result<SeamLights> seam_lights(const EnvironmentPanels& panels, const TracedSeam
   std::vector<double> first;
   for (const std::size_t i : spread_places(views.size(), kTriedAgain)) some.push_back(views[i]), first.push_back(de[i]);
   GONIO_ASSIGN(const SeamLights again, traced_lights(some, 2));
-  // Of two tracings; a standard deviation is half of what 95 % stay within.
+  // A standard deviation of two tracings is half of the bound that 95 % stay within.
   lights.noise_de76 = apart_p95(first, differences(panels, worn, again)) / (2 * std::sqrt(2.0));
   return lights;
 }

@@ -1,5 +1,6 @@
-// The light of an environment at a seam with the mesh in its way: what the mesh blocks, and what it sends back in the
-// paint that it wears. goniochrome-theory(7), GONIOGEOMETRIC INDEX and TRANSPORT.
+// The light of an environment at a seam with the mesh in its way: the light that the mesh blocks, and the light that it
+// sends back in the paint that it wears. goniochrome-panels(7), "GONIOGEOMETRIC INDEX" and
+// goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
 #include <memory>
@@ -22,7 +23,7 @@ class TracedSeam {
   ~TracedSeam();
   bool is_open() const;
 
-  // What each view sees of one panel, `part` of the mesh by name, while all parts wear this paint. Rays start a
+  // The light of each view on one panel, `part` of the mesh by name, while all parts wear this paint. Rays start a
   // thousandth of the mesh's size beside the edge, on the panel. Both sides of a place are sampled alike, so that their
   // noise is much the same. Bit-identical for any number of threads. Error: a lobe that the environment lacks.
   struct Seen {
@@ -43,10 +44,10 @@ class TracedSeam {
 struct SeamLights {
   std::vector<EnvironmentPanels::Light> a, b;
   std::size_t beside = 0;  // views of which a panel was not found under its place
-  // What the random directions change in the difference (CIE 1976) of the panels, one standard deviation, at 95 % of
+  // The change of the difference (CIE 1976) of the panels by the random directions, one standard deviation, at 95 % of
   // the views; from a second tracing of at most 100 of them. 0 in open light.
   double noise_de76 = 0;
-  // What the mesh changes in that difference, at 95 % of the views.
+  // The change of that difference by the mesh, at 95 % of the views.
   double worth_de76 = 0;
 };
 // `traced` null: open light, whose lobes are not cut at the horizon. `worn` is what all parts wear. Error: as

@@ -98,7 +98,7 @@ TEST(TracedSeam, ABlackWallHidesItsShareOfTheSkyAndAWhiteOneSendsItBack) {
   }
 }
 
-// What a dielectric of index 1.5 lets through, by the formulas of Fresnel.
+// The transmission of a dielectric of index 1.5, by the formulas of Fresnel.
 double let_through(double cosine) {
   const double n = 1.5, inside = std::sqrt(1 - (1 - cosine * cosine) / (n * n));
   const double s = (cosine - n * inside) / (cosine + n * inside), p = (n * cosine - inside) / (n * cosine + inside);

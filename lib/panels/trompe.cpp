@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kWorthwhile = 1e-3;  // dE by which a later candidate must be better
 
-// How much a parameter that moves by one unit away from paint A costs, in dE: enough to keep what no view determines
-// where it was, and too little to move what one does.
+// The cost of a parameter that moves by one unit away from paint A, in dE: enough to keep undetermined parameters where
+// they were, and too little to move a determined one.
 constexpr double kAnchor = 1e-3;
 
 // The largest power that stands in for the maximum.
@@ -306,7 +306,7 @@ Result<TrompeFit> fit_model(const paint::Appearance& a, bool is_solid, const Tro
                             const TrompeOptions& asked) {
   const Stopwatch clock;
   TrompeFit fit;
-  // Of a solid paint only the face is free.
+  // A solid paint has only the face free.
   TrompeOptions options = asked;
   fit.solid = is_solid || color::delta_e_76(a.face, a.flop) < kSolidContrast;
   if (fit.solid) options.vary[kFlopL] = options.vary[kFlopA] = options.vary[kFlopB] = options.vary[kTravel] = false;
@@ -320,7 +320,7 @@ Result<TrompeFit> fit_model(const paint::Appearance& a, bool is_solid, const Tro
   const auto consider = [&](const TrompeValues& values) -> Result<void> {
     const paint::Appearance candidate = appearance_of(values);
     GONIO_ASSIGN(TrompeErrors after, errors(candidate));
-    // Of optima that look the same the first one is kept, which is nearest to paint A.
+    // Among optima that look the same the first one is kept, which is nearest to paint A.
     if (any && key(after) >= key(fit.after) - kWorthwhile) return {};
     fit.b = candidate, fit.after = std::move(after), any = true;
     return {};
@@ -333,7 +333,7 @@ Result<TrompeFit> fit_model(const paint::Appearance& a, bool is_solid, const Tro
   if (options.least_maximum)
     for (const TrompeValues& values : search.toward_least_maximum(values_of(fit.b))) GONIO_TRY(consider(values));
   fit.b.residual_de00.reset();
-  // What the views leave open, and what a bound holds back.
+  // Parameters that the views leave open, and those that a bound holds back.
   const TrompeValues found = values_of(fit.b);
   const std::vector<double> grip = search.grip(found);
   for (int p = 0; p < kTrompeParameters; ++p) {

@@ -1,5 +1,5 @@
 // Inverse trompe l'oeil: the paint for the second panel that hides its misalignment. [Shimizu2009] 4.4
-// goniochrome-theory(7), INVERSE TROMPE L'OEIL.
+// goniochrome-panels(7), "INVERSE TROMPE L'OEIL".
 #pragma once
 
 #include <array>
@@ -12,20 +12,20 @@
 
 namespace goniochrome::panels {
 
-// What one viewer sees of both panels under one light: the aspecular angles, the cosines to the light, and the cosines
-// to the viewer.
+// The view of both panels by one viewer under one light: the aspecular angles, the cosines to the light, and the
+// cosines to the viewer.
 struct PanelView {
   double aspecular_a_deg = 45, cos_a = 1;
   double aspecular_b_deg = 45, cos_b = 1;
   double weight = 1;
   double cos_view_a = 1, cos_view_b = 1;
 
-  // The same of panels under a coat of that index: each cosine to the light times what the coat lets through, see
+  // The view of panels under a coat of that index: each cosine to the light times the transmission of the coat, see
   // brdf::coat_passages_to_reading(). Without a coat it is the same.
   PanelView under_coat(double coat_index) const;
 };
 std::vector<PanelView> under_coat(std::vector<PanelView> views, double coat_index);
-// What a viewer sees where the second panel is turned by b (deg); none where that panel is not seen.
+// The view where the second panel is turned by b (deg); none where that panel is not seen.
 std::optional<PanelView> panel_view(const LightView& geometry, double seam_deg, double b_deg);
 
 // The seven numbers of an appearance, in this order.
@@ -70,8 +70,8 @@ struct TrompeFit {
 Result<TrompeFit> trompe_fit(const paint::Appearance& a, bool is_solid, const std::vector<PanelView>& views,
                              const TrompeOptions& options);
 
-// The same where colors come from anywhere, such as an environment: `colors` gives what the second panel shows in every
-// view for an appearance, and `target` is what the first panel shows in paint A. Derivatives are found by differences.
+// Variant for colors from anywhere, such as an environment: `colors` gives the colors of the second panel in every view
+// for an appearance, and `target` holds those of the first panel in paint A. Derivatives are found by differences.
 using PanelColors = std::function<Result<std::vector<color::Lab>>(const paint::Appearance&)>;
 Result<TrompeFit> trompe_fit(const paint::Appearance& a, bool is_solid, const std::vector<color::Lab>& target,
                              const std::vector<double>& weights, const PanelColors& colors,

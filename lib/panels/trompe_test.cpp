@@ -151,7 +151,8 @@ TEST(HardCase, TrompeFlatFitsEndAtTheirOptimum) {
   ASSERT_TRUE(both.ok());
   EXPECT_TRUE(both->converged);
   EXPECT_LE(both->after.rms, both->before.rms);
-  // What both leave is the mean of two shifted curves: the edge of the plateau is worn round, over 2b to either side.
+  // The compromise of both is the mean of two shifted curves: the edge of the plateau is worn round, over 2b to either
+  // side.
   EXPECT_NEAR(both->b.travel_deg, kPearl.travel_deg, 12);
 }
 

@@ -19,9 +19,9 @@ constexpr double kRelative = 1e-8;    // of the pieces that need recursion
 constexpr double kEdgeShare = 1e-10;  // of the flux; some 1e3 texels on an edge err at random
 constexpr double kCoarse = 0.05;      // rad: texels beyond this are no small patches
 
-// As many nodes across a texel as a lobe sqrt(E) times narrower than a radian wants: with v = texel sqrt(E), two points
-// err by v^4/4320, three by v^6/2e6, four by v^8/1.8e9 times Hermite polynomials of the distance in lobe widths; 5
-// widths out (e^-12 of the peak) that is 1e-7 of the value there at the limits below.
+// The rule has as many nodes across a texel as a lobe sqrt(E) times narrower than a radian wants: with v = texel
+// sqrt(E), two points err by v^4/4320, three by v^6/2e6, four by v^8/1.8e9 times Hermite polynomials of the distance in
+// lobe widths; 5 widths out (e^-12 of the peak) that is 1e-7 of the value there at the limits below.
 math::GaussRule nodes_for(double texel_rad, double sharpness) {
   const double v = texel_rad * sharpness;
   if (v <= 0.03) return math::gauss_rule(2, 1);

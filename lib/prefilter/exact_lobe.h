@@ -1,5 +1,5 @@
-// What every prefiltered map is judged by: the sum over all texels of the environment in double precision, each texel a
-// patch of constant radiance. It is slow and exact. goniochrome-theory(7), PREFILTERING, The reference.
+// The reference for every prefiltered map: the sum over all texels of the environment in double precision, each texel a
+// patch of constant radiance. It is slow and exact. goniochrome-prefiltering(7), "The reference".
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ class ZonalKernel;
 
 // P_E(d) per channel, summed texel by texel. Of the mirror it is the radiance of the texel that d falls in.
 Vec3 reference_lobe(const envmap::Environment& env, const Vec3& d, double exponent);
-// The same of any kernel (internal/kernel.h).
+// The reference for any kernel (internal/kernel.h).
 Vec3 reference_lobe(const envmap::Environment& env, const Vec3& d, const ZonalKernel& kernel);
 
-// What the mirror part of a prefiltered environment holds: the mean radiance over a texel of a grid in the scene that
-// `turn` brings the environment to. It is found by looking up single directions, and the texel is cut where those of
-// the environment meet.
+// The reference for the mirror part of a prefiltered environment: the mean radiance over a texel of a grid in the scene
+// that `turn` brings the environment to. It is found by looking up single directions, and the texel is cut where those
+// of the environment meet.
 Vec3 reference_mirror(const envmap::Environment& env, const envmap::SphereGrid& grid, const envmap::Rotation& turn,
                       int column, int row);
 
@@ -36,7 +36,7 @@ struct LobeError {
 };
 LobeError lobe_error(const envmap::Environment& env, const envmap::PrefilteredLobe& lobe, int count, int extremes,
                      std::uint64_t seed, const envmap::Rotation& turn = {});
-// The same of a map that another kernel made.
+// The error of a map that another kernel made.
 LobeError lobe_error(const envmap::Environment& env, const envmap::PrefilteredLobe& lobe, const ZonalKernel& kernel,
                      int count, int extremes, std::uint64_t seed, const envmap::Rotation& turn = {});
 

@@ -1,5 +1,5 @@
 // Filters an environment at single directions by a walk over a tree of texel blocks: right for any kernel and any
-// environment, and fast where the lobe is narrow. goniochrome-theory(7), PREFILTERING, Blocks.
+// environment, and fast where the lobe is narrow. goniochrome-prefiltering(7), "Blocks".
 #pragma once
 
 #include "envmap/block_tree.h"
@@ -15,7 +15,7 @@ class LobeTree {
 
   // P_E(d) per channel, within about `tolerance` of the larger of its value and 1e-3 of the channel's mean.
   Vec3 lobe(const Vec3& d, double exponent, double tolerance) const;
-  // The same of any kernel (internal/kernel.h).
+  // The lobe of any kernel (internal/kernel.h).
   Vec3 lobe(const Vec3& d, const ZonalKernel& kernel, double tolerance) const;
 
  private:

@@ -22,11 +22,11 @@ namespace goniochrome::prefilter {
 
 namespace {
 
-// Of harmonics. At the degree L their grid and its rows take 24 bytes at 4 L x 2 L samples and 48 at 2 L x L, which are
-// 288 L^2 bytes: 300 MB here.
+// The highest degree of harmonics. At the degree L their grid and its rows take 24 bytes at 4 L x 2 L samples and 48 at
+// 2 L x L, which are 288 L^2 bytes: 300 MB here.
 constexpr int kMostDegree = 1024;
-// Of the harmonics for lobes whose kernel bends at its edge. On two measured rooms at a tolerance of 1e-4, of 384
-// texels of the diffuse lobe the bound left 102 to be done once more at degree 128, 21 at 256 and none at 512; 1024
+// The degree of harmonics for lobes whose kernel bends at its edge. On two measured rooms at a tolerance of 1e-4, of
+// 384 texels of the diffuse lobe the bound left 102 to be done once more at degree 128, 21 at 256 and none at 512; 1024
 // took twice the time of 512 at 1e-3.
 constexpr int kWideDegree = 512;
 // Such lobes have exponents below this. Down to a tolerance of 1e-6, plain harmonics need 280 degrees for 5.3 and 28
@@ -50,7 +50,7 @@ constexpr double kFlatBand = 1e-5;
 // Texels along a face of the cube that finds the darkest texels, 7.5 deg each where a lobe of exponent 20 is 26 deg
 // wide. They choose the degree alone; a texel that is darker still is done once more.
 constexpr int kSketch = 12;
-// Of a half float: 11 bits of fraction.
+// The rounding of a half float: 11 bits of fraction.
 constexpr double kHalfError = 0x1p-11;
 // The part of the bound on what harmonics leave out that maps reach; see WideLobe.
 constexpr double kCoherence = 1.0 / 16;
@@ -63,7 +63,7 @@ constexpr double kDark = 0.03;
 
 using Method = LobePlan::Method;
 
-// What the method may err by: the tolerance less what the file's rounding takes.
+// The error that the method may have: the tolerance less the rounding of the file.
 double method_tolerance(double tolerance) {
   return tolerance >= 2 * kHalfError * 0.999 ? tolerance - kHalfError : tolerance * (1 - 1.0 / 64);
 }
@@ -77,7 +77,7 @@ double lookup_error(double exponent, int size) {
   return std::max(exponent, 1.0) * h * h / 8;
 }
 
-// As fine as the environment at its middle.
+// The size that is as fine as the environment at its middle.
 int mirror_size(const envmap::Environment& env) {
   if (env.grid().is_cube()) return env.width();
   return std::clamp((env.width() + 3) / 4, 16, 2048);
@@ -109,7 +109,7 @@ LobePlan lobe_plan(const envmap::Environment& env, const PrefilterRequest& reque
   return plan;
 }
 
-// What the harmonics up to each degree leave of a clipped map: its root mean square, per channel, by Parseval.
+// The residual of a clipped map after the harmonics up to each degree: its root mean square, per channel, by Parseval.
 std::vector<Vec3> residual_rms(const envmap::Environment& env, const envmap::Clip& clip, const Harmonics& harmonics) {
   std::vector<Vec3> rows(static_cast<std::size_t>(env.height()));
   const envmap::SolidAngles solid_angles(env.grid());
@@ -147,8 +147,8 @@ float largest_value(const envmap::Environment& env) {
   return most;
 }
 
-// What the lobes of a plan share: harmonics, bright texels, the tree of blocks, angles. Each of them is made when the
-// first lobe asks for it.
+// Data that the lobes of a plan share: harmonics, bright texels, the tree of blocks, angles. Each of them is made when
+// the first lobe asks for it.
 class Workshop {
  public:
   Workshop(const envmap::Environment& env, const PrefilterRequest& request, const std::vector<LobePlan>& plan)
@@ -210,7 +210,7 @@ class Workshop {
     return *angles_;
   }
   const envmap::Rotation& turn() const { return turn_; }
-  // Of the texels of a size, row by row, in the environment's frame.
+  // Directions of the texels of a size, row by row, in the environment's frame.
   std::vector<Vec3> directions(int size) const {
     const envmap::SphereGrid texels = grid(size);
     const std::size_t width = static_cast<std::size_t>(texels.width());
@@ -271,7 +271,7 @@ int taps(const Vec3& flux, double most, const ZonalKernel& kernel, double tolera
 // A lobe whose kernel bends at its edge: harmonics of the rest to the degree that the darkest texels need, and the
 // bright texels one by one.
 //
-// What the harmonics of the rest leave out is, by Cauchy and Schwarz, at most norm_beyond() of the kernel times
+// The error of harmonics beyond a degree is, by Cauchy and Schwarz, at most norm_beyond() of the kernel times
 // residual_rms() of the map, reached only by a map whose every degree peaks in phase at one point. Maps come nowhere
 // near: the worst texels of measured maps reach a thirtieth to a fiftieth of it, so a sixteenth is allowed for. A texel
 // that could be off by more than its tolerance all the same (it is dark, or the map is black and white) is done by
@@ -299,7 +299,7 @@ class WideLobe {
   }
 
  private:
-  // Of each channel, on the coarse cube.
+  // The darkest value of each channel, on the coarse cube.
   Vec3 darkest_value() {
     const envmap::SphereGrid coarse(envmap::SphereGrid::Layout::kCube, kSketch, 6 * kSketch);
     const std::vector<float> sketch = sum(plan_.kernel->multipliers(32), coarse, GridAngles(coarse, shop_.turn()));
@@ -341,7 +341,7 @@ class WideLobe {
     return texels;
   }
 
-  // What a texel of that value may be off by in a channel.
+  // The error that a texel of that value may have in a channel.
   double allowed(double value, int channel) const {
     const double gray = kErrorFloor * kErrorFloor * std::max({mean_.x, mean_.y, mean_.z});
     return 0.8 * tolerance_ * std::max({value, kErrorFloor * mean_[channel], gray});
@@ -470,7 +470,7 @@ const char* method_name(Method method) {
 }
 
 // Bilinear lookup between texels 2/N apart errs by E h^2/8 with h = pi/(2N): the face that keeps ten times the
-// tolerance. [theory: Lookup]
+// tolerance. goniochrome-prefiltering(7), "Lookup".
 int own_size(double exponent, double tolerance) {
   const double wanted = kPi / 2 * std::sqrt(std::max(exponent, 1.0) / (8 * 10 * tolerance));
   const int least = exponent < 8 ? 32 : 16;  // kinks of a wide lobe at the horizon of a sun

@@ -1,5 +1,6 @@
 // Filters an environment by every lobe of a basis, each by the cheapest method that keeps the tolerance. The lobes are
-// cosine powers, because paints are, and any other zonal kernel on request. goniochrome-theory(7), PREFILTERING.
+// cosine powers, because paints are, and any other zonal kernel on request.
+// goniochrome-prefiltering(7), "PREFILTERING".
 #pragma once
 
 #include <functional>

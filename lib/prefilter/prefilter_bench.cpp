@@ -1,5 +1,5 @@
-// What prefiltering costs, each time beside its error, against the project's own vectorised sum over all pairs of
-// texels. GONIOCHROME_PROBE names the environment in place of a drawn sky.
+// Times of prefiltering, each with its error, against the project's own vectorised sum over all pairs of texels.
+// GONIOCHROME_PROBE names the environment in place of a drawn sky.
 #include "base/angles.h"
 #include "prefilter/prefilter.h"
 
@@ -55,7 +55,7 @@ const envmap::Environment& environment(int height) {
   return all.emplace(height, std::move(read).value()).first->second;
 }
 
-// Of some of the directions, relative as the tolerance.
+// The largest error at some of the directions, relative as the tolerance.
 double largest_error_of_sums(const envmap::Environment& env, const std::vector<Vec3>& directions,
                              const std::vector<float>& values) {
   const Vec3 mean = (1 / (4 * kPi)) * env.flux();

@@ -32,7 +32,7 @@ envmap::Environment lat_long(int height, const std::function<Vec3(int, int, cons
   return envmap::Environment::from_lat_long(image, BadPixels::kError, "test").value();
 }
 
-// The same kind of scene as an angular probe.
+// The scene as an angular probe.
 envmap::Environment probe(int n) {
   image::Image image = {n, n, 3, std::vector<float>(static_cast<std::size_t>(n) * n * 3), {}};
   const envmap::SphereGrid grid(envmap::SphereGrid::Layout::kAngular, n, n);

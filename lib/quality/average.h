@@ -1,5 +1,5 @@
 // Repeated readings of one paint as their mean, with what they scatter by at each geometry, and the readings that stand
-// apart from the others. goniochrome-theory(7), REPEATED READINGS.
+// apart from the others. goniochrome-quality(7), "REPEATED READINGS".
 #pragma once
 
 #include <string>

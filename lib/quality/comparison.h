@@ -1,5 +1,5 @@
 // A sample beside its standard: what it differs by at each geometry, and as a whole. Every difference is sample minus
-// standard. goniochrome-theory(7), COLOR DIFFERENCES.
+// standard. goniochrome-color(7), "COLOR DIFFERENCES".
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What rays meet: a mesh and, on request, a level floor under it. Embree is inside. goniochrome-theory(7), RAYS.
+// A scene for rays: a mesh and, on request, a level floor under it. Embree is inside. goniochrome-paths(7), "RAYS".
 #pragma once
 
 #include <array>
@@ -43,7 +43,7 @@ struct Spot {
   float u = 0, v = 0;   // of the hit
 };
 
-// The same for callers outside of the kernels, in the units of the mesh.
+// The point for callers outside of the kernels, in the units of the mesh.
 struct SurfacePoint {
   std::uint32_t triangle = kNothing;
   float u = 0, v = 0;
@@ -61,7 +61,7 @@ struct Fan {
   unsigned wanted = 0;
   // Where occluded() stops to look, in local units.
   float reach = std::numeric_limits<float>::infinity();
-  // Whether the rays go nearly the same way, as those to a lamp do: they are then traced together, which is faster.
+  // True if the rays go nearly the same way, as those to a lamp do: they are then traced together, which is faster.
   bool narrow = false;
 };
 
@@ -77,7 +77,7 @@ class RayScene {
   // Rays pass the parts of the mesh that are named in `passed` as if they were not there; their spots are known.
   static Result<RayScene> create(const mesh::Mesh& mesh, const std::optional<Floor>& floor = {},
                                  const std::vector<bool>& passed = {});
-  // The same mesh over this floor, whose height is finite. The tree of the mesh is shared.
+  // Copies the mesh over this floor, whose height is finite. The tree of the mesh is shared.
   RayScene over(const Floor& floor) const;
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
@@ -85,9 +85,9 @@ class RayScene {
 
   // The nearest point of the surface on the ray, or nothing. `direction` is unit.
   std::optional<SurfacePoint> closest(const Vec3& origin, const Vec3& direction) const;
-  // The same for many rays from one point, nothing where triangle == kNothing.
+  // Variant for many rays from one point, nothing where triangle == kNothing.
   void closest(const Vec3& origin, std::span<const Vec3> directions, std::span<SurfacePoint> points) const;
-  // Whether anything lies between the origin and the distance.
+  // True if anything lies between the origin and the distance.
   bool occluded(const Vec3& origin, const Vec3& direction,
                 double distance = std::numeric_limits<double>::infinity()) const;
 
@@ -120,16 +120,16 @@ class RayScene {
   std::array<Float3, 3> corners(std::uint32_t triangle) const;
   // Twice the area of a triangle times its normal, local.
   Vec3 doubled_area(std::uint32_t triangle) const;
-  // What a density of 1 by area is by solid angle where a ray of this direction meets a triangle at this distance,
-  // local: distance^2/cos; 0 along the triangle.
+  // The density by solid angle of a density of 1 by area where a ray of this direction meets a triangle at this
+  // distance, local: distance^2/cos; 0 along the triangle.
   double by_solid_angle(std::uint32_t triangle, const Float3& direction, float distance) const;
   int part(std::uint32_t triangle) const;
-  // Of a point of a triangle, unit, or 0: see SurfacePoint.
+  // The tangent at a point of a triangle, unit, or 0: see SurfacePoint.
   Vec3 tangent(const Hit& hit) const;
-  // Whether any vertex of the mesh lies more than `margin` above the plane through the point. A point from which none
+  // True if any vertex of the mesh lies more than `margin` above the plane through the point. A point from which none
   // does sees its whole hemisphere, the floor apart.
   bool any_above(const Float3& point, const Float3& normal, float margin) const;
-  // Whether the mesh lies below the planes of all of its triangles, so that it blocks no light that reaches its
+  // True if the mesh lies below the planes of all of its triangles, so that it blocks no light that reaches its
   // outside.
   bool is_convex() const;
 
@@ -141,8 +141,8 @@ class RayScene {
   std::optional<float> floor_;  // local height
 };
 
-// What rays that leave a surface start above it, in local units: more than four roundings of a float between 1 and 2,
-// which bound the error of a distance from a triangle's plane; less than a hundred thousandth of the mesh.
+// Rays that leave a surface start this far above it, in local units: more than four roundings of a float between 1 and
+// 2, which bound the error of a distance from a triangle's plane; less than a hundred thousandth of the mesh.
 constexpr float kLift = 0x1p-19F;
 
 }  // namespace goniochrome::rays

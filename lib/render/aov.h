@@ -1,5 +1,5 @@
 // A picture may carry buffers, which hold what was seen at the center of each pixel. This header adds them to a
-// picture, and makes a G-buffer from those of a file. goniochrome-theory(7), RENDERING, Samples and buffers.
+// picture, and makes a G-buffer from those of a file. goniochrome-rendering(7), "Samples and buffers".
 #pragma once
 
 #include <string>

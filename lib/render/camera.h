@@ -1,5 +1,5 @@
 // A camera says where a picture is taken from, and gives the rays through its pixels. In the world's axes +Y is up.
-// goniochrome-theory(7), RENDERING, Cameras.
+// goniochrome-rendering(7), "Cameras".
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Coats in every engine: what they keep of energy, and what the exact sum has.
+// Coats in every engine: their energy, and the exact sum.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -72,8 +72,9 @@ TEST(Coat, NoPaintSendsBackMoreThanItGets) {
   EXPECT_GT(most_textbook, 1.5);
 }
 
-// The same in bases without a mirror, whose lobes may not send more than a coat reflects, although they then read less
-// gloss. Colors do not depend on gloss. The control scales the sharpest lobe up until the meter reads what is stated.
+// Bases without a mirror, whose lobes may not send more than a coat reflects, although they then read less gloss, do
+// the same. Colors do not depend on gloss. The control scales the sharpest lobe up until the meter reads what is
+// stated.
 TEST(Coat, NoPaintSendsBackMoreThanItGetsWithoutAMirror) {
   const envmap::Environment sky = even_sky();
   const std::vector<paint::Paint> paints = *formats::read_paints(testdata("paints.paints.xml"));
@@ -155,9 +156,9 @@ TEST(Coat, LampsPassItAtTheirOwnAngle) {
   }
 }
 
-// A part without a coat beside one with a coat, where a disc lamp touches the horizon from below: what it lights there
-// comes to 0, and the coat is asked for what it lets in at a cosine of 0. Without a coat that is 1. The control is the
-// textbook form of the amplitudes, which is 0/0.
+// A part without a coat stands beside one with a coat, where a disc lamp touches the horizon from below: its light
+// there tends to 0, and the coat is asked for its transmission at a cosine of 0. Without a coat that is 1. The control
+// is the textbook form of the amplitudes, which is 0/0.
 TEST(HardCase, PartsWithoutACoatWhereALampSets) {
   paint::LobeFit bare = matt({0.1, 0.2, 0.05});
   bare.lobes = {{6, {0.05, 0.1, 0.02}, {0.01, 0.01, 0.01}}};
@@ -189,7 +190,7 @@ TEST(HardCase, PartsWithoutACoatWhereALampSets) {
   hard_case("coat-absent", {"a part without a coat where lamps touch the horizon", textbook, ours, 1e-6, "radiance"});
 }
 
-// The same in pictures of every engine: normals turn across the part so that the lamp sets on it.
+// Pictures of every engine are finite: normals turn across the part so that the lamp sets on it.
 TEST(Coat, PartsWithoutOneAreFiniteWhereALampSets) {
   mesh::Mesh mesh = panels_mesh(2);
   Light disc{{0, 1, 0}, {1, 1, 1}};
@@ -221,7 +222,7 @@ TEST(Coat, PartsWithoutOneAreFiniteWhereALampSets) {
   }
 }
 
-// What a transport knows of the open sky is what the engine cpu draws of it, also where parts differ in their coats.
+// The unoccluded light of a transport is the light that the engine cpu draws, also where parts differ in their coats.
 TEST(Coat, IsInTheOpenLightOfATransport) {
   const mesh::Mesh mesh = sphere_mesh(48);
   const std::vector<double> exponents = {1.3, 6, 40, 300, 3000};

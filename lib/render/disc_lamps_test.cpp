@@ -295,7 +295,7 @@ TEST(DiscLamps, PathsDrawSoftShadows) {
   EXPECT_NEAR(half, kPi * 0.2 * (0.5 * std::cos(45 * kDegree) + 0.5 * cap), 0.02 * whole);
 }
 
-// Whether samples tell what of a disc is hidden or what is free is decided by eight fixed rays, and must not show: all
+// Eight fixed rays decide whether samples estimate the hidden or the free part of a disc, and this must not show: all
 // along the border of a shadow the light is that of the part of the disc above the wall's edge, summed on a grid. The
 // control is the light that these few rays would tell by themselves.
 TEST(DiscLamps, SoftShadowsAreUnbiasedAllAlong) {

@@ -9,7 +9,7 @@ namespace goniochrome::render {
 // stand for the light of all maps, so that with them no bright spots are cut out of the maps.
 Effects united(const Effects& a, const Effects& b);
 
-// Whether `all` draws everything that `wanted` calls for.
+// True if `all` draws everything that `wanted` calls for.
 bool covers(const Effects& all, const Effects& wanted);
 
 // `effects` with a use for each exponent (finite) of the environment, so that no paint of its basis adds a lobe.

@@ -42,8 +42,8 @@ TEST_F(EffectUnion, CoversBothAndNeitherCoversTheOther) {
   EXPECT_TRUE(covers(a, a));
 }
 
-// What other paints call for changes a picture by no more than rounding: sums of the same floats in another order, of
-// up to 16 terms.
+// Effects for other paints change a picture by no more than rounding: sums of the same floats in another order, of up
+// to 16 terms.
 TEST_F(EffectUnion, ChangesNoPicture) {
   const paint::LobeFit plain = paint_of({2, 20}, false), glossy = paint_of({8, 900}, true);
   const Scene alone = scene(plain);

@@ -1,4 +1,4 @@
-// The words of --effects, and the effects of a plan that each of them switches. goniochrome-theory(7), PLAN.
+// The words of --effects, and the effects of a plan that each of them switches. goniochrome-plan(7), "PLAN".
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // The effects that a scene is shaded with, and the table of weights that all engines with prefiltered maps read.
-// goniochrome-theory(7), RENDERING.
+// goniochrome-rendering(7), "RENDERING".
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 namespace goniochrome::render {
 
 // The effects that are drawn by tracing rays: what the mesh does to light on its way. They are nested, so that it is
-// plain what a picture without one of them shows. goniochrome-theory(7), PLAN, Effects of rays.
+// plain what a picture without one of them shows. goniochrome-plan(7), "Effects of rays".
 struct RayEffects {
   // The mesh takes light away from its own surface. Where it does, the surface sees a black body. Without this effect,
   // every point sees all of the light around, and the other two effects are off as well.
   bool shadow = false;
   // Instead of black, the lobes and the mirror of a point see the light that the body sends back.
   bool self = false;
-  // The same for the diffuse part of a point.
+  // The switch for the diffuse part of a point.
   bool bounce = false;
   // A floor that shows the ground of the environment lies below: it is seen, shaded by the mesh, and sends its light to
   // the mesh in the place of what the environment has below the horizon. It needs `shadow`.
@@ -66,7 +66,7 @@ struct Effects {
   int most_ray_samples = 1 << 16;  // of a visible point, in all samples of its pixel
   Background background = Background::kNone;
 
-  // What engines of maps sum one by one: lamps, and bright spots of the environment as discs.
+  // Lights that engines of maps sum one by one: lamps, and bright spots of the environment as discs.
   std::size_t single_lights() const { return lights + spots; }
   bool discs() const { return extent || spots > 0; }
   bool depends_on_view() const { return fresnel || coat || horizon || views || stretch || tilt_level > 0; }

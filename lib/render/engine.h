@@ -1,6 +1,6 @@
 // An engine turns what is visible into radiance. This header states what every engine can do, and names the table in
 // which all engines are registered. Plans, options, help and reports take their engines from that table, so that a new
-// engine is its own two files and one line in engines.cpp. goniochrome-theory(7), RENDERING.
+// engine is its own two files and one line in engines.cpp. goniochrome-rendering(7), "RENDERING".
 #pragma once
 
 #include <cstdint>
@@ -52,16 +52,16 @@ struct Noise {
 class Sight {
  public:
   virtual ~Sight() = default;
-  // What is visible at this sample of every pixel. It is rasterized when it is first asked for, and kept if there is
+  // The visible points of this sample of every pixel. It is rasterized when it is first asked for, and kept if there is
   // room. Positions on the mesh follow from it by mesh_point().
   virtual std::shared_ptr<const Gbuffer> gbuffer(int sample) = 0;
   // Where the pixels of that G-buffer lie on the textures of the scene; empty where the scene has none.
   virtual const std::vector<TexturePlace>& places(int sample) = 0;
-  // What those pixels show of the textures, kept from frame to frame; null where nothing is kept.
+  // Texture values of those pixels, kept from frame to frame; null where nothing is kept.
   virtual SeenPixels* seen_pixels(int) { return nullptr; }
   // The OpenGL context of the renderer; null where the renderer was given a G-buffer and has no mesh.
   virtual const GlContext* gl() const = 0;
-  // Whether it shows the mesh of the scene, and not a G-buffer that was given.
+  // True if it shows the mesh of the scene, and not a G-buffer that was given.
   virtual bool shows_mesh() const { return gl() != nullptr; }
   // The mesh as rays meet it, with the floor of the scene; null where OpenGL draws the G-buffers.
   virtual std::shared_ptr<const rays::RayScene> traced_mesh() const { return nullptr; }
@@ -70,13 +70,13 @@ class Sight {
   virtual const Rasterizer* rasterized(int sample) = 0;
 };
 
-// What an engine is called, and what may be asked of it before it is made.
+// The name of an engine, and facts about it that are known before it is made.
 struct EngineInfo {
   const char* name;      // of --engine, in plans and in reports
   const char* sentence;  // what it does, for help
   const char* where;     // where it shades, as in "12 ms on the processor"
-  // Whether plans may choose it and leave effects out for it. Otherwise it is used when it is asked for by name, and
-  // it draws all effects, because leaving one out saves no time.
+  // True if plans may choose it and leave effects out for it. Otherwise it is used when it is asked for by name, and it
+  // draws all effects, because leaving one out saves no time.
   bool is_planned;
   bool needs_texels;  // It sums the image that the environment was made from: Scene::texels.
   bool traces_rays;   // It sees the mesh in the way of light: it draws shadows, floors and parts that shine.
@@ -102,7 +102,7 @@ class Engine {
 
   virtual const EngineInfo& info() const = 0;
 
-  // Whether it can shade this scene. Error: what stands against it, with the remedy.
+  // Checks that it can shade this scene. Error: what stands against it, with the remedy.
   virtual Result<void> can_shade(const Scene& scene) const = 0;
 
   // Takes in a scene with these effects: maps, programs, trees. What the scene points to must outlive the drawing.
@@ -115,7 +115,7 @@ class Engine {
   // Shades one sample of every pixel: radiance times `gain` in R G B, and coverage times `gain` in A. With `add` the
   // result is added to what the samples before made. The picture may be incomplete until finish().
   virtual Result<void> shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) = 0;
-  // Of the picture that was drawn last; nothing from engines that do not draw by random samples.
+  // The noise of the picture that was drawn last; nothing from engines that do not draw by random samples.
   virtual const Noise* noise() const { return nullptr; }
   // Sentences about the loaded scene that whoever asked for the picture should read.
   virtual std::vector<std::string> remarks() const { return {}; }

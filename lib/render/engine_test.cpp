@@ -1,4 +1,4 @@
-// What holds for every engine that is registered, by its name alone.
+// Properties of every engine that is registered, by its name alone.
 #include "render/engine.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
-// What the plan says that an effect is worth, beside the error that the exact integral shows where it is left out: each
-// effect in a scene where it matters, in light that changes fast.
+// The predicted error of an effect, and the error by the exact integral where it is left out: each effect in a scene
+// where it matters, in light that changes fast.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // The reference integrator is the yardstick of every picture: it sums the exact BRDF times the environment in its full
-// resolution, in double precision and without prefiltering. goniochrome-theory(7), REFERENCE INTEGRATOR.
+// resolution, in double precision and without prefiltering. goniochrome-plan(7), "REFERENCE INTEGRATOR".
 #pragma once
 
 #include <vector>
@@ -34,12 +34,12 @@ struct Surroundings {
 std::vector<color::Rgb> reference_radiance(const std::vector<SurfacePoint>& points, const Surroundings& around,
                                            const std::vector<Light>& lights);
 
-// The same for textures: the integral of the blended texels' f L cos_i. `reflection` null: component-wise.
+// The integral for textures: of the blended texels' f L cos_i. `reflection` null: component-wise.
 std::vector<color::Rgb> textured_radiance(const std::vector<TexturedPoint>& points, const Surroundings& around,
                                           const std::vector<Light>& lights,
                                           const color::ReflectionOperator* reflection);
 
-// The same for points of a scene, by the effects that are on. About the tilted normals of an anisotropic lobe: many
+// The integral for points of a scene, by the effects that are on. About the tilted normals of an anisotropic lobe: many
 // where texels are summed, those of the effects where blocks are.
 std::vector<color::Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const Scene& scene,
                                        const Effects& effects, const Surroundings& around);

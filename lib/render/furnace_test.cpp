@@ -31,7 +31,7 @@ struct Worn {
   std::optional<brdf::ColorMap> map = {};
 };
 
-// As fit-paint writes them: those of paints.paints.xml, those of rooms.paints.xml, which have lobes, and those of
+// The fits of fit-paint: those of paints.paints.xml, those of rooms.paints.xml, which have lobes, and those of
 // travel.paints.xml with their color maps and tilted lobes.
 const std::vector<Worn>& all_paints() {
   static const std::vector<Worn> all = [] {

@@ -1,6 +1,6 @@
 // A G-buffer holds what is visible at one point of every pixel. It is rasterized once for a view; then every engine
 // shades it. What it does not store of a point on the mesh follows from the triangle and the ray through the pixel.
-// goniochrome-theory(7), RENDERING.
+// goniochrome-rendering(7), "RENDERING".
 #pragma once
 
 #include <array>
@@ -24,7 +24,8 @@ struct TexturePlace {
   float tangent[3] = {0, 0, 0};  // world, along growing u; of about unit length, or 0 where it is not known
   // The footprint: how far u and v go from one pixel to the next, to the right and downward; 0 where it is not known.
   float across[2] = {0, 0}, down[2] = {0, 0};
-  // Of the texture, which is shown here as far as the places on it that are blended have this one. 0: not at all.
+  // The share of the texture, which is shown here as far as the places on it that are blended have this one. 0: not at
+  // all.
   float share = 1;
 };
 
@@ -38,10 +39,10 @@ struct VisiblePoint {
   Vec3 position = {};                   // on the mesh, for lamps at a place
 };
 
-// What a G-buffer has in the place of a triangle's number where the mesh is not seen.
+// The entry of a G-buffer in the place of a triangle's number where the mesh is not seen.
 constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
 
-// What is visible at one point of every pixel; row 0 is at the top.
+// The visible points of every pixel at one sample; row 0 is at the top.
 struct Gbuffer {
   int width = 0, height = 0;
   std::vector<float> data;  // 4 a pixel: unit normal turned to the viewer, part + 1 (negative: seen from inside), or 0
@@ -53,13 +54,13 @@ struct Gbuffer {
   const float* at(int x, int y) const { return &data[index(x, y) * 4]; }
   // The part seen, or -1.
   int part(int x, int y) const;
-  // Whether any pixel shows the mesh from inside.
+  // True if any pixel shows the mesh from inside.
   bool shows_inside() const;
   Vec3 normal(int x, int y) const;
   Vec3 to_viewer(int x, int y) const { return -rays.direction(x + 0.5, y + 0.5); }
-  // What is seen at this pixel, with its place on each texture that `places` tells of: as many a pixel as there are,
-  // those of all pixels on one texture after those on the texture below. Its position is that on the mesh, if that is
-  // given and the buffer has triangles.
+  // The visible point of this pixel, with its place on each texture that `places` tells of: as many a pixel as there
+  // are, those of all pixels on one texture after those on the texture below. Its position is that on the mesh, if that
+  // is given and the buffer has triangles.
   VisiblePoint point(int x, int y, const std::vector<TexturePlace>& places = {},
                      const mesh::Mesh* mesh = nullptr) const;
 };
@@ -85,8 +86,8 @@ PlaneHit plane_hit(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& o
 // plane, the middle of the triangle.
 MeshPoint mesh_point(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction);
 
-// What a pixel of the G-buffer shows of the mesh that it was rasterized from. It must show something, and the G-buffer
-// must have triangles.
+// The point of the mesh that a pixel of the G-buffer shows. It must show something, and the G-buffer must have
+// triangles.
 MeshPoint mesh_point(const mesh::Mesh& mesh, const Gbuffer& gbuffer, int x, int y);
 
 // Where the samples of a pixel lie, from its center: a grid turned so that no two share a row or a column, which

@@ -37,8 +37,8 @@ TEST(Gbuffer, HoldsTheTrianglesThatRaysMeet) {
   EXPECT_GT(differing(Camera::orbit(mesh, 34, 21, 1, 30, 1.5)), seen / 5);
 }
 
-// As at the origin, but for pixels whose center lies on an edge. As floats in the world, corners of a sphere of radius
-// 1 lay on a grid of .5 here.
+// Pictures far from the origin are those at the origin, but for pixels whose center lies on an edge. As floats in the
+// world, corners of a sphere of radius 1 lay on a grid of .5 here.
 TEST(Gbuffer, IsTheSameFarFromTheOrigin) {
   const mesh::Mesh mesh = sphere_mesh(24);
   mesh::Mesh moved = mesh;

@@ -1,5 +1,5 @@
 // Mirror images of lamps that are smaller than what a sample of a pixel sees: the sun in a curved coat fills a part of
-// a pixel, and samples at points would find it or miss it by chance. goniochrome-theory(7), RENDERING, Lamps.
+// a pixel, and samples at points would find it or miss it by chance. goniochrome-rendering(7), "LAMPS".
 #pragma once
 
 #include "base/vec3.h"

@@ -1,5 +1,5 @@
 // This header measures what a plan left out: it compares the picture as planned with the picture of all effects, both
-// drawn by the engine of the plan. The effects of rays are in neither of them. goniochrome-theory(7), PLAN, Check.
+// drawn by the engine of the plan. The effects of rays are in neither of them. goniochrome-plan(7), "Check".
 #pragma once
 
 #include "base/result.h"

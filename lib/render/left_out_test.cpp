@@ -33,7 +33,7 @@ struct World {
   }
 };
 
-// What is left out of the world by a plan with these effects, and what the renderer draws after it was measured.
+// Effects that a plan leaves out of the world, and the picture of the renderer after they were measured.
 struct Measured {
   std::shared_ptr<const Gbuffer> seen;
   LeftOut left;

@@ -1,6 +1,6 @@
 // The light of a view by the lobes of a basis, for tools and other rooms: it is traced (traced_lobes()), kept in files
 // (transport_parts(), transport_of()), and other paints are shown in it (TransportShader, bounce_scale()).
-// goniochrome-theory(7), TRANSPORT.
+// goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
 #include "render/path/bounce_scale.h"       // IWYU pragma: export

@@ -1,5 +1,6 @@
-// What a page in a browser needs to draw paints in prefiltered light by WebGL 2, as the engine gl draws them: the same
-// programs, and the maps and lamps that they read. Weights come from page_weights(). goniochrome-theory(7), RENDERING.
+// The data that a page in a browser needs to draw paints in prefiltered light by WebGL 2, as the engine gl draws them:
+// the same programs, and the maps and lamps that they read. Weights come from page_weights().
+// goniochrome-rendering(7), "RENDERING".
 #pragma once
 
 #include <string>
@@ -53,7 +54,7 @@ struct PageLight {
   std::vector<float> discs;             // its RGBA texels; empty without lamps
 };
 
-// What a page needs to draw one more lamp in an environment: a disc far away, which the page moves and dims.
+// The data that a page needs to draw one more lamp in an environment: a disc far away, which the page moves and dims.
 struct PageMovableLamp {
   PageShading programs;      // those of the environment with this lamp before its others
   Vec3 disc;                 // as light_disc has it

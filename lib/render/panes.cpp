@@ -81,8 +81,8 @@ std::optional<BehindPanes> one_deeper(const rays::RayScene& whole, const Scene& 
 
 }  // namespace
 
-// Of the light that a face does not reflect, (1-F), the other face sends F back, and so on between both: the reflected
-// parts F + (1-F)^2 F (1 + F^2 + F^4 + ...) sum to 2F/(1+F), and (1-F)/(1+F) passes. Both together are 1.
+// The light (1-F) passes the first face; the other face sends F of it back, and so on between both: the reflected parts
+// F + (1-F)^2 F (1 + F^2 + F^4 + ...) sum to 2F/(1+F), and (1-F)/(1+F) passes. Both together are 1.
 double pane_reflectance(double cosine) {
   const double face = brdf::fresnel_dielectric(cosine, brdf::kCoatIndex);
   return 2 * face / (1 + face);

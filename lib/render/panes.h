@@ -1,5 +1,5 @@
-// Clear glass that is seen through: what a pane reflects, what it lets through, and what lies behind it.
-// goniochrome-theory(7), PANES.
+// Clear glass that is seen through: its reflectance, its transmission, and the surfaces behind it.
+// goniochrome-paths(7), "PANES".
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@ double pane_reflectance(double cosine);
 // A pane as the engines shade it: a mirror of that reflectance, and nothing else.
 paint::LobeFit pane_finish();
 
-// Whether a part of the scene is a pane, and whether any part is one.
+// True if a part of the scene is a pane, and if any part is one.
 bool is_pane(const Scene& scene, std::size_t part);
 bool has_panes(const Scene& scene);
 
@@ -29,7 +29,7 @@ struct BehindPanes {
   std::vector<float> passed;  // of each pixel: the part of light that the panes before it let through; 0: none is there
 };
 
-// What lies behind one pane, behind two, and so on, until no pixel shows a pane, or less than kLeastPassed is let
+// Surfaces behind one pane, behind two, and so on, until no pixel shows a pane, or less than kLeastPassed is let
 // through. `whole` has the mesh of the scene with its panes, and `front` has triangles.
 std::vector<BehindPanes> behind_panes(const rays::RayScene& whole, const Scene& scene, const Gbuffer& front);
 constexpr float kLeastPassed = 1e-3F;

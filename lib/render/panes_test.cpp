@@ -82,7 +82,7 @@ TEST(Panes, ReflectWhatBothFacesDoTogether) {
   }
 }
 
-// What the engines draw is that reflectance. Control: a single face, which a coat mirrors.
+// Engines draw that reflectance. Control: a single face, which a coat mirrors.
 TEST(Panes, AreDrawnWithThatReflectance) {
   const paint::LobeFit finish = pane_finish();
   double apart = 0, of_face = 0;
@@ -96,10 +96,10 @@ TEST(Panes, AreDrawnWithThatReflectance) {
   EXPECT_GT(of_face, 0.1);
 }
 
-// In light that is 1 from everywhere, a white wall behind clear panes shows 1, as do the panes and the background: what
-// they reflect and what they let through is 1 together. Engines of maps draw weights by straight pieces, to 5e-4; paths
-// have noise of .01 in 1600 pixels, whose mean is 1 to 1e-3 at four standard deviations. Control: panes that mirror as
-// one face does lose what the others send back.
+// In light that is 1 from everywhere, a white wall behind clear panes shows 1, as do the panes and the background:
+// reflected and transmitted light are 1 together. Engines of maps draw weights by straight pieces, to 5e-4; paths have
+// noise of .01 in 1600 pixels, whose mean is 1 to 1e-3 at four standard deviations. Control: panes that mirror as one
+// face does lose what the others send back.
 TEST(Panes, NeitherMakeNorLoseLight) {
   const Shop shop;
   EXPECT_LT(largest_error(shop.drawn("cpu"), 1), 5e-4);

@@ -1,4 +1,4 @@
-// A picture beside the reference integrator. goniochrome-theory(7), REFERENCE INTEGRATOR.
+// A picture beside the reference integrator. goniochrome-plan(7), "REFERENCE INTEGRATOR".
 #pragma once
 
 #include <array>

@@ -149,7 +149,7 @@ TEST_F(PlacedLamps, MapsAreLitByPointsAndSpheres) {
     lay({&map, 3, nullptr});
     ASSERT_EQ(effects_of(scene).extent, radius > 0);
     expect_same_of_both("map");
-    // Of a sphere the reference has the integral, from which a Gaussian differs the more the wider the sphere is seen.
+    // The reference has the integral of a sphere, from which a Gaussian differs the more the wider the sphere is seen.
     if (radius == 0) {
       EXPECT_LT(picture_error(drawn("cpu"), scene, nullptr, 1, 500, 5).de00_p95, 0.05);
     }

@@ -1,7 +1,7 @@
 // A plan decides, before a picture is drawn, with which effects and by which engine it is shaded. An effect is drawn
-// where the scene calls for it. What the lobes and look-ups of prefiltered maps show is tried out on some of the
-// visible points, and what nobody sees there is left out. What rays and sums change is told by the first pass of the
-// picture. goniochrome-theory(7), PLAN.
+// where the scene calls for it. Lobes and look-ups of prefiltered maps are tried out on some of the visible points, and
+// those that nobody sees there are left out. What rays and sums change is told by the first pass of the picture.
+// goniochrome-plan(7), "PLAN".
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace goniochrome::render {
 
-// What rays can add to a picture.
+// The changes that rays can add to a picture.
 struct RayContext {
   std::string absent = "no rays are traced";  // why none are traced; "" where they are
   bool refused = false;                       // whether that is because --effects says so
@@ -32,17 +32,17 @@ struct PlanRequest {
   int samples = 1;
 };
 
-// What became of an effect.
+// The decision on an effect.
 enum class Decision { kNotInScene, kDrawn, kDropped, kForcedOn, kForcedOff, kFirstPass };
 
-// As plans, reports and the headers of pictures spell it. image::read_aov_file() reads it back.
+// The word for a decision in plans, reports and the headers of pictures. image::read_aov_file() reads it back.
 const char* spelled(Decision decision);
 
 struct PlanItem {
   std::string effect;
   bool needed = false;  // the scene calls for it
   std::string reason;
-  // What leaving it out alone changes, at 95 of 100 points; NaN where it was not measured. Of rays and sums it is what
+  // The change by leaving it out alone, at 95 of 100 points; NaN where it was not measured. Of rays and sums it is what
   // the first pass found.
   double de00_p95 = 0;
   bool on = false;
@@ -59,7 +59,7 @@ struct Plan {
   double time_ms = 0;   // that planning took, the maps loaded that the picture needs as well
 };
 
-// What the first pass finds that sums change at 95 of 100 points, and whether nobody sees it, so that they are left
+// The change by sums that the first pass finds at 95 of 100 points, and whether nobody sees it, so that they are left
 // out; nothing without sums.
 struct FoundSums {
   std::optional<double> de00_p95;

@@ -1,4 +1,4 @@
-// The plan: what it asks for, what it leaves out, and whether its estimates are those of the pictures.
+// The plan: its effects, the effects that it leaves out, and whether its estimates are those of the pictures.
 #include "render/plan.h"
 
 #include <gmock/gmock.h>

@@ -61,7 +61,7 @@ Compact compacted(const Scene& scene, const std::vector<VisiblePoint>& points) {
   return compact;
 }
 
-// What is on while the plan is made, and which of it may be changed.
+// The effects that are on while the plan is made, and those of them that may be changed.
 struct Choice {
   std::vector<bool> on, forced;
 };
@@ -92,7 +92,7 @@ Choice forced_choice(const EffectWords& words, const std::vector<EffectSwitch>& 
   return choice;
 }
 
-// Whether tilted lobes are drawn.
+// True if tilted lobes are drawn.
 bool tilted(const std::vector<EffectSwitch>& switches, const std::vector<bool>& on) {
   for (std::size_t i = 0; i < switches.size(); ++i)
     if (switches[i].group == "tilts" && switches[i].needed && on[i]) return true;
@@ -165,8 +165,9 @@ const EngineInfo& chosen_engine(const std::vector<const Engine*>& engines, const
   return (wanted != engines.end() ? *wanted : engines.front())->info();
 }
 
-// What leaving out each effect alone changes. Nothing is known of what maps cannot show, nor of what is behind panes.
-// The product of colors is baked into maps, and as fast as the plain one: it is tried out where it is off by name.
+// The change by leaving out each effect alone. Nothing is known of light that maps cannot show, nor of surfaces behind
+// panes. The product of colors is baked into maps, and as fast as the plain one: it is tried out where it is off by
+// name.
 std::vector<PlanItem> measured_items(Prober& prober, const std::vector<EffectSwitch>& switches) {
   std::vector<bool> on(switches.size(), true);
   const std::vector<color::Rgb>& full = prober.colors(on);
@@ -278,7 +279,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   plan.items = measured_items(prober, switches);
   for (std::size_t i = 0; i < switches.size() && engine.is_planned; ++i)
     if (switches[i].beyond_maps) choice.on[i] = false, choice.forced[i] = true;
-  // What lies behind panes is at none of the points.
+  // Surfaces behind panes are at none of the points.
   if (words.start == Start::kAuto && engine.is_planned && !has_panes(scene))
     drop_unseen(prober, switches, plan.items, request.tolerance_de00, choice);
 

@@ -1,4 +1,4 @@
-// Makes plans, see plan.h. goniochrome-theory(7), PLAN.
+// Makes plans, see plan.h. goniochrome-plan(7), "PLAN".
 #pragma once
 
 #include <cstddef>

@@ -195,7 +195,7 @@ TEST_F(Property, LightAddsUp) {
   }
 }
 
-// What turns with its light looks the same. A quarter turn about the vertical moves every texel onto another.
+// A scene that turns with its light looks the same. A quarter turn about the vertical moves every texel onto another.
 TEST_F(Property, TurningEverythingChangesNothing) {
   constexpr int kWidth = 64, kHeight = 32;
   const std::vector<float> rgb = radiances(kWidth, kHeight);

@@ -91,7 +91,8 @@ TEST(RayEffects, ABallIsDrawnAsBefore) {
   }
 }
 
-// In even light prefiltered maps are exact but for the horizon, so that what a picture errs by is what the mesh does.
+// In even light prefiltered maps are exact but for the horizon, so that the error of a picture is the change by the
+// mesh.
 TEST(RayEffects, APictureWithThemIsTheTruth) {
   const World world(ball_in_a_cup());
   const Drawn planned = drawn(world, {}, true), with = drawn(world, {Start::kAll}, true),
@@ -112,7 +113,8 @@ TEST(RayEffects, APictureWithThemIsTheTruth) {
   EXPECT_GT(bad.shares.occlusion, 5);
   EXPECT_GT(bad.shares.bounce, 1);
   EXPECT_EQ(bad.shares.noise, 0);
-  // What the maps err by is seen on top of the truth, which has its own noise and, of the better picture, more samples.
+  // The error of the maps is seen on top of the truth, which has its own noise and, of the better picture, more
+  // samples.
   EXPECT_NEAR(bad.shares.prefilter, good.shares.prefilter, 0.1 * PlanRequest{}.tolerance_de00);
   // The first pass tells what leaving shadows out is worth: 100 pixels of 95 % lie between the 90th and the 99th.
   EXPECT_NEAR(item(with.plan, "shadow").de00_p95, bad.worth.shadow, 0.3 * bad.worth.shadow);

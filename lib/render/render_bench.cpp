@@ -115,7 +115,7 @@ void frames(benchmark::internal::Benchmark* b) {
 BENCHMARK(BM_PaintEdited)->Apply(frames);
 BENCHMARK(BM_ViewChanged)->Apply(frames);
 
-// The same on a GPU, where there is one: edits of the paint, and frames in which the view moves as well. The time of a
+// Times on a GPU, where there is one: edits of the paint, and frames in which the view moves as well. The time of a
 // picture includes reading it back.
 void BM_GpuPaintEdited(benchmark::State& state) {
   time_frames(state, false, OpenGlBy::kGpu);

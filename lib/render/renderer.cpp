@@ -290,7 +290,7 @@ Result<void> Renderer::State::take(int first, int count, image::Image& picture) 
   return {};
 }
 
-// What lies behind the panes of a sample is shaded as what is seen without panes is.
+// Surfaces behind the panes of a sample are shaded as those that are seen without panes.
 Result<void> Renderer::State::add_seen_through(int sample, float gain, image::Image& picture) {
   for (const BehindPanes& behind : behind_panes(*whole, scene, *gbuffer(sample))) {
     BehindSight sight(behind, scene.layer);
@@ -327,7 +327,7 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
   const Backdrop backdrop{effects.background, scene.background_color, ray_setup->environment};
   const image::Image before = picture;
   for (int group = 0; group < groups; ++group) {
-    // What is left is shared by the samples of the pixels that are left.
+    // The samples of the remaining pixels share the remaining time.
     if (effort_asked.time_limit_s > 0) request.time_limit_s = std::max(1e-3, deadline->left_s()) / (groups - group);
     const int begin = first + group * together, end = std::min(first + count, begin + together);
     request.seed = mixed(effort_asked.seed, static_cast<std::uint64_t>(begin));

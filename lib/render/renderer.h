@@ -1,6 +1,6 @@
 // The renderer draws scenes into pictures of scene-linear radiance. Rays find what a view shows, or OpenGL rasterizes
 // it for the engine gl; then one of the engines shades it. The renderer keeps what the next picture can use again: the
-// mesh in OpenGL, the G-buffers of the last view, and the engines. goniochrome-theory(7), RENDERING.
+// mesh in OpenGL, the G-buffers of the last view, and the engines. goniochrome-rendering(7), "RENDERING".
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@
 
 namespace goniochrome::render {
 
-// What a picture is taken of: from where, and how finely.
+// The view of a picture: from where, and how finely.
 struct View {
   Camera camera;
   int width = 0, height = 0;
@@ -99,7 +99,7 @@ class Renderer {
   std::string opengl() const;
   // The library that OpenGL comes from, "OSMesa" or "EGL"; "" without OpenGL.
   std::string opengl_library() const;
-  // What the engine has to say about the scene that was loaded.
+  // Remarks of the engine on the scene that was loaded.
   std::vector<std::string> remarks() const;
   // The program by which the engine gl shades the scene and effects loaded, whatever engine they were loaded for.
   std::string shader() const;

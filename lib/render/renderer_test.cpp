@@ -72,7 +72,7 @@ TEST(Renderer, WhiteMattPaintShowsTheConstantEnvironment) {
   EXPECT_NEAR(visible, kPi * std::pow(32 / std::tan(10 * kDegree) / std::sqrt(63), 2), 40);
 }
 
-// The closed form of theory, RENDERING, in a constant environment: every P_E is 1.
+// The closed form of goniochrome-rendering(7), "RENDERING", in a constant environment: every P_E is 1.
 TEST(Renderer, FurnaceFollowsTheClosedForm) {
   const mesh::Mesh mesh = sphere_mesh();
   const envmap::PrefilteredEnvironment env = constant_env({1, 1, 1}, {2.5, 40, 3000});

@@ -74,7 +74,7 @@ struct Sky {
   const float* rgb(std::size_t i) const { return &whole.values()[3 * i]; }
 };
 
-// What the coat alone sends to a viewer on the z axis.
+// The light of the coat alone to a viewer on the z axis.
 color::Rgb coat_light(const TrueCoat& coat, const Vec3& normal, const Sky& sky, int count) {
   const Vec3 viewer = {0, 0, 1};
   const double sine = std::hypot(normal.x, normal.y);
@@ -92,7 +92,7 @@ color::Rgb coat_light(const TrueCoat& coat, const Vec3& normal, const Sky& sky, 
   return sum;
 }
 
-// The same as paths draw it: directions that a point of the paint draws.
+// The light as paths draw it: directions that a point of the paint draws.
 color::Rgb path_light(const TracedPaint& paint, const Vec3& normal, const Sky& sky, int count) {
   const PaintedPoint point(paint, rays::float3(normal), {0, 0, 1});
   constexpr double kGolden = 1.22074408460575947536;  // evenly spread triples [Roberts]
@@ -203,7 +203,7 @@ double median(const std::vector<double>& ascending) {
   return ascending[ascending.size() / 2];
 }
 
-// Of the base, and of the gloss that is set for these readings: in the views of the coat, and the lobe of 60 deg.
+// The base, and the gloss that is set for these readings: in the views of the coat, and the lobe of 60 deg.
 struct Coated {
   paint::LobeFit views, one;
 };

@@ -13,7 +13,7 @@
 
 namespace goniochrome::render {
 
-// A lamp far away, or at a place. It is a disc of even radiance, or a point. goniochrome-theory(7), RENDERING, Lamps.
+// A lamp far away, or at a place. It is a disc of even radiance, or a point. goniochrome-rendering(7), "LAMPS".
 struct Light {
   // A lamp that is a sphere at a place: its irradiance falls with the square of the distance.
   struct Place {
@@ -26,9 +26,9 @@ struct Light {
   std::optional<Place> place = {};
   bool mirrored = true;  // whether a mirror shows it; else its image is that of the environment it is a part of
 
-  // Of the disc: what a mirror shows within it. Black for a point.
+  // The radiance of the disc, which a mirror shows within it. Black for a point.
   color::Rgb radiance() const;
-  // Whether this direction (unit) meets the disc.
+  // True if this direction (unit) meets the disc.
   bool meets(const Vec3& toward) const;
 };
 
@@ -85,21 +85,21 @@ struct Scene {
   // The spectra of all paints and lamps, for engines that follow light in bands of wavelength (SceneSpectra, in
   // spectra.h). None: light and paint have three channels.
   const SceneSpectra* spectra = nullptr;
-  // Whether each part is a pane of clear glass that is seen through, and wears pane_finish(); none where there are
+  // Flags of the parts that are panes of clear glass that is seen through, and wear pane_finish(); none where there are
   // fewer. Light passes panes on its way to other surfaces as if they were not there. See panes.h.
   std::vector<bool> panes = {};
 };
 
-// Whether the scene has what only engines that trace rays can draw: a floor, or parts that shine by themselves.
+// True if the scene has parts that only engines that trace rays can draw: a floor, or parts that shine by themselves.
 bool needs_rays(const Scene& scene);
 
-// Whether any lamp stands at a place, so that its direction and its light are others at each point of the mesh.
+// True if any lamp stands at a place, so that its direction and its light are others at each point of the mesh.
 bool has_placed_lamps(const Scene& scene);
 
 // The exponents (finite, ascending) of the lobes with any weight, over all paints.
 std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints);
 
-// Whether any paint has a mirror lobe.
+// True if any paint has a mirror lobe.
 bool has_mirror(const std::vector<paint::LobeFit>& paints);
 
 // A paint's lobe of this exponent, or null where it has none.

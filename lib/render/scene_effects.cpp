@@ -114,7 +114,7 @@ class SlotValues {
     Texel& diffuse = values_[static_cast<std::size_t>(diffuse_slot())];
     for (std::size_t c = 0; c < 3; ++c) diffuse[c] += mixed.diffuse[static_cast<int>(c)];
   }
-  // Whether the diffuse part is that of the bare map.
+  // True if the diffuse part is that of the bare map.
   bool is_bare() const { return mapped_ || coat_index_ == paint::kNoCoat; }
   int diffuse_slot() const { return is_bare() ? WeightTable::diffuse_slot() : table_.coat_diffuse_slot(); }
 
@@ -129,14 +129,14 @@ class SlotValues {
   std::vector<Texel> values_;
 };
 
-// What is left of a paint in image light where tilted lobes stand for its flakes: gloss and mirror, and K_D of the set.
+// The rest of a paint in image light where tilted lobes stand for its flakes: gloss and mirror, and K_D of the set.
 paint::LobeFit beside_tilts(paint::LobeFit paint, const paint::TiltedLobes& set, double view_deg) {
   paint.diffuse = brdf::at_view(set, view_deg).diffuse;
   for (paint::Lobe& lobe : paint.lobes) lobe.directional_diffuse = {};
   return paint;
 }
 
-// What is left of a paint where other lobes stand for the gloss of its rough coat. The mirror is none of them.
+// The rest of a paint where other lobes stand for the gloss of its rough coat. The mirror is none of them.
 paint::LobeFit beside_stretch(paint::LobeFit paint) {
   for (paint::Lobe& lobe : paint.lobes)
     if (!lobe.is_mirror()) lobe.gloss = {};
@@ -169,7 +169,7 @@ void fill_part(const Scene& scene, const Effects& effects, std::size_t part, boo
   }
 }
 
-// Whether the extent of a lamp changes what a paint shows. A lobe of exponent E falls by E R^2/4 in its middle, and a
+// True if the extent of a lamp changes what a paint shows. A lobe of exponent E falls by E R^2/4 in its middle, and a
 // wide disc is cut by the horizon.
 bool is_seen_as_disc(const Light& light, const Effects& effects) {
   constexpr double kFall = 1e-3, kWide_rad = 0.02;

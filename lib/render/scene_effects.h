@@ -1,5 +1,5 @@
 // The effects that a scene calls for, and the table of weights that all engines with prefiltered maps read.
-// goniochrome-theory(7), RENDERING.
+// goniochrome-rendering(7), "RENDERING".
 #pragma once
 
 #include <vector>

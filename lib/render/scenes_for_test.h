@@ -52,7 +52,7 @@ inline mesh::Mesh panels_mesh(int n) {
   return mesh;
 }
 
-// What a camera sees, by the nearest triangle that the ray through each pixel meets: a plain search through all of
+// The view of a camera, by the nearest triangle that the ray through each pixel meets: a plain search through all of
 // them, without OpenGL.
 inline Gbuffer seen_by_rays(const mesh::Mesh& mesh, const Camera& camera, int width, int height) {
   Gbuffer g{width, height, {}, *rays(camera, width, height)};
@@ -105,7 +105,7 @@ inline envmap::CubeMap cube_of(int size, const std::function<Vec3(const Vec3& di
   return map;
 }
 
-// The same everywhere, for these exponents: prefiltering leaves it alone.
+// An environment of one radiance everywhere, for these exponents: prefiltering leaves it alone.
 inline envmap::PrefilteredEnvironment constant_env(const Vec3& radiance, const std::vector<double>& exponents) {
   const envmap::CubeMap map = cube_of(4, [&](const Vec3&) { return radiance; });
   envmap::PrefilteredEnvironment env;

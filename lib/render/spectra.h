@@ -1,4 +1,4 @@
-// The spectra of a scene: what its paints and lamps are in bands of wavelength. goniochrome-theory(7), LIGHT IN BANDS.
+// The spectra of a scene: what its paints and lamps are in bands of wavelength. goniochrome-color(7), "LIGHT IN BANDS".
 #pragma once
 
 #include <optional>

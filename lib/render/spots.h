@@ -1,4 +1,4 @@
-// Bright spots of an environment are drawn as lamps. goniochrome-theory(7), RENDERING, Bright spots.
+// Bright spots of an environment are drawn as lamps. goniochrome-rendering(7), "Bright spots".
 #pragma once
 
 #include "envmap/bright_spots.h"

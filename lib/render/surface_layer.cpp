@@ -268,7 +268,7 @@ double add_seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at
 
 }  // namespace
 
-// As stack() has it, from the uppermost texture on.
+// The place as stack() has it, from the uppermost texture on.
 SurfaceLayer::Place SurfaceLayer::place(int part, const std::vector<TexturePlace>& places,
                                         const Effects& effects) const {
   const std::vector<Laid>& laid = laid_[static_cast<std::size_t>(part)];
@@ -378,7 +378,7 @@ void SurfaceLayer::see(const Gbuffer& gbuffer, int first_row, int end_row, const
   }
 }
 
-// What a band shows of one texture or level.
+// Shades the part of a band that shows one texture or level.
 void SurfaceLayer::shade(const Gbuffer& gbuffer, const SeenBand::Bin& bin, const std::vector<TexturePlace>& places,
                          const SbrdfLight& light, bool placed, float weight, image::Image& rgba) const {
   SbrdfShader::Batch batch(*shader_, bin.texture, light, bin.level);

@@ -1,6 +1,6 @@
 // The surface layer holds what the lobe model of a part cannot show: textures of generalized cosine lobes, and the
 // colors of a color map under directional lights. It is added to a picture pixel by pixel on the processor.
-// goniochrome-theory(7), SPATIALLY VARYING SURFACES, Drawing.
+// goniochrome-surfaces(7), "Drawing".
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ struct LaidTexture {
   const brdf::SbrdfTexture* texture = nullptr;
   double repeat = 1;  // how many times the texture is laid where its coordinates run from 0 to 1
   TextureLaying laying = {};
-  // Whether it is one more projection of the texture beneath it: what they show is added up by their shares, and not
+  // True if it is one more projection of the texture beneath it: what they show is added up by their shares, and not
   // laid over each other.
   bool blends = false;
 };
@@ -40,7 +40,7 @@ struct PartSurface {
 
   // All textures from the lowest one on.
   std::vector<LaidTexture> textures() const;
-  // Whether no place of the part shows the paint: the lowest texture has no alpha.
+  // True if no place of the part shows the paint: the lowest texture has no alpha.
   bool hides_paint() const { return texture != nullptr && texture->alpha.empty(); }
 };
 
@@ -55,12 +55,12 @@ class SurfaceLayer {
                const MipCube* mip = nullptr);
   ~SurfaceLayer();
 
-  // Whether no part has a surface beyond its paint.
+  // True if no part has a surface beyond its paint.
   bool empty() const { return empty_; }
-  // What there is to add to a picture that an engine drew by lobes: textures, and color maps under lights. Paths
-  // evaluate color maps under every light.
+  // True if there is anything to add to a picture that an engine drew by lobes: textures, and color maps under lights.
+  // Paths evaluate color maps under every light.
   bool textured() const { return textured_; }
-  // Whether a paint is seen through a texture, so that the picture beneath the layer is dimmed. It must then hold one
+  // True if a paint is seen through a texture, so that the picture beneath the layer is dimmed. It must then hold one
   // sample alone.
   bool dims() const { return dims_; }
   bool mapped() const { return mapped_; }
@@ -83,7 +83,7 @@ class SurfaceLayer {
     FilterProbes probes = {};
     double share = 1;
   };
-  // What all textures show of a point, and the part of the paint beneath that is seen. `places` are those on each
+  // The light of all textures at a point, and the part of the paint beneath that is seen. `places` are those on each
   // texture of the part, `step` apart. A sample covers `scale` times their footprints along each side.
   struct Stack {
     std::size_t count = 0;
@@ -96,7 +96,7 @@ class SurfaceLayer {
   // Where the textured parts of a G-buffer's pixels lie on their textures, those of all pixels on the lowest texture
   // first, see Gbuffer::point(); empty without textures.
   std::vector<TexturePlace> places(const Gbuffer& gbuffer) const;
-  // The same with footprints, whose middles lie so far from the points, in pixels to the right and downward.
+  // Places with footprints, whose middles lie so far from the points, in pixels to the right and downward.
   std::vector<TexturePlace> filtered_places(const Gbuffer& gbuffer, const std::array<double, 2>& middle = {}) const;
   // Puts those of one pixel, with their footprints, which are `scale` times as large, on a point. They count as known
   // where it matters which place is covered. Leaves it alone where it shows no texture or the G-buffer has no
@@ -137,10 +137,10 @@ class SurfaceLayer {
     std::vector<Piece> pieces;
     double bare = 0;
   };
-  // Of the point of this number; its lobes that the effects have.
+  // The place of the point of this number; its lobes that the effects have.
   Place place(const VisiblePoint& point, std::size_t number, const Effects& effects) const;
-  // Of a point of the mesh on a part that has a texture: all its lobes. Of the point the triangle and the shares are
-  // read.
+  // The place of a point of the mesh on a part that has a texture: all its lobes. Of the point the triangle and the
+  // shares are read.
   Place place(int part, const MeshPoint& point) const;
 
  private:

@@ -133,7 +133,7 @@ TEST(Tilts, EvenLightShowsTheSumOfTheWeights) {
   }
 }
 
-// What a point shows of even white light by its finest set.
+// The light of a point in even white light by its finest set.
 double evenly_lit(const VisiblePoint& point, const paint::LobeFit& paint) {
   const double view_deg = std::acos(dot(point.normal, point.to_viewer)) / kDegree;
   const paint::TiltedView view = brdf::at_view(paint.tilts.back(), view_deg);

@@ -1,4 +1,4 @@
-// What parts of a vehicle wear that nobody paints: glass, rubber, seams, wheels and the underside.
+// Finishes of the parts of a vehicle that nobody paints: glass, rubber, seams, wheels and the underside.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@ namespace {
 
 double albedo(const char* name, const char* material = "") {
   const auto finish = trim_of({name, material, 0, 1}, true);
-  // As read at 45 and 0 deg, through the coat where there is one.
+  // The reading at 45 and 0 deg, through the coat where there is one.
   return finish ? brdf::flake_reflectance_factor(*finish, 45).x : -1;
 }
 

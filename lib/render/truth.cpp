@@ -26,7 +26,7 @@ constexpr int kMoreRounds = 8;
 constexpr double kSpare = 1.2;
 // The part of the difference that the truth's own error may be, and the noise below which nobody sees any.
 constexpr double kPart = 0.1, kUnseen = 0.02;
-// Of the tolerance: a verdict needs no less.
+// The part of the tolerance: a verdict needs no less.
 constexpr double kPartOfTolerance = 0.05;
 
 // Independent batches, added one after the other.
@@ -56,7 +56,7 @@ struct PointTruth {
     for (LightShares& half : result) half += deterministic;
     return result;
   }
-  // Of that mean.
+  // The covariance of that mean.
   Covariance covariance() const {
     Covariance result = batches.covariance();
     for (double& value : result) value /= std::max(1, batches.count());
@@ -64,7 +64,7 @@ struct PointTruth {
   }
 };
 
-// The difference of two estimates, without what their noise adds to it on average: theory(7), PLAN, Effects of rays.
+// The difference of two estimates, less the mean contribution of their noise: goniochrome-plan(7), "Effects of rays".
 // `difference` takes the shares of both.
 template <class Difference>
 double noiseless(const PointTruth& a, const PointTruth& b, const Difference& difference) {
@@ -214,7 +214,7 @@ class Judge {
     for (std::size_t i = 0; i < truth_.size(); ++i) values.push_back((this->*of)(i));
     return percentile_95(std::move(values));
   }
-  // As plans have it.
+  // The change as plans have it.
   double worth(const RayEffects& without) const {
     constexpr RayEffects kAll{true, true, true};
     std::vector<double> values;

@@ -1,5 +1,5 @@
 // A picture against path traced truth: exact sums of the open light, and paths for all that the mesh does to it. The
-// difference is told by its causes. goniochrome-theory(7), PLAN, Check.
+// difference is told by its causes. goniochrome-plan(7), "Check".
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct TruthShares {
                    // is not part of the difference
 };
 
-// What each effect of rays is worth in the truth, as a plan has it: the change by leaving it out, noise taken off.
+// The change by each effect of rays in the truth, as a plan has it: the change by leaving it out, noise taken off.
 struct TrueWorth {
   double shadow = 0, self = 0, bounce = 0;
   double floor = 0;  // 0 where the scene has none

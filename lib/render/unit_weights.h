@@ -1,5 +1,5 @@
 // The weights by which each column of a basis shows light: those of a paint with weight 1 in that column alone. What
-// gathers light by columns reads maps and lamps by them as the engines do. goniochrome-theory(7), RENDERING, Lamps.
+// gathers light by columns reads maps and lamps by them as the engines do. goniochrome-rendering(7), "LAMPS".
 #pragma once
 
 #include <memory>

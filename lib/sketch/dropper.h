@@ -1,5 +1,5 @@
-// What a dropper makes of the pixels below it, wherever these come from. [Shimizu2009] 3.5.2, 3.5.3;
-// goniochrome-theory(7), MOOD BOARDS.
+// The result of a dropper for the pixels below it, wherever these come from. [Shimizu2009] 3.5.2, 3.5.3;
+// goniochrome-sketches(7), "MOOD BOARDS".
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // Paints picked from pictures: by droppers for face, flop and gloss, by palettes of a whole picture, and by mood
-// boards, text files that name pictures and droppers. [Shimizu2009] 3.5, goniochrome-theory(7), MOOD BOARDS.
+// boards, text files that name pictures and droppers. [Shimizu2009] 3.5, goniochrome-sketches(7), "MOOD BOARDS".
 #pragma once
 
 #include <optional>
@@ -26,7 +26,7 @@ struct Dropper {
 // Reads "img.jpg@x,y[,r]". Errors call the text by the name `option`.
 Result<Dropper> parse_dropper(const std::string& text, const std::string& option);
 
-// What a dropper found.
+// The result of a dropper.
 struct PickSample {
   Dropper dropper;
   std::string path;

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A scene-linear image in the working space, so that what is put in is what a dropper must find.
+// A scene-linear image in the working space, so that a dropper must find the colors put in.
 image::ImagePart flat(int width, int height, const color::Rgb& color) {
   image::ImagePart part;
   part.image = {width, height, 3, {}, {"R", "G", "B"}};

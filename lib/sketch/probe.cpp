@@ -9,7 +9,7 @@ namespace goniochrome::sketch {
 
 namespace {
 
-// Of two unit vectors; exact for small angles too.
+// The angle of two unit vectors; exact for small angles too.
 double angle_deg(const Vec3& a, const Vec3& b) {
   return std::atan2(length(cross(a, b)), dot(a, b)) / kDegree;
 }

@@ -1,4 +1,4 @@
-// What a pixel of a picture with buffers shows: the part, how it lies to viewer and lights, and its color.
+// The contents of a pixel of a picture with buffers: the part, how it lies to viewer and lights, and its color.
 #pragma once
 
 #include <string>

@@ -329,7 +329,7 @@ Registration best_of(const image::Image& shown, const Picture& scan) {
 }  // namespace
 
 Result<Registration> registration_of(const image::AovFile& buffers, const Picture& scan) {
-  // What stands behind the mesh in the scan is not known: the picture as it is stored, or the gray of a display
+  // The background behind the mesh in the scan is not known: the picture as it is stored, or the gray of a display
   // picture.
   Registration found = best_of(on_gray(buffers), scan);
   if (const Registration stored = best_of(buffers.image, scan); stored.agreement > found.agreement) found = stored;

@@ -1,5 +1,5 @@
 // Where the buffers of a rendering lie in a scan of it, which has another size and was laid on the scanner by hand.
-// goniochrome-theory(7), SKETCH FITTING.
+// goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
 #include "base/result.h"
@@ -30,7 +30,7 @@ Result<Registration> registration_of(const image::AovFile& buffers, const Pictur
 // partly clipped or transparent is so itself, and one whose place is beyond the scan is transparent.
 Picture registered(const Picture& scan, const Registration& registration, int width, int height);
 
-// The same of a mask: its first channel.
+// The registered mask: its first channel.
 image::Image registered(const image::Image& mask, const Registration& registration, int width, int height);
 
 }  // namespace goniochrome::sketch

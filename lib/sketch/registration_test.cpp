@@ -41,8 +41,8 @@ image::AovFile buffers_of(int width, int height, double red = 1, double blue = 1
   return file;
 }
 
-// What a scanner makes of it: each pixel of the scan shows the drawing where the similarity puts it, on white paper,
-// with noise.
+// The scan of a picture: each pixel of the scan shows the drawing where the similarity puts it, on white paper, with
+// noise.
 Picture scan_of(int buffer_width, int buffer_height, int width, int height, const Registration& truth, double red = 1) {
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0, 0.01);
@@ -124,7 +124,7 @@ TEST(Registration, APictureOfTooFewPixelsIsRefused) {
   }
 }
 
-// What the scan shows comes back in the pixels of the buffers: the mean light of each, white paper beyond.
+// The colors of the scan come back in the pixels of the buffers: the mean light of each, white paper beyond.
 TEST(Registration, TheScanIsSeenInThePixelsOfTheBuffers) {
   const image::AovFile buffers = buffers_of(320, 200);
   const Registration truth{2.3, 3, 5, -7, 1};

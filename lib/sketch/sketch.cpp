@@ -32,7 +32,7 @@ constexpr std::size_t kAnswerPixels = 6000;  // of an environment's picture, loo
 constexpr std::size_t kFirstPixels = 1000;   // and on the way to it
 constexpr std::size_t kFewestPixels = 30;
 
-// What of a color the edited picture could show.
+// The part of a color that the edited picture could show.
 color::Rgb as_displayed(const color::Rgb& rgb, const SketchInput& input) {
   return input.edited->scene_linear ? rgb : display::in_display_gamut(rgb);
 }
@@ -82,14 +82,14 @@ void take_shown(const formats::Basis& basis, const PaintWeights& weights, double
   }
 }
 
-// Whether a paint of few numbers explains the picture to rounding. It is then the paint that was drawn, and its lobes
+// True if a paint of few numbers explains the picture to rounding. It is then the paint that was drawn, and its lobes
 // are how far these can follow it.
 bool is_exact(const FoundPaint& found) {
   constexpr double kRounded = 1e-4;  // RMS 0.01 dE
   return found.search.cost <= kRounded;
 }
 
-// What the buffers and the picture have at each pixel, relative to the light.
+// The data of the buffers and the picture at each pixel, relative to the light.
 class Seen {
  public:
   explicit Seen(const SketchInput& input) : input_(input), image_(input.buffers->image), views_(*input.buffers) {
@@ -114,11 +114,11 @@ class Seen {
 
   bool knows_views() const { return views_.are_known(); }
 
-  // Of the coat that the picture was drawn with.
+  // The index of the coat that the picture was drawn with.
   double coat_index() const { return normal_ < 0 ? paint::kNoCoat : brdf::kCoatIndex; }
 
  private:
-  // What a coat leaves of the base's light at a pixel, relative to what it leaves where an instrument reads the color
+  // The share of the base's light that a coat leaves at a pixel, relative to that where an instrument reads the color
   // of that aspecular angle.
   float coat_share(std::uint32_t place, const float* pixel) const {
     if (normal_ < 0) return 1;
@@ -142,7 +142,7 @@ double luminance(const std::array<float, 3>& rgb) {
   return color::xyz_d65_from_rgb({rgb[0], rgb[1], rgb[2]}).Y;
 }
 
-// What the pixels within 15 deg of specular say of gloss; both are empty where they say nothing.
+// The evidence on gloss in the pixels within 15 deg of specular; both are empty where there is none.
 struct Highlight {
   std::optional<double> by_shape, by_contrast;
 };
@@ -194,7 +194,7 @@ void take_gloss(const Highlight& highlight, const std::function<bool(double)>& a
   if (highlight.by_contrast) take(*highlight.by_contrast, "contrast");
 }
 
-// What a lamp without extent lights of each part of the model, relative to white; its mirror image is a point.
+// The light of a lamp without extent in each part of the model, relative to white; its mirror image is a point.
 void lamp_columns(double aspecular_deg, double cos_i, const formats::Basis& basis, double coat_index, Vec3* columns) {
   const auto light = [](double value) { return value * kPi * Vec3{1, 1, 1}; };
   const double base = cos_i * instrument_passages(aspecular_deg, coat_index);
@@ -206,8 +206,8 @@ void lamp_columns(double aspecular_deg, double cos_i, const formats::Basis& basi
   *columns = {};
 }
 
-// The same cells as light on lobes: about `most` of them, of all angles and cosines alike. `by_view`: the cells know
-// the angles of the viewer.
+// The cells as light on lobes: about `most` of them, of all angles and cosines alike. `by_view`: the cells know the
+// angles of the viewer.
 SearchSamples search_samples(const std::vector<SketchCell>& cells, const formats::Basis& basis, double coat_index,
                              bool by_view, bool display, std::size_t most) {
   const std::size_t step = sketch_step(cells.size(), most);
@@ -244,7 +244,7 @@ void take_curve(const SketchCurve& curve, SketchFit& fit) {
   fit.appearance = paint::appearance_from_rows(designed)->appearance;
 }
 
-// Whether the search, which has a paint's few degrees of freedom, explains the cells as well as a free curve. In a
+// True if the search, which has a paint's few degrees of freedom, explains the cells as well as a free curve. In a
 // clean picture its cost must be nearly the same. In a noisy one the curve may gain by following the noise, and it may
 // do so the more where no pixel holds it at the angles asked for, so the search may cost more.
 bool is_as_good(double search_cost, double curve_cost, bool extrapolates) {
@@ -350,7 +350,7 @@ void take_extrapolated(const std::vector<SketchCell>& cells, SketchFit& fit) {
 
 SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, const formats::Basis& basis,
                        const SketchLimits& limits, bool with_differences) {
-  // What the pixels show, sorted into cells.
+  // The colors of the pixels, sorted into cells.
   const Seen seen(input);
   const std::vector<SketchSample> samples = seen_samples(seen, pixels);
   const std::vector<SketchCell> cells = sketch_cells(samples);

@@ -1,5 +1,5 @@
 // From an edited picture of a painted mesh back to the paint: under one directional light, and under any other light.
-// [Shimizu2009] 3.7, goniochrome-theory(7), SKETCH FITTING.
+// [Shimizu2009] 3.7, goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
 #include <cstdint>
@@ -87,7 +87,7 @@ std::size_t search_columns(const formats::Basis& basis);
 SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
                              const SketchLimits& limits, bool with_differences);
 
-// The same under lamps that are discs: their highlights, glare included, tell the gloss. Few pixels show them, so that
+// Fits under lamps that are discs: their highlights, glare included, determine the gloss. Few pixels show them, so that
 // all of these are looked at. Gloss is "undetermined" where readings more than 10 units apart explain them as well.
 SketchFit sketch_lamps(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
                        const SketchLimits& limits, bool with_differences);
@@ -95,7 +95,7 @@ SketchFit sketch_lamps(const SketchInput& input, const SketchPixels& pixels, con
 // The paint found as it is written to a file: rows, face, flop, travel and gloss. A fallback is a solid paint.
 paint::Paint sketch_paint(const SketchFit& fit, const std::string& name);
 
-// Whether a paint of weights >= 0 can have a color within that distance of this reflectance factor.
+// True if a paint of weights >= 0 can have a color within that distance of this reflectance factor.
 bool is_paint_color(const color::Rgb& rgb, double within_de76);
 
 }  // namespace goniochrome::sketch

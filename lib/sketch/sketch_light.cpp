@@ -119,14 +119,14 @@ class Shading {
     return {pixel[0], pixel[1], pixel[2]};
   }
 
-  // Of the normal for each pixel, from one to the other beyond a pixel; none where they lie on two parts.
+  // The change of the normal for each pixel, from one to the other beyond a pixel; none where they lie on two parts.
   Vec3 change(int x0, int y0, int x1, int y1) const {
     if (x0 < 0 || y0 < 0 || x1 >= buffers_.image.width || y1 >= buffers_.image.height) return {};
     if (buffers_.image.pixel(x0, y0)[part_] != buffers_.image.pixel(x1, y1)[part_]) return {};
     return 0.5 * (normal(x1, y1) - normal(x0, y0));
   }
 
-  // Of the pixel, as the renderer has it.
+  // The spread of the pixel, as the renderer has it.
   double mirror_spread(int x, int y) const {
     const auto mirrored = [&](int i, int j) {
       const Vec3 n = normal(i, j), viewer = buffers_.to_viewer(i, j);
@@ -159,7 +159,7 @@ class Shading {
                       envmap::bilinear(env.mirror.map, view.mirrored);
   }
 
-  // As the engines have them: lamps take the place of what the maps have of the spots.
+  // Lamps take the place of the spots in the maps, as in the engines.
   void take_out_spots(const envmap::PrefilteredEnvironment& env, std::vector<render::Light>& lights) {
     rest_ = env;
     rest_.diffuse.map = *envmap::open_diffuse_map(env, env.spots.size());
@@ -256,14 +256,14 @@ Result<SketchLight> lamp_light(const image::AovFile& buffers, const formats::Bas
 
 namespace {
 
-// Of the samples of a pixel about its center, along a row.
+// The variance of the samples of a pixel about its center, along a row.
 double half_variance(int samples) {
   double sum = 0;
   for (const auto& [dx, dy] : render::sample_shifts(samples)) sum += 0.5 * dx * dx / samples;
   return sum;
 }
 
-// What the light of a transport is multiplied by for paints under another coat, at one point.
+// The factor of the light of a transport for paints under another coat, at one point.
 struct CoatChange {
   double base = 1, mirror = 1;
 };
@@ -310,8 +310,8 @@ double SketchTransport::coat_index() const {
 
 // The columns of a transport are those of the search; its gloss has the coat's reflectance in it, the search's has it
 // relative to that of the reading. A column that bends by d from pixel to pixel is, in the mean over samples of the
-// variance v about the center, off by v d/2 from what it is there: what the picture's samples and those of the
-// transport differ by is made up for.
+// variance v about the center, off by v d/2 from its value there: this corrects for the different samples of the
+// picture and the transport.
 SketchLight SketchTransport::light(int samples, double coat_index) const {
   formats::Basis basis;
   basis.name = "transport", basis.exponents = transport_->columns.exponents, basis.mirror = true;

@@ -1,4 +1,5 @@
-// The renderer's equations as the search for the paint of a picture needs them. goniochrome-theory(7), SKETCH FITTING.
+// The renderer's equations as the search for the paint of a picture needs them.
+// goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
 #include <memory>
@@ -12,7 +13,7 @@
 
 namespace goniochrome::sketch {
 
-// Whether lamps of the buffers are discs in the picture. The plan leaves extents out where no lobe of the paint that it
+// True if lamps of the buffers are discs in the picture. The plan leaves extents out where no lobe of the paint that it
 // draws is narrow enough to show them; another paint under the same lamps would. They are points where the plan was
 // told to leave out what is seen of them.
 bool lamps_are_discs(const image::AovFile& buffers);
@@ -22,7 +23,7 @@ bool lamps_are_discs(const image::AovFile& buffers);
 // arguments must outlive the result. Error: the buffers lack normals or rays.
 Result<SketchLight> sketch_light(const image::AovFile& buffers, const envmap::PrefilteredEnvironment& env);
 
-// The same of the lamps of the buffers alone, in the lobes of a basis.
+// The light of the lamps of the buffers alone, in the lobes of a basis.
 Result<SketchLight> lamp_light(const image::AovFile& buffers, const formats::Basis& basis);
 
 // The light that was traced for the buffers' view, with shadows and bounced light, and what a paint makes of it.
@@ -31,21 +32,21 @@ class SketchTransport {
   // Nothing where the buffers have no transport. Error: as render::transport_of().
   static Result<std::optional<SketchTransport>> of(const image::AovFile& buffers);
 
-  // Of a pixel, whose mean the light is.
+  // The samples of a pixel, whose mean the light is.
   int samples() const;
 
   // The index of the coat that light was traced through, the largest of all parts.
   double coat_index() const;
 
-  // As sketch_light(), for paints under a coat of that index. Bounced light is that of the paints that were worn, or of
-  // the paint told last. A picture of several samples a pixel shows their mean, as the light in the centers of the
-  // pixels around tells it.
+  // The light as of sketch_light(), for paints under a coat of that index. Bounced light is that of the paints that
+  // were worn, or of the paint told last. A picture of several samples a pixel shows their mean, as the light in the
+  // centers of the pixels around tells it.
   SketchLight light(int samples, double coat_index) const;
 
   // The parts of the mesh, by number from 1. The floor has no number among them: it keeps what it wears.
   std::vector<int> mesh_parts() const;
 
-  // What the paints that were worn show (radiance, as R G B A), and A = 0 where no surface was traced.
+  // The picture of the paints that were worn (radiance, as R G B A), and A = 0 where no surface was traced.
   image::Image worn_picture() const;
 
   // Scales bounced light to these weights, under a coat of that index, on these parts (numbers from 1), and returns

@@ -34,7 +34,7 @@ int alpha_channel(const image::Image& image) {
   return names.empty() && (image.channels == 2 || image.channels == 4) ? image.channels - 1 : -1;
 }
 
-// Whether a pixel may have been any brighter: a channel that is full, or paper without any ink.
+// True if a pixel may have been any brighter: a channel that is full, or paper without any ink.
 bool is_clipped(const float* pixel, int colors) {
   if (colors == 4) return std::all_of(pixel, pixel + 4, [](float ink) { return ink <= 1 - kClip; });
   return std::any_of(pixel, pixel + colors, [](float signal) { return signal >= kClip; });
@@ -83,7 +83,7 @@ void take_inks_for_filters(image::Image& image) {
   image.channels = 3, image.channel_names = {"R", "G", "B"};
 }
 
-// What the file is taken for where it says nothing.
+// The color space of a file that states none.
 void tag_untagged(image::ImagePart& part, bool integer, bool is_exr) {
   if (!image::text_attribute(part, "colorInteropID").empty() || part.attributes.contains("chromaticities")) return;
   if (!image::text_attribute(part, "oiio:ColorSpace").empty() && !is_exr) return;

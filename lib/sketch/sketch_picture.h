@@ -1,5 +1,5 @@
 // Pictures that people made or edited, as light in the working space. They come in any file format, with the signals of
-// a display or with linear light. goniochrome-theory(7), SKETCH FITTING.
+// a display or with linear light. goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
 #include <cstdint>
@@ -42,7 +42,7 @@ struct Picture {
 // an image, a damaged profile or one of other channels, an unknown color space, or a view that cannot be undone.
 // `named`, where it has a name, is the view in place of the one that the picture names.
 Result<Picture> read_picture(const std::string& path, PictureView view, const std::string& named = "");
-// The same of an image that was read with Inks::kKept, or of a piece of one; `name` is what errors call it.
+// The picture of an image that was read with Inks::kKept, or of a piece of one; `name` is its name in errors.
 Result<Picture> picture_of(image::ImagePart part, const std::string& name, PictureView view);
 
 }  // namespace goniochrome::sketch

@@ -1,5 +1,5 @@
 // The pixels of an edited picture: which of them tell of the paint, what they show, and whether the picture was moved.
-// goniochrome-theory(7), SKETCH FITTING.
+// goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
 #include <array>
@@ -25,8 +25,8 @@ struct SketchInput {
   double gain = 1;                     // edited values times this are light as in the buffers, exposure taken out
   double least_cosine = 0;             // of the light's incidence; darker places tell nothing
   double glare_deg = 0;                // aspecular angles below this are gloss
-  // What the paints of the buffers show in their transport (radiance), or null. The picture may have begun as that and
-  // not as the buffers' own picture, from which it differs by the noise of both.
+  // The picture of the paints of the buffers in their transport (radiance), or null. The picture may have begun as that
+  // and not as the buffers' own picture, from which it differs by the noise of both.
   const image::Image* shaded = nullptr;
 };
 

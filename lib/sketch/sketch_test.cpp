@@ -38,7 +38,7 @@ TEST(Sketch, PlantedPaintsReturnUnderALamp) {
   EXPECT_LE(sum / 200, 0.3);
 }
 
-// The same through a coat. The control is a search that does not know that the picture was drawn with it.
+// Paints return through a coat as well. The control is a search that does not know that the picture was drawn with it.
 TEST(Sketch, CoatedPaintsReturnUnderALamp) {
   image::AovFile ball = sphere(120, kLamp);
   fit::FitOptions options = fitter().options();
@@ -115,7 +115,7 @@ SketchLight light_of(const image::AovFile& file, const envmap::PrefilteredEnviro
   return {basis(), {}, shade};
 }
 
-// The same light on a paint; `op`, where there is one, multiplies light and paint.
+// Lights a paint; `op`, where there is one, multiplies light and paint.
 void shade_under(const SketchLight& light, const paint::LobeFit& fit, const color::ReflectionOperator& op,
                  image::AovFile& file) {
   std::vector<Vec3> columns(search_columns(light.basis));
@@ -141,7 +141,7 @@ struct Figures {
   double mean() const { return sum / count; }
 };
 
-// The largest CIEDE2000 at 15, 45 and 110 deg between what was found and what the planted lobes show.
+// The largest CIEDE2000 at 15, 45 and 110 deg between the paint found and the planted lobes.
 double worst_from_lobes(const SketchFit& found, const paint::LobeFit& planted) {
   double worst = 0;
   for (const paint::LabReading& row : found.rows)
@@ -168,7 +168,7 @@ paint::Paint measured_paint(std::mt19937_64& random) {
 }
 
 // Every second paint through the operator, and every second of those measured. An exact picture leaves the search no
-// excuse: what is found is what was planted, to a tenth of what is just seen.
+// excuse: it finds the planted paint, to a tenth of a visible difference.
 TEST(Sketch, PlantedPaintsReturnUnderAnEnvironment) {
   std::mt19937_64 random(12);
   const envmap::PrefilteredEnvironment env = glowing();
@@ -445,7 +445,7 @@ TEST(Sketch, OnlyThePixelsThatWereEditedCount) {
   EXPECT_FALSE(sketch_pixels(input(other, repainted))->changed_only);
 }
 
-// The same light with noise of its own: spots of 3 x 3 pixels that are a fifth brighter, each fourth spot.
+// The picture with noise of its own: spots of 3 x 3 pixels that are a fifth brighter, each fourth spot.
 Picture noisy(const Picture& from) {
   Picture to = from;
   for (int y = 0; y < to.rgb.height; ++y)
@@ -528,7 +528,7 @@ TEST(Sketch, SizesThatDifferAreBothNamed) {
   EXPECT_THAT(pixels.error().message, HasSubstr("the mask is 7 x 9 pixels"));
 }
 
-// What is done to a picture in an image editor.
+// An edit of a picture in an image editor.
 enum class Touch { kHue, kLightness, kBurn };
 
 // Hue: the channels trade places by a rotation about gray; lightness: a third more light; burn: the color far from

@@ -21,7 +21,7 @@ using testing::HasSubstr;
 const std::vector<double> kExponents = {3, 20, 200};
 constexpr double kWhite = 2;  // luminance of the scene's white diffuser, so that units show
 
-// What the diffuse column gets at a pixel, and what each flake column gets of it.
+// The light of the diffuse column at a pixel, and the part of it in each flake column.
 struct Lit {
   color::Rgb diffuse;
   std::vector<double> shares;
@@ -32,7 +32,7 @@ std::vector<double> of_lamp(double aspecular_deg) {
   for (const double e : kExponents) shares.push_back(std::pow(std::cos(aspecular_deg * kDegree), e));
   return shares;
 }
-// Of an even hemisphere seen from above: the integral of cos^(E+1) is 2 pi/(E + 2), that of the cosine is pi.
+// The light of an even hemisphere seen from above: the integral of cos^(E+1) is 2 pi/(E + 2), that of the cosine is pi.
 std::vector<double> of_even_light() {
   std::vector<double> shares;
   for (const double e : kExponents) shares.push_back(2 / (e + 2));

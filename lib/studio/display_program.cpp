@@ -35,7 +35,7 @@ float srgb_signal(float light) {{
   return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
 }}
 
-vec3 paint_view(vec3 c, float luminance) {{  // linear Rec.709; goniochrome-theory(7), RENDERING
+vec3 paint_view(vec3 c, float luminance) {{  // linear Rec.709; goniochrome-rendering(7), "RENDERING"
   float least = min(c.x, min(c.y, c.z));
   if (least < 0.0) {{
     float gray = max(0.0, luminance), keep = gray / (gray - least);

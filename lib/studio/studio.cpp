@@ -286,7 +286,7 @@ Result<Json> Studio::State::dropper(JsonReader& request) const {
   return Json{{"lab", lab_json(found.lab)}, {"gloss", json_number(found.gloss)}, {"css", css_color(found.lab, {})}};
 }
 
-// As paint-edit --gradient makes and names them.
+// The gradient, made and named as by paint-edit --gradient.
 Result<Json> Studio::State::gradient(JsonReader& request) const {
   GONIO_ASSIGN(const paint::Paint from, paint_of_json(request.member("from")));
   GONIO_ASSIGN(const paint::Paint to, paint_of_json(request.member("to")));

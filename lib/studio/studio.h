@@ -1,5 +1,5 @@
-// What a page for the design of paints asks of the library: requests and answers as JSON, so that the same arithmetic
-// serves a browser, where it runs as WebAssembly, and the tools. A page computes no color by itself.
+// Requests of a page for the design of paints to the library, and answers, as JSON, so that the same arithmetic serves
+// a browser, where it runs as WebAssembly, and the tools. A page computes no color by itself.
 #pragma once
 
 #include <cstddef>
@@ -62,8 +62,8 @@ class Studio {
   // The row of weights of the paint that was fitted last, see render/page_weights.h.
   const std::vector<float>& weights() const;
 
-  // What answers fill, in the machine's own number format: floats of weights, tilts, clouds and pictures, else
-  // 32-bit whole numbers.
+  // The lists that answers fill, in the machine's own number format: floats of weights, tilts, clouds and pictures,
+  // else 32-bit whole numbers.
   enum class List { kWeights, kFiltered, kCloud, kCloudColors, kCloudPaints, kTilts, kPicture };
   std::span<const std::byte> list(List which) const;
 

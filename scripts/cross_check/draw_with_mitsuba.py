@@ -4,7 +4,7 @@
 
 SCENE.json: variant; parts: [{positions, normals, triangles (paths of .npy), paint, emission}]; environment (.npy of a lat-long
 picture, or null); eye, target, fov_deg, size [width, height]; bounces; samples (of a pixel, in each of the passes); passes; seed.
-A paint has table, the path of an RGL tensor file, or diffuse, lobes [[exponent, directional diffuse, gloss] ...] and mirror, as goniochrome-theory(7), LOBE MODEL, has them.
+A paint has table, the path of an RGL tensor file, or diffuse, lobes [[exponent, directional diffuse, gloss] ...] and mirror, as goniochrome-lobes(7), "LOBE MODEL", has them.
 
 OUT.npy holds the mean radiance of the passes. Rays go through the centers of the pixels. The last line of standard output is JSON: version, the processor seconds of each pass after the first, and of the first,
 first_s, which compiling is part of.

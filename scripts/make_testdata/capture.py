@@ -1,7 +1,7 @@
 """Photographs of varnished stripes by a gantry: the files of testdata/capture, which fit-sbrdf takes.
 
-The pixel value of a texel is exposure * pi * f * cos_i / d^2, with f = diffuse + strength * base^n, as in goniochrome-theory(7),
-SPATIALLY VARYING SURFACES; it is written as sRGB in 16 bits. One photograph in four has half the exposure.
+The pixel value of a texel is exposure * pi * f * cos_i / d^2, with f = diffuse + strength * base^n, as in
+goniochrome-surfaces(7), "SPATIALLY VARYING SURFACES"; it is written as sRGB in 16 bits. One photograph in four has half the exposure.
 """
 
 import math

@@ -2,7 +2,7 @@
 
 Each texel is a sum of generalized cosine lobes, f = diffuse + sum albedo (x wo.x wi.x + y wo.y wi.y + z wo.z wi.z)^n in
 1/sr and linear Rec.2020. Its frame has an x axis along the brush or the grain, which is turned by half the angle of
-(frame.c, frame.s). The equations are in goniochrome-theory(7), SPATIALLY VARYING SURFACES.
+(frame.c, frame.s). The equations are in goniochrome-surfaces(7), "SPATIALLY VARYING SURFACES".
 """
 
 import math

@@ -56,7 +56,7 @@ class Paint:
         return between_rows([row for row in self.rows if row.in_plane and row.angle_deg >= 0] or self.rows, angle_deg)
 
     def curve_at(self, angle_deg):
-        """Lab by the clamped quadratic of face, flop and travel: goniochrome-theory(7), PAINT REPRESENTATIONS."""
+        """Lab by the clamped quadratic of face, flop and travel: goniochrome-paint(7), "PAINT REPRESENTATIONS"."""
         face, flop, travel = (self.appearance[key] for key in ("face", "flop", "travel"))
         share = ((travel - min(angle_deg, travel)) / (travel - 15)) ** 2
         return tuple(o + (f - o) * share for f, o in zip(face, flop))

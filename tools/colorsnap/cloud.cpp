@@ -43,7 +43,7 @@ std::vector<color::Lab> colors_at(const library::LibraryIndex& index, const pain
 
 }  // namespace
 
-// What one projection shows of a color.
+// The place of a color in one projection.
 struct Projection {
   const char *title, *x_label, *y_label;
   double (*x)(const color::Lab&);

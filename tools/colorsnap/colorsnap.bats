@@ -348,7 +348,7 @@ column() {
 }
 
 @test "--illuminant looks for the paints that are near in every light" {
-  # Of two paints, the nearer by daylight has other pigments.
+  # The nearer of two paints by daylight has other pigments.
   lit() { awk -v name="$1" "BEGIN {
     for (nm = 400; nm <= 700; nm += 10) factors = factors (nm > 400 ? \" \" : \"\") ($2)
     printf \"<paint name=\\\"%s\\\"><measurement illuminant=\\\"D65\\\" observer=\\\"10\\\"><lab geometry=\\\"45as45\\\" L=\\\"50\\\" a=\\\"0\\\" b=\\\"0\\\"/>\", name

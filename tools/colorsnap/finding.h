@@ -1,4 +1,4 @@
-// What a search found for one paint, and what it says of the design. [Shimizu2009] 5.3.5
+// The result of a search for one paint, and its verdict on the design. [Shimizu2009] 5.3.5
 #pragma once
 
 #include <optional>
@@ -50,7 +50,7 @@ class Searched {
       : index_(lights.index()), search_(lights.first()), lights_(&lights) {}
 
   const library::LibraryIndex& index() const { return index_; }
-  // Of the first light.
+  // The search in the first light.
   const library::LibrarySearch& search() const { return search_; }
   Result<QueryPlan> plan(const paint::Paint& query) const;
   std::vector<Neighbor> nearest(const QueryPlan& plan, const color::DifferenceFormula& metric) const;

@@ -98,7 +98,7 @@ class Run {
     return finish();
   }
 
-  // What becomes of a query that cannot be read.
+  // The handler of a query that cannot be read.
   std::function<void(const Error&)> left_out() {
     if (!options_.keep_going) return {};
     return [this](const Error& error) { leave_out(error.message); };
@@ -109,7 +109,7 @@ class Run {
     ++left_out_;
   }
 
-  // What was found for each paint of a batch; nothing for those that were left out.
+  // The result for each paint of a batch; nothing for those that were left out.
   Result<std::vector<std::optional<Finding>>> found(const std::vector<paint::Paint>& batch) {
     std::vector<std::pair<std::size_t, QueryPlan>> queries;
     for (const paint::Paint& paint : batch) {

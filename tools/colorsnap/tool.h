@@ -33,7 +33,7 @@ struct Options {
 cli::ToolSpec tool_spec(Options& options);
 Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
-// What the options ask of a search. Error: a text that cannot be understood.
+// The search that the options ask for. Error: a text that cannot be understood.
 Result<library::LibrarySearchOptions> search_options(const Options& options);
 
 }  // namespace goniochrome::tool

@@ -452,7 +452,7 @@ cornell() {
   [ "$(grep -c '<coat' out.xml)" -eq 0 ]
   fit-paint -q -b "$basis" matt.xml --coat 1.6 -o out.xml
   grep -q '<coat index="1.6"/>' out.xml
-  # What a paint states stays, also that it has none.
+  # Statements of a paint stay, also that it has none.
   sed 's/<gloss/<coat index="1"\/><gloss/' glossy.xml | fit-paint -q -b "$basis" -o out.xml
   grep -q '<coat index="1"/>' out.xml
   run fit-paint -b "$basis" matt.xml --coat 1.2
@@ -471,7 +471,7 @@ cornell() {
   [ "$status" -eq 1 ]
   [[ "$stderr" == *'paint "one" is passed on unfitted: it has no spectra'* ]]
   [ "$(grep -c '<lobes ' lit.xml)" -eq 1 ]
-  # The same as by way of paint-convert.
+  # The result is that by way of paint-convert.
   paint-convert -q two.xml#red --illuminant A | fit-paint -q --basis "$basis" -o piped.xml
   diff <(sed -n '/<paint name="red"/,/<\/paint>/p' lit.xml) <(sed -n '/<paint name="red"/,/<\/paint>/p' piped.xml)
   grep -q 'illuminant="A"' lit.xml

@@ -1,4 +1,4 @@
-// What the command line asks of the fit.
+// The settings of the fit from the command line.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace goniochrome::tool {
 // Error: a gloss or a list of views that makes no sense.
 Result<fit::FitOptions> fit_options(const Options& options);
 
-// The text of --explain: what will be done, what is left out, and what it costs.
+// The text of --explain: the work, the parts that are left out, and the cost.
 std::string plan(const Options& options, const fit::FitOptions& fit, const formats::Basis& basis);
 
 }  // namespace goniochrome::tool

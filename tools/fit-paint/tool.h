@@ -30,7 +30,7 @@ struct Options {
   std::string tilts = "8,16,32,64";
 };
 
-// Whether weights for several views are fitted to more paints than those whose readings a coat would change.
+// True if weights for several views are fitted to more paints than those whose readings a coat would change.
 inline bool views_asked(const Options& options) {
   return options.views != "none" && options.views != "lost";
 }

@@ -136,7 +136,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   const std::string path = options.table.empty() ? "-" : options.table.front();
   GONIO_ASSIGN(const capture::PhotoTable table, capture::read_photo_table(path));
   session.explain(plan_text(options, table));
-  // What the table alone tells is told before hundreds of pictures are read; the surface counts as a square for that.
+  // The table alone is checked before hundreds of pictures are read; the surface counts as a square for that.
   GONIO_TRY(capture::check_stations(table, options.width, options.width,
                                     capture::least_photos(options.lobes) + options.holdout));
   GONIO_ASSIGN(const std::optional<image::Image> mask, image_of(options.mask, false));

@@ -1,4 +1,4 @@
-// What the styling guidelines of [Shimizu2009] 4.5 say of a paint on a seam, with figures.
+// Advice of the styling guidelines of [Shimizu2009] 4.5 about a paint on a seam, with figures.
 #pragma once
 
 #include <string>

@@ -19,7 +19,7 @@ struct DifferenceCurves {
 // Glare, and viewers who do not see the second panel, are left out.
 std::string csv(const DifferenceCurves& what, const panels::FlakeCurve& curve);
 
-// The same as a plot for each light, with the threshold.
+// The curves as a plot for each light, with the threshold.
 std::string svg(const DifferenceCurves& what, const panels::FlakeCurve& curve);
 
 }  // namespace goniochrome::tool

@@ -272,7 +272,7 @@ column() { sed -n 2p | cut -f "$1"; }
   run --separate-stderr goniogeom-index spectra.xml#turning --views 0 --light 45 --illuminant D65,A --worst
   [ "$status" -eq 0 ]
   [ "${#lines[@]}" -eq 2 ]
-  # The same figures as by way of paint-convert.
+  # The figures are those by way of paint-convert.
   diff <(goniogeom-index -q spectra.xml#turning --views 0 --light 45 --illuminant A | cut -f1-10) \
     <(paint-convert -q spectra.xml#turning --illuminant A | goniogeom-index -q --views 0 --light 45)
   run goniogeom-index spectra.xml --illuminant X

@@ -26,7 +26,7 @@ struct GeometryRow {
   double de[std::size(kTold_deg)];
 };
 
-// What is known of one paint.
+// The index of one paint.
 struct PaintIndex {
   std::string failure;  // why there is nothing else
   std::optional<double> residual_de00;

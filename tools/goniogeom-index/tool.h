@@ -32,17 +32,17 @@ struct Options {
 cli::ToolSpec tool_spec(Options& options);
 Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
-// What run() does where --mesh is given: the panels meet at a seam of that mesh.
+// The run with --mesh: the panels meet at a seam of that mesh.
 Result<cli::Verdict> run_on_seam(const Options& options, cli::Session& session);
 
-// What counts as a difference.
+// The difference that counts.
 struct DifferenceRequest {
   panels::DifferenceMetric metric = panels::DifferenceMetric::kDe76;
   paint::TargetCurve::Kind target = paint::TargetCurve::Kind::kCurve;
   double threshold = 2.3;
 };
 
-// What the options mean, checked.
+// The meaning of the options, checked.
 struct IndexRequest : DifferenceRequest {
   std::vector<panels::LightView> geometries;
   int below_horizon = 0;                    // pairs left out
@@ -54,7 +54,7 @@ struct IndexRequest : DifferenceRequest {
 };
 Result<IndexRequest> request_of(const Options& options);
 
-// The same for a seam of a mesh.
+// The request for a seam of a mesh.
 struct SeamRequest : DifferenceRequest {
   panels::SeamWorld world;
   panels::GeometryList geometries;  // at every place of the seam, where the world says nothing

@@ -17,7 +17,7 @@
 
 namespace goniochrome::tool {
 
-// What a source may need to know.
+// Data that a source may need.
 struct SourceSetup {
   formats::ImportOptions import;
   std::vector<paint::Geometry> geometries;  // where to read a measured BRDF; none: at both sets of the industry
@@ -31,7 +31,7 @@ class PaintSink {
   virtual Result<void> write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve) = 0;
   // Puts the file in place.
   virtual Result<void> finish() = 0;
-  // What the format did not allow.
+  // Warnings about data that the format did not allow.
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 
@@ -58,7 +58,7 @@ class SinkOf : public PaintSink {
   Writer writer_;
 };
 
-// What a sink needs to begin.
+// Data that a sink needs to begin.
 struct SinkSetup {
   Prolog prolog;
   formats::CsvLayout layout;
@@ -66,7 +66,7 @@ struct SinkSetup {
   bool cxf_compat = false;                // one object per angle
 };
 
-// What an output format can hold.
+// The parts of a paint that an output format can hold.
 struct OutputFormat {
   std::string name, title;
   bool only_rows;    // only geometries and Lab, under a viewing condition

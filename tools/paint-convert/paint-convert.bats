@@ -63,7 +63,7 @@ lab() { grep -oE '<(paint name|lab) [^>]*' "$1"; }
   [ "$(cut -d, -f1-9 <<<"${lines[1]}")" = "d,D65,10,,,,60,5,-20" ]
   run --separate-stderr paint-convert -q d.xml --to csv --geometry 15 --geometry 45as25az90,75
   [ "$(cut -d, -f2 <<<"$output" | tr '\n' ' ')" = "geometry 45as15 45as25az90 45as75 " ]
-  # As paint XML it stays what it was, unless rows are asked for.
+  # Paint XML stays as it was, unless rows are asked for.
   run --separate-stderr paint-convert -q d.xml
   [[ "$output" != *"<lab "* ]]
   run --separate-stderr paint-convert -q d.xml --geometry 15,45,110
@@ -83,7 +83,7 @@ END
   awk -F, '$2 == "45as25" { exit !($5 - 45.06944444 < 1e-6 && 45.06944444 - $5 < 1e-6) }' <<<"$output"
   run --separate-stderr paint-convert -q design.xml --to wide
   [ "${lines[1]##*,}" = "45as25 45as75" ]
-  # What a table marks as the curve is no second measurement.
+  # Rows that a table marks as the curve are no second measurement.
   paint-convert -q design.xml -o long.csv
   paint-convert -q design.xml --to wide -o wide.csv
   for table in long wide; do

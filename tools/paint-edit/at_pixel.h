@@ -1,5 +1,5 @@
 // Moves at a place in a picture of the painted mesh, by the aspecular angle under a pixel. See [Shimizu2009] 3.6 and
-// goniochrome-theory(7), DESIGN MOVES.
+// goniochrome-paint(7), "DESIGN MOVES".
 #pragma once
 
 #include <string>

@@ -30,7 +30,7 @@ Result<std::optional<paint::Anisotropy>> alphas(const std::vector<double>& numbe
   return std::optional(paint::Anisotropy{numbers[0], numbers[1]});
 }
 
-// What options say of names: which of them can stand together.
+// Checks which options about names can stand together.
 Result<void> check_identity(const Options& o, bool many) {
   if (!o.rename.empty() && !o.suffix.empty()) return usage_error("--rename and --suffix exclude each other");
   if (o.new_name.empty()) return {};

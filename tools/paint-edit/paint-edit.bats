@@ -96,7 +96,7 @@ names() { xmllint --xpath "//*[local-name()='paint']/@name" "$1" | sed -E 's/.*"
   [ "$(row out.paints.xml 45as15 L) $(row out.paints.xml 45as15 a) $(row out.paints.xml 45as15 b)" = "45 55 30" ]
   [ "$(row out.paints.xml 45as110 L) $(row out.paints.xml 45as110 a) $(row out.paints.xml 45as110 b)" = "20 25 12" ]
   jq -e '.results.changes[0].restated_de00 > 1' r.json
-  # What the curve did not explain is kept where that is asked for, and with shifts.
+  # The residual of the curve is kept where that is asked for, and with shifts.
   paint-edit "$library#silver_fine" --quiet --face 45,55,30 --flop 20,25,12 --travel 70 --keep-residual -o kept.paints.xml
   row kept.paints.xml 45as15 L | awk '{ exit !($1 < 44) }'
   paint-edit "$library#silver_fine" --quiet --flop-shift 1,0,0 --report r.json -o shifted.paints.xml

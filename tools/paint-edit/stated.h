@@ -1,4 +1,4 @@
-// What a command line states outright: readings, and a whole paint from nothing.
+// Values that a command line states outright: readings, and a whole paint from nothing.
 #pragma once
 
 #include <vector>

@@ -33,7 +33,7 @@ struct Options {
 cli::ToolSpec tool_spec(Options& options);
 Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
-// Whether the options change what a paint is called, its code or its class.
+// True if the options change the name of a paint, its code or its class.
 bool moves_identity(const Options& options);
 
 // The moves that the options ask for. Error (usage): options that contradict each other or lack a number.

@@ -211,7 +211,7 @@ PY
   read -r mean worst < <(/usr/bin/python3 "$readers/compare.py" gray.fit.xml gray gray.xomp)
   jq -e --argjson mean "$mean" --argjson worst "$worst" \
     '.results.paints[0] | (.de00_mean - $mean | fabs) < 0.05 and (.de00_max - $worst | fabs) < 0.1 and .de00_mean < 0.3' r.json
-  # The same paint has the same identity, and another one another.
+  # One paint has one identity, and another one another.
   [ "$(jq -r .metadata.uuid gray.xomp)" = "$(jq -r .metadata.uuid gray_brdf.xompt)" ]
   [ "$(jq -r .metadata.uuid gray.xomp)" != "$(jq -r .metadata.uuid my-red.xomp)" ]
   run --separate-stderr paint-export -q --to openmaterial "$fitted#candy_red" -o x

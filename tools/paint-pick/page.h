@@ -9,7 +9,7 @@
 
 namespace goniochrome::tool {
 
-// What the page shows of one paint.
+// The data of one paint on the page.
 struct PageOfPaint {
   sketch::PickedPaint picked;
   std::vector<std::pair<std::string, sketch::PickSample>> samples;  // "face", "flop", "gloss"

@@ -82,7 +82,7 @@ void widen(brdf::LafortuneLobe& lobe, double factor) {
   }
 }
 
-// What --turn, --polish, --wear and --gloss do at a place.
+// The changes by --turn, --polish, --wear and --gloss at a place.
 class Changes {
  public:
   static Result<Changes> create(const Options& o, double mirror_exponent) {

@@ -36,8 +36,8 @@ struct Surfaces {
   std::string basis;           // of the paints; "" where there are none
 };
 
-// What the command line names, in order. FILE#NAMES that means several paints is as many surfaces. Error: a paint that
-// has no lobes, is brushed, or was fitted with another basis; a file that is none of these.
+// The surfaces that the command line names, in order. FILE#NAMES that means several paints is as many surfaces. Error:
+// a paint that has no lobes, is brushed, or was fitted with another basis; a file that is none of these.
 Result<Surfaces> read_surfaces(const Options& options, cli::Session& session);
 
 }  // namespace goniochrome::tool

@@ -19,7 +19,7 @@ struct Options {
   std::string mask, decal;
   int mosaic = 0;
   double angle_deg = 0;
-  // What is changed.
+  // The changes of the map.
   std::string size, tile;
   std::vector<double> crop;
   double turn_deg = 0;

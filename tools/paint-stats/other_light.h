@@ -19,7 +19,7 @@ class OtherLight {
   // The names of the columns, each behind a tab; "" where no other light was asked for.
   std::string head() const;
 
-  // What is told of one paint.
+  // The figures of one paint.
   struct Figures {
     std::string columns;  // the fields, each behind a tab
     Json json;            // by illuminant

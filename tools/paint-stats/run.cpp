@@ -19,7 +19,7 @@ namespace goniochrome::tool {
 
 namespace {
 
-// Of the readings of a paint, or of its design.
+// The decimals of the readings of a paint, or of its design.
 int decimals_for(const paint::Paint& paint) {
   std::vector<color::Lab> colors;
   if (paint.measurement)
@@ -29,7 +29,7 @@ int decimals_for(const paint::Paint& paint) {
   return decimals_of(colors);
 }
 
-// What is told of one paint.
+// The figures of one paint.
 struct Figures {
   paint::PaintMetrics numbers;
   OtherLight::Figures elsewhere;
@@ -142,7 +142,7 @@ class Run {
   }
 
  private:
-  // What becomes of a paint that cannot be read.
+  // The handler of a paint that cannot be read.
   std::function<void(const Error&)> left_out() {
     if (!options_.keep_going) return {};
     return [this](const Error& error) {

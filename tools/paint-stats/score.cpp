@@ -65,7 +65,7 @@ class Table {
     return table;
   }
 
-  // What was measured of a paint, as Lab under the condition of the paint; nothing where the table has no such paint.
+  // The measurement of a paint, as Lab under the condition of the paint; nothing where the table has no such paint.
   Result<std::optional<Rows>> of(const paint::Paint& paint) const {
     const color::ViewingCondition condition = paint::condition_of(paint);
     Rows rows;
@@ -95,7 +95,7 @@ class Table {
     return std::optional(std::move(rows));
   }
 
-  // Whether a measured BRDF is meant for this paint: where a paint has the name of its file, for no other.
+  // True if a measured BRDF is meant for this paint: where a paint has the name of its file, for no other.
   bool is_of_one_paint() const { return brdf_ != nullptr; }
   std::vector<std::string> doubts() const { return brdf_ ? brdf::checks(*brdf_).warnings : std::vector<std::string>(); }
   std::string stem() const { return std::filesystem::path(path_).stem().string(); }

@@ -16,7 +16,7 @@ inline Json vector_json(const Vec3& v) {
   return Json::array({v.x, v.y, v.z});
 }
 
-// As browsers decompress it: a gzip member, in base64.
+// The text as browsers decompress it: a gzip member, in base64.
 std::string compressed_text(std::string_view bytes);
 
 class PackedNumbers {
@@ -27,8 +27,8 @@ class PackedNumbers {
   Json add(const std::vector<Number>& numbers) {
     return add_bytes({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)}, numbers.size());
   }
-  // The same of the texels of a smooth map with so many channels. Each number is replaced by its difference from that
-  // of the texel before, and all low bytes go before all high bytes, so that the map compresses well.
+  // Adds the texels of a smooth map with so many channels. Each number is replaced by its difference from that of the
+  // texel before, and all low bytes go before all high bytes, so that the map compresses well.
   Json add_smooth(const std::vector<std::uint16_t>& numbers, std::size_t channels);
 
   const std::string& bytes() const { return bytes_; }

@@ -43,7 +43,7 @@ Result<void> check_basis(const std::string& path, const render::LobeColumns& col
       path, listed(columns.exponents), basis.name, listed(basis.exponents));
 }
 
-// Whether the file shows this mesh: its parts, and what the rays through its pixels meet.
+// Checks that the file shows this mesh: its parts, and the surfaces that the rays through its pixels meet.
 Result<void> check_mesh(const image::AovFile& file, const render::LobeTransport& light, const render::Gbuffer& seen,
                         const mesh::Mesh& mesh) {
   const std::size_t parts = light.worn.brushed.size();
@@ -94,7 +94,7 @@ Result<std::vector<render::ShownPaints>> judges(const render::LobeTransport& lig
   return Result(std::move(all));
 }
 
-// What the picture shows beside the points; nothing where that is nothing.
+// The background of the picture; nothing where there is none.
 image::Image beside_of(const image::AovFile& file) {
   const image::Image& picture = file.image;
   const auto gain = static_cast<float>(std::exp2(-file.exposure_stops));

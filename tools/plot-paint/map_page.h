@@ -13,7 +13,7 @@ namespace goniochrome::tool {
 // A reading within this distance covers a direction, in the degrees of brdf::ColorMap::distance_deg.
 constexpr double kCovered_deg = 10;
 
-// Whether the map tells the color of unit directions above the surface from a reading near them: they are at least 10
+// True if the map knows the color of unit directions above the surface from a reading near them: they are at least 10
 // deg from specular and at most 75 deg from the normal, not beyond the critical angle where isolines are followed, and
 // not farther than kCovered_deg from the nearest reading, if the map knows its distances.
 bool is_covered(const brdf::ColorMap& map, const Vec3& to_light, const Vec3& to_viewer);

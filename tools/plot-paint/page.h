@@ -18,7 +18,7 @@ struct PageInput {
 // A page of 1080 px. Error: the paint has neither readings nor an appearance nor lobes, or its illuminant is unknown.
 Result<report::Drawing> page_of(const PageInput& input);
 
-// The same in one row: L*, a* and b*, and the squares.
+// The drawing in one row: L*, a* and b*, and the squares.
 Result<report::Drawing> row_of_sheet(const PageInput& input);
 
 }  // namespace goniochrome::tool

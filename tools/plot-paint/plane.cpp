@@ -91,7 +91,7 @@ std::string arrow(const Frame& frame, const paint::TargetCurve& curve) {
   return corners.empty() ? "" : fmt::format("<polygon fill=\"#333333\" points=\"{}\"/>\n", trimmed(corners));
 }
 
-// What the curve, its arrow and the readings cover, as points that stand close together.
+// The area of the curve, its arrow and the readings, as points that stand close together.
 using Covered = std::vector<Point>;
 
 Covered covered(const Frame& frame, const paint::Paint& paint, const paint::TargetCurve& curve) {

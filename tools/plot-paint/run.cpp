@@ -58,7 +58,7 @@ Result<std::vector<ChosenPaint>> chosen_paints(const Options& options, cli::Sess
   return Result(std::move(chosen));
 }
 
-// As PNG if the name ends in .png, else as SVG.
+// The drawing becomes a PNG if the name ends in .png, else an SVG.
 Result<void> write_drawing(const std::string& path, const report::Drawing& drawing) {
   const std::string document = report::svg(std::vector<report::Drawing>{drawing}, 1);
   if (!lower(path).ends_with(".png")) return write_file(path, document);

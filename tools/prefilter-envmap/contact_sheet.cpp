@@ -30,7 +30,7 @@ std::vector<const envmap::PrefilteredLobe*> maps_of(const envmap::PrefilteredEnv
   return maps;
 }
 
-// Of a map whose texels are all taken for equally large; the texels of a cube differ by 5 at most.
+// The mean of a map whose texels are all taken for equally large; the texels of a cube differ by 5 at most.
 double mean_luminance(const envmap::CubeMap& map) {
   double sum = 0;
   for (std::size_t i = 0; i < map.texels.size(); i += 3)

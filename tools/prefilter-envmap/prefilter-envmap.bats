@@ -276,7 +276,7 @@ PY
   values max_rel_error | within 1e-3
   exrheader edges.exr >header
   [ "$(grep -c 'envmap.*cube' header)" -eq 3 ]
-  # What was written that way is read that way.
+  # Files that were written that way are read that way.
   prefilter-envmap -q -e 6 --size 4 --no-mirror --report r.json edges.exr -o again.env.exr
   [ "$(jq -r .results.source.layout r.json)" = "cube with texel centers on the edges" ]
   prefilter-envmap -q -e 64,16 --size 8 --layout mip --verify 5 --report r.json "$sky" -o mip.exr
@@ -350,7 +350,7 @@ for path in "dark.ktx2", "lit.ktx2":
     for axis in range(3):
         assert abs(faces[2 * axis, axis] - 1.5) < 0.03 and abs(faces[2 * axis + 1, axis] - 0.5) < 0.03
 PY
-  # What the picture does not show is not made up.
+  # Directions that the picture does not show are not made up.
   ball_photograph cut.hdr 0 100
   run prefilter-envmap -e 6 --ball auto cut.hdr -o x.env.exr
   [ "$status" -eq 3 ]

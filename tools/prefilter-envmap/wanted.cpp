@@ -20,8 +20,8 @@ double largest(const color::Rgb& weights) {
   return std::max({weights[0], weights[1], weights[2]});
 }
 
-// What a lobe reflects of a constant environment at normal incidence: its weight times 2 pi/(E+1), and for the mirror
-// its weight alone.
+// The reflectance of a lobe in a constant environment at normal incidence: its weight times 2 pi/(E+1), and for the
+// mirror its weight alone.
 double reflectance(const paint::Lobe& lobe) {
   const double weight = largest(lobe.directional_diffuse) + largest(lobe.gloss);
   return lobe.is_mirror() ? weight : weight * 2 * kPi / (lobe.exponent + 1);

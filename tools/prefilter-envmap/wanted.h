@@ -21,7 +21,7 @@ struct Wanted {
   int paints = 0;
 };
 
-// Whether --layout asks for one mip-mapped cube in the place of a map for each lobe.
+// True if --layout asks for one mip-mapped cube in the place of a map for each lobe.
 bool has_levels(const Options& options);
 
 // The request that the options make. Errors: usage, or the basis or the paints.

@@ -80,7 +80,7 @@ class OpenViews : public PaintViews {
   std::shared_ptr<const render::Plan> plan() const override { return plan_; }
 
  private:
-  // What all samples of the pixels show.
+  // The samples of all pixels are looked up.
   Result<void> look() {
     if (!samples_.empty()) return {};
     if (stage_.gbuffer) {
@@ -135,7 +135,7 @@ class OpenViews : public PaintViews {
     return view;
   }
 
-  // Of each point, the angle of the viewer from the normal.
+  // The angle of the viewer from the normal at each point.
   std::vector<float> view_angles(const render::LobeTransport& open) const {
     const std::size_t of_sample =
         static_cast<std::size_t>(samples_.front()->width) * static_cast<std::size_t>(samples_.front()->height);

@@ -7,7 +7,7 @@
 
 namespace goniochrome::tool {
 
-// Whether the view can be kept as light by lobes: an environment alone, nothing on the mesh that is no sum of lobes, no
+// True if the view can be kept as light by lobes: an environment alone, nothing on the mesh that is no sum of lobes, no
 // engine asked for but cpu, and not so many samples that their light would take more than 100 MB.
 bool has_open_views(const Options& options, const Request& request, const Stage& stage);
 

@@ -24,7 +24,7 @@ struct PaintView {
 // The parts that the paints of a stream are put on: those that nothing else dresses.
 std::vector<std::size_t> free_parts(const DressedMesh& dress);
 
-// What a stream wears: a dress whose free parts wear one paint after the other.
+// The dress of a stream, whose free parts wear one paint after the other.
 class Wardrobe {
  public:
   explicit Wardrobe(const DressedMesh& base);
@@ -44,10 +44,10 @@ class PaintViews {
   // the paint cannot be shown.
   virtual Result<void> draw(const SourcePaint& paint, PaintView& view) = 0;
 
-  // What shades, and why, as the report has it.
+  // The engine, and the reason for it, as the report has it.
   virtual std::string engine() const = 0;
   virtual std::string engine_reason() const = 0;
-  // What the picture drawn last shows.
+  // The plan of the picture that was drawn last.
   virtual std::shared_ptr<const render::Plan> plan() const = 0;
 
   double stops = 0, automatic_stops = 0;  // exposure in force, and that of a PNG

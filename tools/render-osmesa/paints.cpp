@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kUnpaintedReflectance = 0.18;
 constexpr double kUnreadGlossDeg = 45;
-// What --part takes in the place of a paint, for glass that is seen through.
+// The word that --part takes in the place of a paint, for glass that is seen through.
 constexpr const char* kGlass = "glass";
 
 // Up to `most` names, in order, then how many there are.
@@ -63,7 +63,7 @@ std::string path_beside(const std::string& file, const std::string& name) {
   return (std::filesystem::path(file).parent_path() / name).string();
 }
 
-// Whether somebody may have meant kGlass, and no file.
+// True if somebody may have meant kGlass, and no file.
 bool is_like_glass(const std::string& file) {
   return edit_distance(lower(file), kGlass) <= 2 && !is_there(file);
 }

@@ -16,7 +16,7 @@ std::string spelled(const Vec3& v) {
   return fmt::format("{},{},{}", shortest(v.x), shortest(v.y), shortest(v.z));
 }
 
-// What one must know to shade the buffers again: the rays through the pixels, and the light.
+// Describes the data for shading the buffers again: the rays through the pixels, and the light.
 void describe_view(const Options& options, const render::Rays& rays, const std::vector<render::Light>& lights,
                    image::Attributes& attributes) {
   attributes["goniochrome:rays"] =

@@ -11,7 +11,7 @@ namespace goniochrome::tool {
 // A row for each effect: effect, needed, dE00, decision, why; then the engine.
 std::string plan_table(const render::Plan& plan);
 
-// What the first pass found of effects that were not measured before; "" where it found nothing.
+// The findings of the first pass on effects that were not measured before; "" where it found nothing.
 std::string findings_text(const render::Plan& before, const render::Plan& after);
 
 // Comments for the head of the OpenGL program of the scene: what the picture shows and the program does not, and where

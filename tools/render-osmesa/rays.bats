@@ -112,7 +112,7 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
     [ "$(of decision floor)" = drawn ]
     awk -v worth="$(of de00_p95 floor)" 'BEGIN { exit !(worth > 1) }'
   done
-  # As the engine path draws it: what they differ by in the mean is small against the floor's own share.
+  # The floor is near that of the engine path: their mean difference is small against the floor's own share.
   render-osmesa -q $scene --engine path --tolerance 1 --background env -o path.exr
   render-osmesa -q $scene --tolerance 2 --background env --floor none -o none.exr
   for picture in cpu gl none; do
@@ -169,7 +169,7 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
   jq -e '.results.error | .against == "truth" and .occlusion > 1 and .noise == 0 and .standard_error < 0.1 * .de00_p95' r.json
   [[ $output == *"farther from the truth than --tolerance 1"* ]]
   jq '.results.error.occlusion' r.json >without
-  # What is left is noise, whose standard deviation is within half of the tolerance at 95 of 100 points.
+  # The remaining difference is noise, whose standard deviation is within half of the tolerance at 95 of 100 points.
   run render-osmesa -q $scene --effects all,+rays --tolerance 3 --check 40 -o out.exr --report r.json
   [ "$status" -le 1 ]
   jq -e --argjson without "$(cat without)" \

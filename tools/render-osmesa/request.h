@@ -1,4 +1,4 @@
-// What the command line asks for, checked before anything is read.
+// The request of the command line, checked before anything is read.
 #pragma once
 
 #include <optional>

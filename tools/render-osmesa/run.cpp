@@ -95,7 +95,7 @@ class Shooting {
     return {shot.camera, std::max(1, request_.size.width / shrink), std::max(1, request_.size.height / shrink),
             shrink > 1 ? 1 : request_.samples, shrink == 1 && options_.check > 0};
   }
-  // Whether the picture is drawn by rays alone.
+  // True if the picture is drawn by rays alone.
   bool by_rays() const {
     const auto engine = render::engine_named(plan_.engine);
     return engine.ok() && (*engine)->traces_rays;
@@ -184,7 +184,7 @@ void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
   plan_ = std::move(plan);
 }
 
-// What the first picture shows of effects that no plan can know.
+// Tells the findings of the first picture on effects that no plan can know.
 void Shooting::tell_findings(const render::Frame& frame) {
   const render::Plan before = plan_;
   render::add_findings(frame.rays, frame.sums, plan_);
@@ -282,7 +282,7 @@ Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Disp
   return view.trace_again ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }
 
-// Of the effects of rays that an engine without rays was given.
+// Tells the effects of rays that an engine without rays was given.
 void Shooting::tell_rays() {
   const render::CorrectionNoise& rays = frame_.rays;
   if (!plan_.effects.rays.any() || (rays.dark && !plan_.effects.rays.floor)) return;

@@ -14,8 +14,8 @@
 
 namespace goniochrome::tool {
 
-// Whether there are surfaces to draw: --mesh, or --gbuffer with nothing that would need the mesh. Error (usage): what
-// is missing, or what excludes each other.
+// Checks that there are surfaces to draw: --mesh, or --gbuffer with nothing that would need the mesh. Error (usage):
+// what is missing, or what excludes each other.
 Result<void> check_surfaces(const Options& options);
 
 struct PictureSize {

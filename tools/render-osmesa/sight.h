@@ -1,4 +1,4 @@
-// What finds the surfaces that a picture shows, and what is to be told about them.
+// The finder of the surfaces that a picture shows, and the remarks about them.
 #pragma once
 
 #include "render/gbuffer.h"
@@ -20,13 +20,13 @@ Result<render::Renderer> make_renderer(const Options& options, const Request& re
 // parts of which only back sides are seen.
 void tell_visibility(const render::Gbuffer& gbuffer, const mesh::Mesh& mesh, cli::Session& session);
 
-// Of what is seen of the mesh: what a scene that only its own parts light is exposed by.
+// The mean luminance of the visible mesh: a scene that only its own parts light is exposed by it.
 double mean_luminance(const render::Frame& frame);
 
 // The mean luminance that a picture is exposed to show.
 constexpr double kMiddleGray = 0.18;
 
-// What the parts wear, for --explain.
+// The paints of the parts, for --explain.
 std::string explanation(const Options& options, const mesh::Mesh& mesh, const DressedMesh& dress);
 
 // Tells by --explain and the report which OpenGL draws, or that rays find what is visible.

@@ -42,7 +42,7 @@ void tell_repairs(const mesh::Mesh& mesh, cli::Session& session) {
   for (const std::string& remark : mesh.remarks) session.warn(remark);
 }
 
-// What --trim took parts for, each kind with the names of its first parts.
+// Tells the parts that --trim recognized, each kind with the names of its first parts.
 void tell_trim(const mesh::Mesh& mesh, const DressedMesh& dress, cli::Session& session) {
   if (dress.trim.empty())
     return session.warn(
@@ -164,7 +164,7 @@ Result<void> set_projected_floor(const Request& request, const Stage& stage, ren
   return {};
 }
 
-// What is below a floor is hidden by rays alone.
+// Surfaces below a floor are hidden by rays alone.
 Result<void> take_path_below(const mesh::Mesh& mesh, Request& request) {
   const bool traces = request.engine != nullptr && request.engine->traces_rays;
   if (traces || request.floor.kind == FloorRequest::Kind::kNone || !request.floor.height) return {};

@@ -10,12 +10,12 @@
 
 namespace goniochrome::tool {
 
-// What --effects is in a stream where it says "auto": nothing is left out for a paint, and no rays are traced.
+// The meaning of "auto" in --effects of a stream: nothing is left out for a paint, and no rays are traced.
 inline render::EffectWords stream_effects() {
   return {render::Start::kAll, {{"rays", false}}};
 }
 
-// Whether a picture of each paint is asked for: braces in --output, --sheet, or --to.
+// True if a picture of each paint is asked for: braces in --output, --sheet, or --to.
 bool is_stream(const Options& options);
 
 // The options as a stream takes them. Error (usage): what makes no sense for several paints.

@@ -39,13 +39,13 @@ class StreamSink {
   // After the last paint.
   virtual Result<void> end() { return {}; }
 
-  // Whether it must know the name of the next paint to place one.
+  // True if it must know the name of the next paint to place one.
   virtual bool looks_ahead() const { return false; }
-  // Of the report: how many files it wrote.
+  // The number of files it wrote, for the report.
   virtual std::size_t files() const = 0;
 };
 
-// What a sink needs to know of the stream.
+// The data of the stream that a sink needs.
 struct SinkSetup {
   const Options& options;
   const Request& request;

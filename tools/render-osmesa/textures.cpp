@@ -112,7 +112,7 @@ mesh::Box box_of(const mesh::Mesh& mesh, const std::vector<std::size_t>& parts) 
   return box;
 }
 
-// Whether texture coordinates lay any of the part out: those that are the same everywhere do not.
+// True if texture coordinates lay any of the part out: those that are the same everywhere do not.
 bool has_coordinates(const mesh::Mesh& mesh, std::size_t part) {
   if (mesh.texture.empty()) return false;
   const auto& first = mesh.texture[mesh.triangles[mesh.parts[part].first][0]];
@@ -132,7 +132,7 @@ double covering_width(const mesh::Box& box, const render::TextureLaying& laying)
   return std::max(extent(across), extent(up) / laying.aspect);
 }
 
-// What the words say, completed by what suits the box of the parts.
+// The meaning of the words, completed by values that suit the box of the parts.
 Result<render::TextureLaying> laying_of(const std::string& option, const Texture& texture, Projection projection,
                                         const mesh::Box& box, const brdf::SbrdfTexture& map) {
   render::TextureLaying laying;

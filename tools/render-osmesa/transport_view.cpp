@@ -96,7 +96,7 @@ bool same_light(const KeptTransport& kept, const std::vector<render::Light>& lig
                     });
 }
 
-// What is seen beside the mesh.
+// The background around the mesh.
 void put_background(const render::Gbuffer& gbuffer, const render::Scene& scene, image::Image& picture) {
   if (scene.background == render::Background::kNone) return;
   parallel_for(static_cast<std::size_t>(picture.height), 8, [&](std::size_t begin, std::size_t end) {

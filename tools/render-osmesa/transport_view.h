@@ -23,7 +23,7 @@ struct TracedView {
   bool reached = false;  // whether its noise is within the tolerance
 };
 
-// Whether the light of the scene is a sum of lobes. Error: what it wears that is none.
+// Checks that the light of the scene is a sum of lobes. Error: what it wears that is none.
 Result<void> can_trace_view(const render::Scene& scene);
 
 // Traces what is seen through `rays` in all that the scene has, as the mean over so many samples of a pixel, and tells
@@ -45,7 +45,7 @@ struct KeptTransport {
 Result<std::optional<KeptTransport>> kept_transport(const image::AovFile& file, const Options& options,
                                                     const std::vector<render::Light>& lights, cli::Session& session);
 
-// What shading a view in some paints made known.
+// The results of shading a view in some paints.
 struct ShadedPaint {
   double frame_ms = 0, scale_ms = 0;  // to shade; and to scale bounced light
   bool scaled = false;                // whether bounced light was traced in other paints

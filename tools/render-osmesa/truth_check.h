@@ -8,7 +8,7 @@
 
 namespace goniochrome::tool {
 
-// Reports the comparison, and says it in a sentence: what the total is, and what it comes from.
+// Reports the comparison, and says it in a sentence: the total, and its causes.
 void tell_truth(const render::TruthError& error, const std::string& source, double tolerance, cli::Session& session);
 
 }  // namespace goniochrome::tool

@@ -280,8 +280,8 @@ void tell(const Options& options, const sketch::SketchPixels& pixels, const sket
       fit.rms_de76, pixels.used.size(), pixels.changed_only ? "edited " : ""));
 }
 
-// The paint in light that was traced. Bounced light depends on the paint, as what the coat leaves of all light does:
-// both are changed to what was found, and the paint is sought again.
+// The paint in light that was traced. Bounced light depends on the paint, and so does the light that the coat leaves:
+// both are changed to the paint found, and the paint is sought again.
 sketch::SketchFit fit_in_transport(const sketch::SketchInput& input, const sketch::SketchPixels& pixels, int samples,
                                    const sketch::SketchLimits& limits, bool differences,
                                    sketch::SketchTransport& transport, cli::Session& session) {
@@ -374,7 +374,7 @@ Result<void> fit_lamps(const Material& material, const sketch::SketchLimits& lim
   constexpr double kMore = 1.15, kMoreBy_de76 = 0.1;
   if (by_lamps.status != "fitted" || by_lamps.median_de76 > kMore * fit.median_de76 + kMoreBy_de76) return {};
   by_lamps.seen_from_deg = fit.seen_from_deg, by_lamps.seen_to_deg = fit.seen_to_deg;
-  // What either of them has no pixels for: a curve that fell back to a matt color names no angles.
+  // The angles that neither of them has pixels for: a curve that fell back to a matt color names no angles.
   std::vector<double> extrapolated_deg;
   std::ranges::set_union(by_lamps.extrapolated_deg, fit.extrapolated_deg, std::back_inserter(extrapolated_deg));
   by_lamps.extrapolated_deg = std::move(extrapolated_deg);

@@ -288,7 +288,7 @@ EOF
   grep -q 'class="solid"' found.xml
   fit -i ruby.exr -b steel.exr --max-de 0 --pixels all
   [ "$(result status)" = diffuse_fallback ]
-  # Of so small a car nothing is seen nearer to specular than 69 deg.
+  # The pixels of so small a car show nothing nearer to specular than 69 deg.
   small="--mesh $TESTDATA/speed-shape.obj --light 35,45 --paint fitted.xml#steel --size 40x25 --samples 1 --effects auto,-rays"
   render-osmesa -q $small -o small.png
   render-osmesa -q $small --aov normal,aspecular,lambert,mask,part -o small.exr
@@ -394,7 +394,7 @@ ball() {
 </measurement><gloss angle="60">$gloss</gloss></paint></paints>
 EOF
     fit-paint -q --basis "$TESTDATA/b7.basis.xml" one.xml -o lit.xml
-    # As large as the sun, which no pixel here can resolve, and six times as large.
+    # The extents are that of the sun, which no pixel here can resolve, and six times as much.
     extents=.53
     case $gloss in
       0) extents="0 .53 3" ;;
@@ -462,7 +462,7 @@ EOF
   [ ! -e none.xml ]
 }
 
-# Of this paint the curve falls back to a matt color in this picture, and the search for lobes finds it.
+# The curve of this paint falls back to a matt color in this picture, and the search for lobes finds it.
 @test "angles that no pixel shows are told where the curve gives up and the search does not" {
   render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --light 35,45 --size 200x125 --paint measured.xml#blue_to_purple \
     --aov normal,aspecular,lambert,mask,part -o few.exr

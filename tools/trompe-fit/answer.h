@@ -35,7 +35,7 @@ Json results_of(const std::vector<Json>& fits);
 // "silver_b: dE rms 4.30 to 0.07, max 9.06 to 0.10; face_l +11.0, travel +4.3"
 std::string answer_line(const Answer& answer);
 
-// Whether the paint found has a smaller difference than the first paint, by the measure that was asked for.
+// True if the paint found has a smaller difference than the first paint, by the measure that was asked for.
 bool is_improved(const Answer& answer, const panels::TrompeOptions& options);
 
 }  // namespace goniochrome::tool

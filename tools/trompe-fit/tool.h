@@ -31,7 +31,7 @@ struct Options {
 cli::ToolSpec tool_spec(Options& options);
 Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
-// What run() does where --mesh is given: the panels meet at a seam of that mesh.
+// The run with --mesh: the panels meet at a seam of that mesh.
 Result<cli::Verdict> run_on_seam(const Options& options, cli::Session& session);
 
 // A light and a viewer, with what both panels show there.
@@ -42,7 +42,7 @@ struct TrompeGeometry {
 
 enum class TrompeMode { kAll, kSingle, kRows };
 
-// What the options mean, checked.
+// The meaning of the options, checked.
 struct TrompeRequest {
   double angle_deg = 0;
   std::vector<TrompeGeometry> geometries;
@@ -54,7 +54,7 @@ struct TrompeRequest {
 };
 Result<TrompeRequest> request_of(const Options& options);
 
-// The same for a seam of a mesh.
+// The request for a seam of a mesh.
 struct TrompeSeamRequest {
   panels::SeamWorld world;
   panels::GeometryList geometries;  // at every place of the seam, where the world says nothing

@@ -1,5 +1,5 @@
 // The slopes of the facets of a rough surface: how often they occur, and how much of each other they hide.
-// goniochrome-theory(7), SATIN.
+// goniochrome-coats(7), "SATIN".
 #pragma once
 
 #include <algorithm>

@@ -20,7 +20,7 @@ namespace goniochrome::brdf {
 using MeasuredPointer = std::unique_ptr<MeasuredBrdf>;
 
 struct MeasuredFormat {
-  // Whether a file of this name that begins with `head` (200 bytes are enough) is of this format.
+  // True if a file of this name that begins with `head` (200 bytes are enough) is of this format.
   bool (*recognizes)(std::string_view path, std::string_view head);
   Result<MeasuredPointer> (*read)(const std::string& path, std::string_view bytes);
   const char* name;  // for people, with the ending of its files

@@ -1,4 +1,4 @@
-// Measured BRDFs that list scattered pairs of directions with a spectrum for each. goniochrome-theory(7), Cornell.
+// Measured BRDFs that list scattered pairs of directions with a spectrum for each. goniochrome-fitting(7), "Cornell".
 #pragma once
 
 #include <vector>

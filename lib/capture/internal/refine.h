@@ -5,8 +5,8 @@
 
 namespace goniochrome::capture {
 
-// What the shapes are likely to be: the nearer, the smaller the standard deviations. It decides what the photographs
-// leave open.
+// Likely values of the shapes: the nearer, the smaller the standard deviations. It decides what the photographs leave
+// open.
 struct ShapePrior {
   LobeShapes center;
   double log_exponent = 2, axes = 1;  // standard deviations

@@ -85,7 +85,7 @@ void TexelFitter::expect(const TexelSamples& samples, const Eigen::ArrayX3d& mod
   distance_ = ((model - samples.value).square().rowwise().mean()).sqrt() / sigma_;
   for (Eigen::Index i = 0; i < samples.count(); ++i) {
     if (samples.use[i] == Use::kNone) distance_[i] = 0;
-    // What is saturated says only that the surface is at least as bright.
+    // A saturated value says only that the surface is at least as bright.
     if (samples.use[i] == Use::kLowerBound && model.row(i).mean() >= mean_[i]) distance_[i] = 0;
   }
 }

@@ -18,7 +18,7 @@ struct Spoiling {
   double saturated = 1e9;  // what the camera cannot see beyond
 };
 
-// What photographs of these poses say of the texel.
+// Values of the texel in photographs of these poses.
 TexelSamples photographed(const TrueTexel& texel, const std::vector<Pose>& poses, const Spoiling& how,
                           std::uint64_t seed) {
   TestNumbers random(seed);

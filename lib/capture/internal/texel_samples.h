@@ -1,4 +1,4 @@
-// What the photographs say of one texel, as the fit of its lobes sees it.
+// The data of one texel in the photographs, as the fit of its lobes sees it.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +16,8 @@ enum class Use : unsigned char {
 
 // Photographs by row. A lobe is a function of four products of the directions: with the axes as a symmetric matrix
 // even I + odd (cos 2a, sin 2a; sin 2a, -cos 2a) in the plane of the surface and 1 along the normal, the base of its
-// power is even * along + odd cos 2a * split + odd sin 2a * skew + up. goniochrome-theory(7), SPATIALLY VARYING
-// SURFACES.
+// power is even * along + odd cos 2a * split + odd sin 2a * skew + up.
+// goniochrome-surfaces(7), "SPATIALLY VARYING SURFACES".
 struct TexelSamples {
   Eigen::ArrayXd along, split, skew, up;
   Eigen::ArrayXd cosine;    // of the light

@@ -1,5 +1,5 @@
 // Photographs of a mirror ball: where the ball lies in the picture, and the light from all around that it shows. The
-// camera is far away, so that every ray to the ball is parallel. goniochrome-theory(7), ENVIRONMENTS.
+// camera is far away, so that every ray to the ball is parallel. goniochrome-prefiltering(7), "ENVIRONMENTS".
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ Result<BallDisc> ball_disc(const image::Image& rgb, const std::string& name);
 // outside of the picture, or it is less than 4 texels wide.
 Result<image::Image> unrolled_ball(const image::Image& rgb, const BallDisc& disc, const std::string& name);
 
-// Whether a square picture cannot be an angular map, because light is in three or more of its corners, which lie beyond
+// True if a square picture cannot be an angular map, because light is in three or more of its corners, which lie beyond
 // the disc and see nothing.
 bool has_lit_corners(const image::Image& rgb);
 

@@ -1,5 +1,5 @@
 // The diffuse map of a surface that takes in another share of light from each direction.
-// goniochrome-theory(7), RENDERING, Coat in image light.
+// goniochrome-rendering(7), "Coat in image light".
 #pragma once
 
 #include <functional>

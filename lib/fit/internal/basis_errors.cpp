@@ -114,8 +114,8 @@ struct Workspace {
 
 }  // namespace
 
-// Of a lobe of energy 1 the share 1 - cos^(E+1) psi lies within psi, whose derivative by log E is
-// -E log(cos psi) cos^(E+1) psi. The columns are the same for all coats.
+// A lobe of energy 1 has the share 1 - cos^(E+1) psi within psi, whose derivative by log E is -E log(cos psi) cos^(E+1)
+// psi. The columns are the same for all coats.
 struct BasisErrors::CoatShape {
   CoatShape(const std::vector<double>& exponents, bool mirror) {
     const std::span<const double> rings = brdf::ring_angles_rad().subspan(static_cast<std::size_t>(first_ring()));

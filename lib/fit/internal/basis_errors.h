@@ -1,5 +1,5 @@
 // The errors of many targets with the lobes of one basis, for a search that asks for them thousands of times.
-// goniochrome-theory(7), CHOOSING THE BASIS.
+// goniochrome-lobes(7), "CHOOSING THE BASIS".
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace goniochrome::fit {
 
-// What targets ask for, apart from the exponents. Many threads may share one. The targets must outlive it.
+// The data of the targets that do not depend on the exponents. Many threads may share one. The targets must outlive it.
 class BasisErrors {
  public:
   explicit BasisErrors(const std::vector<BasisTarget>& targets);

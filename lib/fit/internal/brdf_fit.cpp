@@ -24,17 +24,17 @@ constexpr double kSharpPart = 0.5;
 // Where every sharp lobe gives less than this part of its peak, a direction says nothing of them.
 constexpr double kReach = 0.01;
 
-// What a gloss weight of 1 counts there.
+// The factor of a gloss weight of 1 there.
 double coat_scale(const BrdfSample& sample) {
   return brdf::coat_fresnel(half_angle_cosine(sample)) / math::cos(sample.light_deg * kDegree);
 }
 
-// What a coat leaves of the base's light there.
+// The share of the base's light that a coat leaves there.
 double passages(const BrdfSample& sample, double coat_index) {
   return brdf::coat_passages(coat_index, math::cos(sample.light_deg * kDegree), math::cos(sample.view_deg * kDegree));
 }
 
-// What the lobes show there, gloss included: reflectance factors of the working space.
+// The color of the lobes there, gloss included: reflectance factors of the working space.
 color::Rgb shown_at(const paint::LobeFit& lobes, const BrdfSample& sample) {
   return kPi * brdf::brdf_by_angles(lobes, sample.aspecular_rad, sample.view_deg, passages(sample, lobes.coat_index),
                                     coat_scale(sample));
@@ -92,7 +92,8 @@ std::vector<double> color_errors(const BrdfRows& rows, const color::Xyz& white, 
 }
 
 // The aspecular angle at which light at 45 deg shows, in plane, the flakes that mirror the light of a sample to its
-// viewer: those whose normal is as far from the coat's, seen in the coat. goniochrome-theory(7), ISOCHROMATIC LINES
+// viewer: those whose normal is as far from the coat's, seen in the coat.
+// goniochrome-interference(7), "ISOCHROMATIC LINES"
 double aspecular_of_flakes_deg(const BrdfSample& sample) {
   const paint::DirectionPair pair = directions_of(sample);
   const double flake = brdf::flake_angles(pair.light, pair.view, brdf::kCoatIndex).flake_rad;

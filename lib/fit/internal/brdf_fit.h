@@ -1,5 +1,5 @@
 // The fit of a measured BRDF: which directions its flake is fitted to, the spike that is left near specular, and how
-// well all directions are met. goniochrome-theory(7), FITTING.
+// well all directions are met. goniochrome-fitting(7), "FITTING".
 #pragma once
 
 #include <vector>

@@ -22,7 +22,7 @@ Vec3 direction(double polar_deg, double azimuth_deg) {
   return {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
 }
 
-// What a goniometer would see of known lobes, every 5 deg of the view and every 20 of its azimuth.
+// The measurement of known lobes by a goniometer, every 5 deg of the view and every 20 of its azimuth.
 BrdfTarget measured_from(const paint::LobeFit& lobes) {
   BrdfTarget target;
   target.paint.name = "test";
@@ -108,7 +108,7 @@ TEST(BrdfFit, ViewsFollowColorThatTurns) {
     const PaintFit fit = fit_of(target, {.method = method, .views_deg = {0, 25, 50, 75}});
     ASSERT_EQ(fit.lobes.views.size(), 4u);
     ASSERT_TRUE(fit.report.views);
-    // What is left is the wish that neighboring views look alike.
+    // The remaining error comes from the wish that neighboring views look alike.
     EXPECT_LT(fit.report.views->de00_mean, 0.5);
     EXPECT_GT(fit.report.views->de00_mean_without, 3 * fit.report.views->de00_mean);
     EXPECT_EQ(fit.report.views->gain_de00(), fit.report.views->de00_mean_without - fit.report.views->de00_mean);

@@ -1,5 +1,5 @@
 // The flake part of a fit under a clear coat: readings that the lobes meet without the coat are met under it too, as
-// far as weights >= 0 can. goniochrome-theory(7), FITTING.
+// far as weights >= 0 can. goniochrome-fitting(7), "FITTING".
 #pragma once
 
 #include <vector>

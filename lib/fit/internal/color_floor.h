@@ -1,5 +1,5 @@
 // How near one color can be to several colors at once: what no fit can come below whose color at an aspecular angle is
-// the same for all views, where the readings at that angle differ. goniochrome-theory(7), FITTING.
+// the same for all views, where the readings at that angle differ. goniochrome-fitting(7), "FITTING".
 #pragma once
 
 #include <vector>

@@ -335,7 +335,7 @@ bool bound_by(const std::vector<color::Rgb>& l1, const FlakeTarget& target, cons
   return true;
 }
 
-// The weight, in each row, of the difference between what one view shows and what the next one does.
+// The weight, in each row, of the difference between one view and the next.
 constexpr double kSmoothnessShare = 0.1;
 
 // Rows that ask two neighboring views to show the same, at the angles of the target's rows, no closer than about 9 deg.

@@ -1,5 +1,5 @@
 // The flake part of a fit: the weights K_D and K_DD that show the colors of rows at aspecular angles, for all views
-// together or view by view; and the linear problem behind it. goniochrome-theory(7), FITTING.
+// together or view by view; and the linear problem behind it. goniochrome-fitting(7), "FITTING".
 #pragma once
 
 #include <algorithm>
@@ -56,7 +56,7 @@ struct FlakeModel {
 
   int columns_per_view() const { return 1 + static_cast<int>(exponents.size()); }
   int columns() const { return columns_per_view() * std::max(1, static_cast<int>(views_deg.size())); }
-  // What each column with weight 1 shows there.
+  // Values of each column with weight 1 there.
   void shape(const FlakePoint& at, double* columns) const;
 };
 
@@ -65,8 +65,8 @@ enum class Norm { kL1, kL2 };
 // The norm of a method. Where a linear problem must stand for color differences, it is l2.
 Norm norm_of(FitMethod method);
 
-// The linear problem behind every fit. shape(i,j) is what column j with weight 1 shows in row i, and `value` is what
-// row i shall show, whose error counts times weight >= 0.
+// The linear problem behind every fit. shape(i,j) is the value of column j with weight 1 in row i, and `value` is the
+// target of row i, whose error counts times weight >= 0.
 struct LinearProblem {
   math::Matrix shape;
   std::vector<double> weight = {};
@@ -89,14 +89,14 @@ LinearFit linear_fit(Norm norm, const LinearProblem& problem);
 // The problem with these columns alone.
 LinearProblem with_columns(const LinearProblem& problem, const std::vector<int>& columns);
 
-// What the weights show in each row.
+// The color of the weights in each row.
 std::vector<color::Rgb> predictions(const LinearProblem& problem, const std::vector<color::Rgb>& x);
 
 struct FlakeFit {
   std::vector<color::Rgb> x;                  // one triple per column, reflectance factors
   double objective = 0, plain_objective = 0;  // over the rows, as in PaintFitReport
-  // Of a linear method that of LinearFit. Of kDeltaE the largest cosine between the residual, taken as no shorter than
-  // kVisible_de00, and a free column of its derivative; it is 0 where the weights are stationary.
+  // The gap of a linear method is that of LinearFit. Of kDeltaE the largest cosine between the residual, taken as no
+  // shorter than kVisible_de00, and a free column of its derivative; it is 0 where the weights are stationary.
   double optimality_gap = 0;
   FitStatus status = FitStatus::kOptimal;
 };

@@ -127,7 +127,7 @@ std::vector<double> best_exponents(FitMethod method, const FlakeTarget& target, 
   if (!many && subsets_of(all, count) <= kFewSubsets) {
     search.try_all(count);
   } else {
-    // Of thousands of directions, what a lobe gains below a hundredth of the error is noise.
+    // Among thousands of directions, a gain below a hundredth of the error is noise.
     const double least_gain = many ? 0.01 : 0;
     bool gained = true;
     for (int k = 1; k <= count && gained; ++k) gained = search.grow(k, subsets_of(all, k) <= kFewSubsets, least_gain);

@@ -1,5 +1,5 @@
 // Fits with fewer lobes: the best subset of a given size, and the lobes whose absence would be seen.
-// goniochrome-theory(7), FITTING.
+// goniochrome-fitting(7), "FITTING".
 #pragma once
 
 #include <vector>

@@ -16,7 +16,7 @@ constexpr double kStep_deg = 5;
 
 // Inferred rows steer the weights between and below the readings. The few ones below the first reading must not bend
 // what is between readings. Among the weights by which a search for the paint of a picture finds its way, these predict
-// left-out readings best, at no loss at the others: goniochrome-theory(7), FITTING.
+// left-out readings best, at no loss at the others: goniochrome-fitting(7), "FITTING".
 constexpr double kInterpolatedImportance = 0.1;
 constexpr double kExtendedImportance = 0.007;
 

@@ -1,6 +1,6 @@
-// What a paint asks of a fit, and what it leaves undone: the rows that are known, those between them and those toward
-// specular; the readings that no weights for all views can tell apart; and why a reading is not met any better.
-// goniochrome-theory(7), FITTING.
+// The targets of a paint for a fit, and the remaining errors: the rows that are known, those between them and those
+// toward specular; the readings that no weights for all views can tell apart; and why a reading is not met any better.
+// goniochrome-fitting(7), "FITTING".
 #pragma once
 
 #include <string>
@@ -26,7 +26,7 @@ struct TargetRow {
   double passages = 1;            // what a coat leaves of the base's light there, see brdf::coat_passages()
 };
 
-// That row as the fit has it: the color of the base under the coat, whose error counts by what is seen of it.
+// The row as the fit has it: the color of the base under the coat, whose error counts by its visible part.
 FlakeRow flake_row(const TargetRow& row, const FitOptions& options, bool inferred);
 
 // A reading as the fit has it, under a coat of that index.
@@ -57,7 +57,7 @@ std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double ste
 double view_angle_deg(const paint::Geometry& geometry);
 double named_view_deg(const paint::Geometry& geometry);
 
-// What a coat leaves of the base's light there.
+// The share of the base's light that a coat leaves there.
 double coat_passages_at(const paint::Geometry& geometry, double coat_index);
 
 // How far a color is from what weights >= 0 can show: dE00 between `lab`, which is `rgb` relative to `white`, and
@@ -77,7 +77,7 @@ struct Twins {
 // All 0 and empty where no two readings at one unsigned aspecular angle differ.
 Twins twins_of(const std::vector<paint::LabReading>& readings);
 
-// What limits the worst reading of a fit, in words: its color is outside the working space, its twin on the other side
+// The limit of the worst reading of a fit, in words: its color is outside the working space, its twin on the other side
 // of specular has another color (of a fit for all views), or a channel of the base under the coat grows away from
 // specular; "" where none of these is true. `errors` are those of the readings, in their order; at least one.
 std::string fit_limit(const std::vector<paint::LabReading>& readings, const std::vector<GeometryError>& errors,

@@ -21,7 +21,7 @@ constexpr std::array kKinds = {Kind{200, 240, 0.25}, Kind{32, 120, 0.3}, Kind{5.
 constexpr int kEven = static_cast<int>(kKinds.size());
 constexpr double kEvenWeight = 0.05;
 
-// Of the light that falls on a white surface that faces the lamp.
+// The share of a lamp in the light on a white surface that faces it.
 constexpr double kLampShare = 0.75;
 
 // Lamps without extent show the shape of lobes, and a sum of few sharp lobes as spots. Half of them are spread evenly,

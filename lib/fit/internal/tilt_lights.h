@@ -1,5 +1,5 @@
 // The lights that tilted lobes are fitted in: lamps of several sizes all around, each with some even light beside it.
-// goniochrome-theory(7), TILTED LOBES.
+// goniochrome-interference(7), "TILTED LOBES".
 #pragma once
 
 #include <array>
@@ -47,13 +47,14 @@ class TiltLights {
   };
   Set lights(double view_deg) const;
 
-  // What a viewer sees of f cos_i in each light, relative to white; f cos_i is symmetric in y and 0 below the horizon.
+  // The colors of f cos_i to a viewer in each light, relative to white; f cos_i is symmetric in y and 0 below the
+  // horizon.
   std::vector<color::Rgb> colors(const Set& set, const std::function<color::Rgb(const Vec3& light)>& f_cos) const;
-  // The same with what f cos_i is below the horizon.
+  // Variant with the values of f cos_i below the horizon.
   std::vector<color::Rgb> colors_all(const Set& set, const std::function<color::Rgb(const Vec3& light)>& f_cos) const;
-  // The same of a lobe of weight 1 about an axis and the axis at -y, half of each: (E + 1)/(2 pi) cos^E.
+  // The column of a lobe of weight 1 about an axis and the axis at -y, half of each: (E + 1)/(2 pi) cos^E.
   std::vector<float> column(const Set& set, std::size_t exponent, const Vec3& axis) const;
-  // What small differences from such a color count in light m.
+  // The metric of small differences from such a color in light m.
   Metric metric(const Set& set, std::size_t m, const color::Rgb& color) const;
   // The mean color difference over the lights.
   double mean_difference(const Set& set, const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) const;

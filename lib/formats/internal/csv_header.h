@@ -54,7 +54,7 @@ struct CsvHeader {
   bool is_wide() const { return column[kGeometry] < 0; }
 };
 
-// What the cells of the first row say. Error: a column is missing, or is there twice; without the place.
+// The meaning of the cells of the first row. Error: a column is missing, or is there twice; without the place.
 Result<CsvHeader> header_of(const std::vector<std::string>& cells);
 
 // An angle without the degree sign that instruments add: `-15°`.

@@ -24,7 +24,7 @@ std::vector<double> wavelengths_of(const CxfColor& color, const CxfSpecification
   return nm;
 }
 
-// Whether its values are of reflected light at angles.
+// True if its values are of reflected light at angles.
 bool is_placed(const CxfSpecification& specification) {
   return !specification.angles.empty() && specification.unlike_reflectance.empty();
 }
@@ -69,7 +69,7 @@ void CxfResolver::finish() {
   open_.reset();
 }
 
-// Whether a spectrum is one, which then has factors; else it is named. Where its specification is missing or has no
+// Checks a spectrum, which then has factors; else the error names it. Where its specification is missing or has no
 // angles, place() tells it.
 bool CxfResolver::is_sound(CxfColor& color) {
   const auto found = specifications_.find(color.specification);

@@ -43,7 +43,7 @@ class RecordImport {
   Remarks& remarks() { return remarks_; }
   const std::string& file() const { return file_; }
 
-  // The paints. Error: nothing says what the scale is, or what says it is contradicted.
+  // The paints. Error: nothing states the scale, or two statements of it differ.
   Result<ImportedPaints> finish();
 
  private:

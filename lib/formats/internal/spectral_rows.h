@@ -1,5 +1,5 @@
-// What tables of spectra share: wavelengths in headings, reflectances that are factors or percent, and the colors that
-// stand beside them.
+// Parts that tables of spectra share: wavelengths in headings, reflectances that are factors or percent, and the colors
+// of the same row.
 #pragma once
 
 #include <optional>
@@ -51,9 +51,9 @@ class ScaleJudge {
   void add(std::string_view paint, const paint::Geometry& geometry, const std::vector<double>& values,
            std::optional<double> L);
 
-  // What makes factors of the values: 1, or 0.01 for percent. `stated` is what the file says. Where it says nothing,
-  // the option holds, and then the L* beside the values or, without any, what paints can reflect. `remarks` hears what
-  // was assumed. Error: the values make no sense on the scale that holds, or on neither scale, or on both.
+  // The unit that makes factors of the values: 1, or 0.01 for percent. `stated` is what the file says. Where it says
+  // nothing, the option holds, and then the L* beside the values or, without any, what paints can reflect. `remarks`
+  // hears what was assumed. Error: the values make no sense on the scale that holds, or on neither scale, or on both.
   Result<double> unit(Scale stated, Scale option, Remarks& remarks);
 
   // A scale that `format` defines holds as long as the values can be of it.

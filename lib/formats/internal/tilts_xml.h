@@ -14,7 +14,7 @@ namespace goniochrome::formats {
 
 inline constexpr std::string_view kTiltsNamespace = "urn:goniochrome:tilts:1";
 
-// Of one paint. Larger counts are refused.
+// Limits of one paint. Larger counts are refused.
 inline constexpr std::size_t kMostTiltSets = 8, kMostTiltedLobes = 64, kMostTiltedViews = 91;
 
 // Hears of one <tilts> element from beginning to end. Errors name file and line.

@@ -30,7 +30,7 @@ std::string_view view(const xmlChar* text) {
 // Keeps libxml2 from printing: every error comes through the structured handlers below.
 void silence(void*, const char*, ...) {}
 
-// What libxml2's error means for the person who wrote the file.
+// The meaning of libxml2's error for the person who wrote the file.
 std::string explained(int code, std::string_view detail) {
   switch (code) {
     case XML_ERR_INVALID_CHAR:
@@ -126,7 +126,7 @@ class AttributeCounter {
     return true;
   }
 
-  // Whether what follows "<" may still be, or is, a comment, a CDATA section or an instruction, which have no
+  // True if what follows "<" may still be, or is, a comment, a CDATA section or an instruction, which have no
   // attributes.
   bool is_begin_of_skipped(char c) {
     if (begin_.empty()) attributes_ = 0;

@@ -14,7 +14,7 @@
 
 namespace goniochrome::image {
 
-// Whether blocks with this header are decoded by read_rows(): scan lines of halves and floats, each with a sample for
+// True if blocks with this header are decoded by read_rows(): scan lines of halves and floats, each with a sample for
 // every pixel, plain or packed by Zip.
 bool has_rows(const Imf::Header& header);
 

@@ -6,7 +6,7 @@
 
 namespace goniochrome::image {
 
-// What brings stored rows upright: rows become columns, and then columns and rows are mirrored.
+// The turn that brings stored rows upright: rows become columns, and then columns and rows are mirrored.
 struct Turn {
   bool rows_are_columns = false, mirror_columns = false, mirror_rows = false;
   bool any() const { return rows_are_columns || mirror_columns || mirror_rows; }

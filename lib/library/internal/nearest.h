@@ -1,5 +1,5 @@
 // The nearest paints in one tree, found exactly, and the lower bound of CIEDE2000 over a box of colors, with which the
-// search leaves most paints out. goniochrome-theory(7), NEAREST PAINT.
+// search leaves most paints out. goniochrome-search(7), "NEAREST PAINT".
 #pragma once
 
 #include <cstdint>

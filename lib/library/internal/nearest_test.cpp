@@ -196,7 +196,7 @@ TEST(Search, FasterMethodCountsWhatPasses) {
   EXPECT_EQ(faster_method(1000000, 10), SearchMethod::kScan);
 }
 
-// What the search relies on: the bound, less its slack, is never above the color difference.
+// The search relies on this: the bound, less its slack, is never above the color difference.
 class Bound : public testing::Test {
  protected:
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
@@ -278,7 +278,7 @@ TEST_F(Bound, De00FloorOfBoxes) {
   }
 }
 
-// The same without the rotation term's factor is no bound: blues break it.
+// The bound without the rotation term's factor is none: blues break it.
 TEST_F(Bound, WithoutTheRotationTermItIsNoBound) {
   int broken = 0;
   for (int i = 0; i < 100'000; ++i) {

@@ -1,6 +1,6 @@
 // A k-d tree over the colors of paints at several geometries. It lies in flat arrays, which a file can hold and the
 // system can map into memory as they are.
-// goniochrome-theory(7), NEAREST PAINT.
+// goniochrome-search(7), "NEAREST PAINT".
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // A BRDF in bands of wavelength at every combination of some angles of incidence, of exit and of azimuth between both.
-// goniochrome-theory(7), EXPORT, OpenMATERIAL.
+// goniochrome-export(7), "OpenMATERIAL".
 #pragma once
 
 #include <string>

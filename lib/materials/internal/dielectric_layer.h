@@ -8,7 +8,7 @@ namespace goniochrome::materials {
 // The index whose reflectance along the normal is the strength, 0 to 0.9.
 double index_of(double strength);
 
-// What a dielectric node reflects, in 1/sr, and what the node layer leaves to the one below.
+// The reflectance of a dielectric node, in 1/sr, and the light that the node layer leaves to the one below.
 struct DielectricLayer {
   double reflected = 0, left = 1;
 };

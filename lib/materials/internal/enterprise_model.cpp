@@ -19,7 +19,7 @@ double several_reflections(double normal, double grazing, double mean_albedo) {
   return mean * mean * mean_albedo / (1 - mean * (1 - mean_albedo));
 }
 
-// What the lobe leaves to the diffuse part, where it is strongest, for one viewer or for all.
+// The light that the lobe leaves to the diffuse part, where it is strongest, for one viewer or for all.
 double left_by(double normal, const FacetAlbedo& albedo, double mean_albedo) {
   return 1 - std::lerp(albedo.grazing, albedo.all, normal) -
          several_reflections(normal, 1, mean_albedo) * (1 - albedo.all);

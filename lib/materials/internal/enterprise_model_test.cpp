@@ -27,8 +27,8 @@ OneLobe white(double roughness, double specular, double metalness) {
   return p;
 }
 
-// What facets lose is given back, and the diffuse part takes what the lobe leaves, so that white is white in even
-// light, as the furnace of the specification shows.
+// Facets return the light that they lose, and the diffuse part takes the rest, so that white is white in even light, as
+// the furnace of the specification shows.
 TEST(EnterpriseModel, WhiteReflectsAllLight) {
   for (const double roughness : {0.6, 0.9})
     for (const double view_deg : {0.0, 40.0, 70.0}) {

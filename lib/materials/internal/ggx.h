@@ -28,7 +28,7 @@ struct FacetAlbedo {
 };
 FacetAlbedo facet_albedo(double alpha, double cosine);
 
-// The same by look-up, for searches that ask a thousand times; absolute error 5e-3.
+// The albedo by look-up, for searches that ask a thousand times; absolute error 5e-3.
 FacetAlbedo quick_facet_albedo(double alpha, double cosine);
 
 // Their mean over all viewers in even light, 2 int E(c) c dc, by look-up; absolute error 5e-3.

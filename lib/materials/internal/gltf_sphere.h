@@ -11,7 +11,7 @@ namespace goniochrome::materials {
 // The text of the file.
 std::string gltf_sphere(const Json& material, const Naming& naming);
 
-// What a material keeps for people: its identifier and how far it is from the paint.
+// Extras of a material for people: its identifier and its distance from the paint.
 Json gltf_extras(const Naming& naming, const Shown& shown);
 
 }  // namespace goniochrome::materials

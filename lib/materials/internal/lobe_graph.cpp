@@ -31,8 +31,8 @@ double reflectance(const Facets& facets, double cosine) {
   return facets.color0 + (facets.color90 - facets.color0) * std::pow(1 - cosine, facets.exponent);
 }
 
-// What a node reflects for a reflectance F of its facets, relative to a single reflection: light that facets send to
-// each other is given back.
+// The reflectance of a node for a reflectance F of its facets, relative to a single reflection: light that facets send
+// to each other is given back.
 double compensation(double all, double fresnel) {
   return 1 + fresnel * (1 - all) / all;
 }
@@ -55,8 +55,8 @@ class AlbedoTable {
   std::array<FacetAlbedo, 49> table_{};
 };
 
-// The coats as their nodes show them: what they reflect, and what they leave to the base. The layer node takes away
-// what the node above reflects to the viewer of even light.
+// The coats as their nodes show them: their reflectance, and the light that they leave to the base. The layer node
+// takes away what the node above reflects to the viewer of even light.
 class CoatModel {
  public:
   explicit CoatModel(const LobeGraph& graph) : layered_(graph.layered) {
@@ -253,7 +253,7 @@ class Problem {
     }
   }
 
-  // What a column of weight 1 shows at a sample.
+  // The value of a column of weight 1 at a sample.
   double value(std::size_t sample, std::size_t column) const { return values_[column][sample]; }
 
   // The first `count` columns, as far as they are not there.
@@ -361,7 +361,7 @@ class Problem {
     return math::nnls(m, b).x;
   }
 
-  // What the square of a difference counts for in Huber's function.
+  // The weight of the square of a difference in Huber's function.
   double huber_weight(std::size_t sample, const Vec3& apart) const {
     return samples_[sample].weight * kLarge_de00 / std::max(kLarge_de00, length(apart));
   }
@@ -374,7 +374,7 @@ class Problem {
     return (1 / d) * (apart_at(sample, moved) - apart);
   }
 
-  // What the graph shows of its base, in its own space.
+  // The color of the base of the graph, in its own space.
   color::Rgb shown(std::size_t sample) const {
     color::Rgb f;
     for (const auto& [c, k] : active_) f[static_cast<int>(c)] += x_[c][k] * value(sample, k);

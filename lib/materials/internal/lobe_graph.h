@@ -1,5 +1,5 @@
 // The graph of MaterialX before it is text: nodes of diffuse light and of microfacets, each with a tint, under a
-// mirror. What the nodes show, and which of them come nearest to a paint. goniochrome-theory(7), EXPORT.
+// mirror. What the nodes show, and which of them come nearest to a paint. goniochrome-export(7), "EXPORT".
 #pragma once
 
 #include <array>
@@ -54,7 +54,7 @@ struct LobeGraph {
 // outside of Rec.709 is in ACEScg, which has them all.
 LobeGraph nearest_graph(const paint::Paint& paint);
 
-// What the graph shows, in the working space.
+// The color of the graph, in the working space.
 Reflection seen_of(const LobeGraph& graph);
 
 }  // namespace goniochrome::materials

@@ -47,7 +47,7 @@ OneLobe coat_of(const paint::LobeFit& lobes) {
   return coat;
 }
 
-// What a model is compared with.
+// A search compares a model with these samples.
 class Search {
  public:
   Search(const paint::Paint& paint, const OneLobeModel& model) : model_(model), samples_(fit_samples(*paint.lobes)) {

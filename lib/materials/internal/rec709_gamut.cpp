@@ -14,8 +14,8 @@ double least(const color::Rgb& rgb) {
   return std::min({rgb.x, rgb.y, rgb.z});
 }
 
-// Near the surface of Rec.709 the lattice is coarser than what is lost: a color that loses up to kCut by setting its
-// channels below 0 to 0 gets that, one that loses kFound and more what the lattice has.
+// Near the surface of Rec.709 the lattice is coarser than the loss: a color that loses up to kCut by setting its
+// channels below 0 to 0 gets that, one that loses kFound and more gets the value of the lattice.
 constexpr double kCut = 0.5, kFound = 1.5;
 
 // The search starts from the color whose channels below 0 are 0, and from the gray of its lightness mixed in until none

@@ -26,7 +26,7 @@ class NearestInRec709 {
   Vec3 corner(std::size_t lightness, std::size_t a, std::size_t b);
 
   color::Xyz white_;
-  // What the nearest color differs by in L*, a* and b*, and whether it is known.
+  // The difference of the nearest color in L*, a* and b*, and whether it is known.
   struct Corner {
     std::array<float, 3> difference;
     bool known = false;

@@ -1,5 +1,5 @@
-// What all targets share: the paint as a function of two directions, the directions at which a target is fitted to it,
-// and the comparison of both.
+// Parts that all targets share: the paint as a function of two directions, the directions at which a target is fitted
+// to it, and the comparison of both.
 #pragma once
 
 #include <functional>
@@ -41,7 +41,7 @@ std::vector<FitSample> reflected(std::vector<FitSample> samples, const paint::Lo
 // to 70 deg from the normal and at least 13 deg off the mirror direction.
 std::vector<FitSample> fit_samples(const paint::LobeFit& lobes);
 
-// What a coat reflects beside its mirror image: the weight of the mirror, 0 to 1, in Fresnel's reflectance of the coat,
+// The gloss of a coat besides its mirror image: the weight of the mirror, 0 to 1, in Fresnel's reflectance of the coat,
 // and the satin lobes as one of a GGX of that roughness, alpha.
 struct CoatGloss {
   double mirror = 0, satin = 0, satin_alpha = 0;

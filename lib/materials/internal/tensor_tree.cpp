@@ -96,7 +96,7 @@ double lightness_of(double Y) {
   return std::copysign(std::log1p(kSlope * std::abs(L - 50)) / kSlope, L - 50);
 }
 
-// What a difference of u' or v' counts for at that color: 13 L*, less S_C = 1 + 0.045 C*.
+// The weight of a difference of u' or v' at that color: 13 L*, less S_C = 1 + 0.045 C*.
 double weight_of_chromaticity(double Y, double u, double v) {
   const double L = std::min(116 * std::cbrt(Y) - 16, 100.0);
   if (L <= 0) return 0;
@@ -106,7 +106,7 @@ double weight_of_chromaticity(double Y, double u, double v) {
 
 }  // namespace
 
-// What lies in a cell: the sum of its finest colors, and the ends of lightness and chromaticity among them.
+// The contents of a cell: the sum of its finest colors, and the ends of lightness and chromaticity among them.
 struct TensorTree::Range {
   color::Xyz sum;
   std::array<double, 3> low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};

@@ -1,6 +1,6 @@
 // A tensor tree of rank 3, as Radiance's files of isotropic reflection hold it: an octree over the sine of the
 // incidence and over the disc of the directions that light leaves in, mapped to a square [ShirleyChiu1997]. Each leaf
-// has one color, and nothing is interpolated. goniochrome-theory(7), EXPORT, Radiance.
+// has one color, and nothing is interpolated. goniochrome-export(7), "Radiance".
 #pragma once
 
 #include <array>

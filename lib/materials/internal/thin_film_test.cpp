@@ -20,7 +20,7 @@ TEST(ThinFilm, AThickFilmReflectsWhatItsSurfacesDo) {
   }
 }
 
-// Of half a wave of green light in the film both surfaces of a film with a lower index than its base reflect in
+// At half a wave of green light in the film both surfaces of a film with a lower index than its base reflect in
 // opposite phase a quarter of a wave away: green is brightest with 550 nm / (2 n), and darkest with half of that.
 TEST(ThinFilm, HalfAWaveIsBrightAndAQuarterIsDark) {
   const double index = 1.3;

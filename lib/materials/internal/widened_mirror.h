@@ -1,5 +1,5 @@
 // The image of the mirror in a coat, which no table has a place for: it is widened to an orange peel of small slopes.
-// goniochrome-theory(7), EXPORT, RGL table.
+// goniochrome-export(7), "RGL table".
 #pragma once
 
 namespace goniochrome::materials {
@@ -10,7 +10,7 @@ inline constexpr double kMirrorSlope = 0.01;
 // Its density at that angle of the half vector from the normal, 1/sr; 0 beyond 0.2 rad.
 double mirror_peak(double half_rad);
 
-// What of the area of such a surface a viewer at that cosine sees, relative to the area of the ground: the cosine, and
+// The area of such a surface that a viewer at that cosine sees, relative to the area of the ground: the cosine, and
 // more near grazing. A mirror that reflects F shows F mirror_peak / (4 mirror_area), in f cos(theta_light).
 double mirror_area(double cosine);
 

@@ -1,4 +1,4 @@
-// What glTF files pack by meshoptimizer and by Draco, unpacked. Neither library is trusted: call them in a child
+// Parts of glTF files that meshoptimizer or Draco packed, unpacked. Neither library is trusted: call them in a child
 // process.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What a mesh file holds before it becomes a Mesh: polygons whose corners may lack normals.
+// The contents of a mesh file before it becomes a Mesh: polygons whose corners may lack normals.
 #pragma once
 
 #include <array>

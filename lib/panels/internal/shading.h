@@ -1,5 +1,5 @@
 // The color of a reflectance under a cosine, for numbers and for derivatives (Ceres' Jets) alike.
-// goniochrome-theory(7), GONIOGEOMETRIC INDEX.
+// goniochrome-panels(7), "GONIOGEOMETRIC INDEX".
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // The few texels that outshine the rest (a sun, lamps) are convolved one by one, so that the rest has no peaks.
-// goniochrome-theory(7), PREFILTERING, Bright texels.
+// goniochrome-prefiltering(7), "Bright texels".
 #pragma once
 
 #include <limits>

@@ -1,6 +1,6 @@
 // This evaluates spherical harmonics at many scattered directions: on a fine grid by fast transforms, then by a short
-// weighted sum around each direction (a non-uniform fast Fourier transform). goniochrome-theory(7), PREFILTERING,
-// Zonal harmonics.
+// weighted sum around each direction (a non-uniform fast Fourier transform).
+// goniochrome-prefiltering(7), "Zonal harmonics".
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // In spherical harmonics a filter is a product: each coefficient of the environment times the multiplier of its degree.
-// goniochrome-theory(7), PREFILTERING, Zonal harmonics.
+// goniochrome-prefiltering(7), "Zonal harmonics".
 #pragma once
 
 #include <cstddef>

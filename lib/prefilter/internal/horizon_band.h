@@ -1,5 +1,4 @@
-// What lies beside the horizon of a direction is summed texel by texel. goniochrome-theory(7), PREFILTERING, Horizon
-// bands.
+// Texels along the horizon of a direction are summed one by one. goniochrome-prefiltering(7), "Horizon bands".
 #pragma once
 
 #include <cstddef>
@@ -13,7 +12,7 @@
 
 namespace goniochrome::prefilter {
 
-// What a clip leaves of a lat-long map or a cube, laid out for sums over bands beside great circles.
+// The rest of a clipped lat-long map or cube, laid out for sums over bands along great circles.
 class HorizonBand {
  public:
   HorizonBand(const envmap::Environment& env, const envmap::Clip& clip);
@@ -44,7 +43,7 @@ class HorizonBand {
   };
   static Row row_of(const envmap::Environment& env, int row);
   std::vector<Row> rows_;  // of a lat-long map
-  // Of the columns. Lat-long: sine and cosine of the longitude. Cube: middle and width in the plane of the face.
+  // Values of the columns. Lat-long: sine and cosine of the longitude. Cube: middle and width in the plane of the face.
   std::vector<double> first_, second_;
 };
 

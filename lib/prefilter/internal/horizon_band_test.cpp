@@ -91,8 +91,7 @@ TEST(HorizonParts, LeaveOutNoMoreThanAskedFor) {
   EXPECT_EQ(parts_of(0.3, 256, 1).band().reach, 0);
 }
 
-// What the smooth part alone makes of noise differs from what it makes with the band by as much as is said, by
-// Parseval.
+// The map of the smooth part of noise differs from the map with the band by as much as is stated, by Parseval.
 TEST(HorizonParts, SayWhatTheyLeaveOut) {
   const int degree = 96;
   const CosineKernel kernel(0.3);

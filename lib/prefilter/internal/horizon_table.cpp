@@ -88,7 +88,7 @@ struct Parting {
   double exponent, scale, step;  // between nodes, in the cosine
   std::vector<double> smooth;    // c_l of the smooth part
 
-  // Of K and of its antiderivatives.
+  // The power of K and of its antiderivatives.
   static double power(double t, double e) { return t > 0 ? std::pow(t, e) : 0.0; }
   double smooth_at(double node) const { return legendre_sum(smooth, node * step); }
   double rest(int node) const { return power(node * step, exponent) - smooth_at(node); }
@@ -145,7 +145,7 @@ double SecondIntegral::at(double cosine) const {
   return c[0] + z * (c[1] + z * (c[2] + z * c[3]));
 }
 
-// As CosineKernel::linear_mean().
+// The mean as of CosineKernel::linear_mean().
 double SecondIntegral::mean(double middle, double along, double down) const {
   const double wide = (along + down) / 2, narrow = (along - down) / 2;
   return (at(middle + wide) - at(middle + narrow) - at(middle - narrow) + at(middle - wide)) / (along * down);

@@ -1,5 +1,5 @@
 // A kernel that ends or bends at the horizon is parted in two: a smooth one of few harmonics, and the rest, which is
-// almost nothing but beside the horizon. goniochrome-theory(7), PREFILTERING, Horizon bands.
+// almost nothing but beside the horizon. goniochrome-prefiltering(7), "Horizon bands".
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,7 @@ struct SecondIntegral {
   // The mean of the function over a parallelogram on which the cosine is linear: `middle` in its middle, changing by
   // `along` and `down`, which are not 0, from side to side.
   double mean(double middle, double along, double down) const;
-  // The same by the table of means.
+  // The mean by the table of means.
   double far_mean(double middle, double along, double down) const;
   // Makes the table for texels about `side_rad` wide and high.
   void make_means(double side_rad);

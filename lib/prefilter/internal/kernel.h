@@ -1,9 +1,9 @@
-// What an environment is filtered by: a zonal kernel K, a function of the angle to the middle of the lobe alone. Its
-// map is P(d) = scale() times the integral of L(w) K(angle between d and w) dw, so that a constant map stays itself.
+// The kernel of a filter: a zonal kernel K, a function of the angle to the middle of the lobe alone. Its map is P(d) =
+// scale() times the integral of L(w) K(angle between d and w) dw, so that a constant map stays itself.
 //
 // The methods of this room ask the kernel for what they need. ZonalKernel answers from values of K where it can, by
 // quadrature and differences; CosineKernel knows everything in closed form; NumericKernel makes a kernel of any
-// function. goniochrome-theory(7), PREFILTERING.
+// function. goniochrome-prefiltering(7), "PREFILTERING".
 #pragma once
 
 #include <cstddef>
@@ -50,7 +50,7 @@ class ZonalKernel {
   virtual double variation(double angle_rad) const;
   // About the value at this small angle, in radians, inside the edge.
   virtual double near_edge(double angle_rad) const;
-  // Whether K bends so much beside its edge that a few points in a texel there do not serve.
+  // True if K bends so much beside its edge that a few points in a texel there do not serve.
   virtual bool bends_beside_edge() const { return edge_.exists(); }
   // The mean of K over a parallelogram on which the cosine is linear: t0 in the middle, changing by a and b from side
   // to side.

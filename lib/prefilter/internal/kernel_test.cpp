@@ -44,7 +44,7 @@ TEST(Kernel, CosineMultipliersEqualTheIntegral) {
   }
 }
 
-// What the values of cos^E alone give, against its closed forms.
+// The values of cos^E alone, against its closed forms.
 TEST(Kernel, ValuesAloneGiveTheClosedForms) {
   for (const double exponent : {1.0, 6.0, 70.0, 900.0}) {
     const CosineKernel closed(exponent);

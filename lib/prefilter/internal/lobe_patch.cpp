@@ -18,7 +18,7 @@ using envmap::Environment;
 
 constexpr double kNothing = 1e-20;  // of the kernel's top; a sun may outshine the mean by 1e6 and the floor is 1e-3
 
-// What one quarter of the recursion knows.
+// The state of one quarter of the recursion.
 struct Task {
   const Environment& env;
   Vec3 d;

@@ -1,5 +1,5 @@
 // The integral of a kernel over a part of a texel, which every method of this room means: each texel is a patch of
-// constant radiance. goniochrome-theory(7), PREFILTERING, The reference.
+// constant radiance. goniochrome-prefiltering(7), "The reference".
 #pragma once
 
 #include "envmap/patch.h"
@@ -13,8 +13,7 @@ namespace goniochrome::prefilter {
 double lobe_over_cell(const envmap::Environment& env, const envmap::Cell& cell, const Vec3& d,
                       const ZonalKernel& kernel, double relative, double at_edge);
 
-// The same for a whole texel of a lat-long map under max(0, cos)^E of a large exponent, the width of which is
-// 1/sqrt(E).
+// Variant for a whole texel of a lat-long map under max(0, cos)^E of a large exponent, the width of which is 1/sqrt(E).
 double sharp_lobe_over_texel(const envmap::Environment& env, int column, int row, const Vec3& d, double exponent,
                              double relative);
 

@@ -142,7 +142,7 @@ HWY_INLINE hn::Vec<Tag> antiderivative(Tag d, const SecondIntegral& band, hn::Ve
   return hn::MulAdd(hn::MulAdd(hn::MulAdd(c3, z, c2), z, c1), z, c0);
 }
 
-// As SecondIntegral::mean().
+// The mean as of SecondIntegral::mean().
 template <class Tag>
 HWY_INLINE hn::Vec<Tag> cut_mean(Tag d, const SecondIntegral& band, hn::Vec<Tag> middle, hn::Vec<Tag> along,
                                  hn::Vec<Tag> down) {
@@ -155,7 +155,7 @@ HWY_INLINE hn::Vec<Tag> cut_mean(Tag d, const SecondIntegral& band, hn::Vec<Tag>
   return hn::Div(hn::Sub(outer, inner), hn::Mul(along, down));
 }
 
-// As SecondIntegral::far_mean().
+// The mean as of SecondIntegral::far_mean().
 template <class Tag>
 HWY_INLINE hn::Vec<Tag> far_mean(Tag d, const SecondIntegral& band, hn::Vec<Tag> middle, hn::Vec<Tag> along,
                                  hn::Vec<Tag> down) {

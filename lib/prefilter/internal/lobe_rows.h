@@ -52,7 +52,7 @@ struct CutTexels {
 // and weights have kPadding more places.
 void lat_long_band_weights(const double* sine, const double* cosine, const LatLongBand& part,
                            const SecondIntegral& band, float* weights, std::size_t from, CutTexels& cut);
-// The same of the cut texels.
+// The weights of the cut texels.
 void cut_band_weights(const CutTexels& cut, const SecondIntegral& band, float* weights);
 
 // A strip is kStrip neighboring texels of a row. Adds the sum over strips of the texels from rgb[3 at[i]] on, each

@@ -1,5 +1,5 @@
-// The map of the mirror lobe is the environment itself, averaged over the texels of the map. goniochrome-theory(7),
-// PREFILTERING, The mirror.
+// The map of the mirror lobe is the environment itself, averaged over the texels of the map.
+// goniochrome-prefiltering(7), "The mirror".
 #pragma once
 
 #include <vector>
@@ -15,7 +15,7 @@ namespace goniochrome::prefilter {
 std::vector<float> mirror_values(const envmap::Environment& env, const envmap::SphereGrid& grid,
                                  const envmap::Rotation& turn);
 
-// Whether an eighth of the map serves all of it, by turns and mirrors: a cube from an even lat-long map, not turned.
+// True if an eighth of the map serves all of it, by turns and mirrors: a cube from an even lat-long map, not turned.
 bool mirror_is_symmetric(const envmap::Environment& env, const envmap::SphereGrid& grid, const envmap::Rotation& turn);
 
 }  // namespace goniochrome::prefilter

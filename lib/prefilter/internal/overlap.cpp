@@ -41,7 +41,7 @@ envmap::GridPosition mix(const envmap::GridPosition& a, const envmap::GridPositi
   return {(1 - x) * a.column + x * b.column, (1 - x) * a.row + x * b.row};
 }
 
-// What is left of a polygon where `value`, which is linear, is not negative.
+// The part of a polygon where `value`, which is linear, is not negative.
 template <class P, class Value>
 std::vector<P> clipped(const std::vector<P>& polygon, const Value& value) {
   std::vector<P> left;

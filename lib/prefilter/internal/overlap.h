@@ -1,5 +1,5 @@
 // This finds the texels of an image that a cell of another one covers, and how much of each, exactly, so that the
-// mirror map keeps all flux. goniochrome-theory(7), PREFILTERING, The mirror.
+// mirror map keeps all flux. goniochrome-prefiltering(7), "The mirror".
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ class OverlapFinder {
  public:
   explicit OverlapFinder(const envmap::SphereGrid& grid);
 
-  // What the cell covers, with every texel once or more. Exact for lat-long maps and cubes; of an angular probe the
-  // sides of the cell are taken in straight pieces of 5 mrad or an eighth.
+  // Texels that the cell covers, with every texel once or more. Exact for lat-long maps and cubes; of an angular probe
+  // the sides of the cell are taken in straight pieces of 5 mrad or an eighth.
   const std::vector<Overlap>& of(const SphereQuad& cell);
 
  private:

@@ -1,5 +1,5 @@
 // The time that prefiltering takes is predicted from a few measured constants times the counts of each step.
-// goniochrome-theory(7), PREFILTERING, Costs.
+// goniochrome-prefiltering(7), "Costs".
 #pragma once
 
 #include <vector>

@@ -2,7 +2,7 @@
 //
 // Directions that lie alike to the texels have the same weights, which are found once. These are directions that are
 // whole columns apart or mirror images of each other, up and down or left and right: a cube of maps whose axis is that
-// of the environment has up to sixteen of them. goniochrome-theory(7), PREFILTERING, Orbits.
+// of the environment has up to sixteen of them. goniochrome-prefiltering(7), "Orbits".
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,7 @@ class Strips {
 
 class StripMap {
  public:
-  // What the clip leaves of a lat-long map, which has fewer than 2^31 texels.
+  // The rest of a clipped lat-long map, which has fewer than 2^31 texels.
   StripMap(const envmap::Environment& env, const envmap::Clip& clip);
 
   // A direction of the northern hemisphere at the place `column` of the first half of the first column, continuously.

@@ -13,7 +13,7 @@ class VertexTree {
  public:
   explicit VertexTree(std::vector<Float3> points);
 
-  // Whether a point lies more than `margin` above the plane through `origin` with this unit normal.
+  // True if a point lies more than `margin` above the plane through `origin` with this unit normal.
   bool any_above(const Float3& origin, const Float3& normal, float margin) const;
 
  private:

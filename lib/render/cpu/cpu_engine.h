@@ -1,6 +1,6 @@
 // The engine cpu shades G-buffers on the processor, without OpenGL. Maps that are looked up in one direction lie
 // interleaved in memory, so that one set of addresses and one bilinear fetch serve all of their lobes.
-// goniochrome-theory(7), RENDERING, Engines.
+// goniochrome-rendering(7), "Engines".
 #pragma once
 
 #include <memory>

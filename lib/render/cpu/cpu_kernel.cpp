@@ -263,8 +263,8 @@ HWY_INLINE V fresnel_of(V c) {
   return hn::Mul(hn::Set(f, 0.5F), hn::MulAdd(s, s, hn::Mul(p, p)));
 }
 
-// What a coat lets in, by brdf's form of the Fresnel reflectance; `index2` is the square of its index, 1 without a
-// coat, where the amplitudes would be 0/0 at c = 0.
+// The transmission of a coat, by brdf's form of the Fresnel reflectance; `index2` is the square of its index, 1 without
+// a coat, where the amplitudes would be 0/0 at c = 0.
 HWY_INLINE float let_in(float c, float index2) {
   if (index2 <= 1) return 1;
   const float contrast = index2 - 1, g = std::sqrt(contrast + c * c), s = c + g, p = index2 * c + g;

@@ -11,7 +11,7 @@
 
 namespace goniochrome::render {
 
-// What direction meets them: the normal; the mirror direction; or the mirror directions about tilted normals.
+// The direction of the look-up: the normal; the mirror direction; or the mirror directions about tilted normals.
 enum class MapUse { kNormal, kMirror, kTilted };
 
 constexpr int kMostClasses = 16;
@@ -19,9 +19,9 @@ constexpr int kMostBlocks = 32;  // of all maps met by the mirror direction toge
 constexpr int kMostLobes = 2 * kMostBlocks;
 static_assert(kMostLobes <= 64, "CpuShading::lit_lobes has a bit for each");
 
-// What the kernel shades with. Weights of a part and segment: for each class of maps in order, for each block, 8 floats
-// a and 8 floats b (W = a + b t), in the forms of the maps. Then, for each light slot, 4 floats a and 4 floats b. Then,
-// for each class, a and b of the shift s of its direction, r + s n.
+// Data that the kernel shades with. Weights of a part and segment: for each class of maps in order, for each block, 8
+// floats a and 8 floats b (W = a + b t), in the forms of the maps. Then, for each light slot, 4 floats a and 4 floats
+// b. Then, for each class, a and b of the shift s of its direction, r + s n.
 struct CpuShading {
   int classes = 0;
   InterleavedMaps maps[kMostClasses];

@@ -8,7 +8,7 @@ constexpr int kPointsAtOnce = 64;
 
 // Maps that one direction meets, their texels interleaved: for each texel, blocks of two maps, the four forms of the
 // product of each (R G B 0 where it is component-wise); or of one map with six forms. A single map of four forms is
-// kept in half a block, which halves what the cache has to hold: the other half of what is read is the next texel,
+// kept in half a block, which halves the memory that the cache has to hold: the other half of a read is the next texel,
 // which has no weight.
 struct InterleavedMaps {
   int size = 0;          // of a face, without its border of one texel

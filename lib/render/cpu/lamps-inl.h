@@ -26,7 +26,8 @@ struct LampSeen {
   }
 };
 
-// As light_at() has it. `direction` is that of a lamp that is far away; `placed` may be null. `points` has px, py, pz.
+// Light as light_at() has it. `direction` is that of a lamp that is far away; `placed` may be null. `points` has px,
+// py, pz.
 template <class Points>
 HWY_INLINE void see_lamp(const float* direction, const PlacedLamp* placed, const Points& points, LampSeen& seen) {
   const D f;

@@ -1,4 +1,4 @@
-// Lamps that are discs, as the shading program reads them. goniochrome-theory(7), RENDERING, Lamps.
+// Lamps that are discs, as the shading program reads them. goniochrome-rendering(7), "LAMPS".
 #pragma once
 
 #include <vector>

@@ -29,12 +29,12 @@ struct Egl {
   decltype(&eglDestroyContext) destroy = nullptr;
   decltype(&eglMakeCurrent) make_current = nullptr;
   PFNEGLGETPLATFORMDISPLAYEXTPROC display = nullptr;
-  // Of extensions, so that they may be null.
+  // Functions of extensions, so that they may be null.
   PFNEGLQUERYDEVICESEXTPROC devices = nullptr;
   PFNEGLQUERYDEVICESTRINGEXTPROC device_text = nullptr;
 };
 
-// Whether a list of extensions, separated by spaces, has this one.
+// True if a list of extensions, separated by spaces, has this one.
 bool lists(const char* extensions, std::string_view name) {
   if (extensions == nullptr) return false;
   for (const std::string_view one : split(extensions, ' '))
@@ -115,7 +115,7 @@ class EglDriver : public GlDriver {
   bool on_gpu_;
 };
 
-// Whether the current context draws on the processor.
+// True if the current context draws on the processor.
 bool draws_by_software(const Egl& egl) {
   using GetString = const unsigned char* (*)(unsigned);
   constexpr unsigned kRenderer = 0x1F01;  // GL_RENDERER

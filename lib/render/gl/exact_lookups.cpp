@@ -6,7 +6,7 @@ namespace goniochrome::render {
 
 namespace {
 
-// What the generator of programs writes where a cube map is looked up, and what stands in its place.
+// The text that the generator of programs writes where a cube map is looked up, and its replacement.
 constexpr std::string_view kLookup = "textureLod(", kExact = "exact_lookup(";
 
 // A face is a square from -1 to 1 in p, before the eye at a distance of 1 along its axis. Each of the four texels is

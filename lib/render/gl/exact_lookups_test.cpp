@@ -44,7 +44,7 @@ std::vector<Vec3> directions() {
   return all;
 }
 
-// What a program reads of the map in these directions, by the filter of the textures.
+// The values that a program reads of the map in these directions, by the filter of the textures.
 std::vector<float> looked_up(const GlContext& gl, const std::string& fragment, const envmap::CubeMap& map,
                              const std::vector<Vec3>& toward, GLint filter) {
   std::vector<float> rgba;

@@ -1,4 +1,4 @@
-// The program that draws the G-buffer, and how all programs begin. goniochrome-theory(7), RENDERING.
+// The program that draws the G-buffer, and how all programs begin. goniochrome-rendering(7), "RENDERING".
 #pragma once
 
 #include <string>

@@ -102,9 +102,9 @@ class GlContext {
   void set(GLuint program, const std::string& name, const Vec3& value) const;
   // "llvmpipe (LLVM 15.0.6, 256 bits)"
   std::string engine() const;
-  // What made the context: "OSMesa" or "EGL".
+  // The library that made the context: "OSMesa" or "EGL".
   const char* library() const;
-  // Whether it draws on a GPU. GPUs interpolate between texels in steps of 1/256.
+  // True if it draws on a GPU. GPUs interpolate between texels in steps of 1/256.
   bool on_gpu() const;
 
 #define GONIO_GL_MEMBER(type, name) type name = nullptr;

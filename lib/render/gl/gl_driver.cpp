@@ -72,7 +72,7 @@ Result<std::shared_ptr<const GlDriver>> osmesa_driver() {
   return std::shared_ptr<const GlDriver>(std::move(driver));
 }
 
-// Whether as much address space is to be had as Mesa takes beside its libraries: short of it, it crashes.
+// True if there is as much address space as Mesa takes beside its libraries: short of it, it crashes.
 bool has_room() {
   constexpr std::size_t kRoom = std::size_t{448} << 20;
   void* room = mmap(nullptr, kRoom, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

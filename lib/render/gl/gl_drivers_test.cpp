@@ -1,4 +1,5 @@
-// The same pictures whatever draws them: OSMesa, EGL's software, a GPU, and the processor on what rays find visible.
+// Pictures are equal whatever draws them: OSMesa, EGL's software, a GPU, and the processor on the surfaces that rays
+// find.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -67,7 +68,7 @@ struct Difference {
   double turn = 0;             // the largest difference of the normals of a triangle
 };
 
-// Of pixels whose normals are no farther apart than `same_normal`.
+// The difference of pixels whose normals are no farther apart than `same_normal`.
 Difference difference(const Frame& a, const Frame& b, double same_normal = std::numeric_limits<double>::infinity()) {
   Difference of;
   const Gbuffer &seen = *a.gbuffer, &other = *b.gbuffer;
@@ -128,9 +129,9 @@ TEST_P(Drivers, ShadeAsTheProcessor) {
   EXPECT_GT(difference(gl, drawn(*renderer_, turned, "gl")).units, 10);
 }
 
-// What rays find visible, shaded on the processor, is what OpenGL rasterizes and shades, but for pixels at edges:
-// rasterizers round the corners of triangles to 1/256 of a pixel, so that a pixel in 200 may show the neighbor of its
-// triangle. A triangle that is flat has one normal, whatever its corners are rounded to.
+// Surfaces that rays find, shaded on the processor, are those that OpenGL rasterizes and shades, but for pixels at
+// edges: rasterizers round the corners of triangles to 1/256 of a pixel, so that a pixel in 200 may show the neighbor
+// of its triangle. A triangle that is flat has one normal, whatever its corners are rounded to.
 TEST_P(Drivers, DrawWhatRaysFind) {
   World world;
   world.make_faceted();
@@ -143,9 +144,9 @@ TEST_P(Drivers, DrawWhatRaysFind) {
   EXPECT_LE(of.units, 1) << of.beyond << " values of " << of.pixels << " pixels";
 }
 
-// The same with normals that are interpolated. Rounded corners move the point of a triangle that a pixel shows, and its
-// normal by as much as the surface bends there: at a pixel in 100 it is another one, by some 1/10 of a degree at most.
-// Where the normal is the same, so is the picture.
+// Pictures with interpolated normals agree as well. Rounded corners move the point of a triangle that a pixel shows,
+// and its normal by as much as the surface bends there: at a pixel in 100 it is another one, by some 1/10 of a degree
+// at most. Where the normal is the same, so is the picture.
 TEST_P(Drivers, DrawWhatRaysFindOnBentSurfaces) {
   const World world;
   Renderer by_rays = Renderer::tracing();

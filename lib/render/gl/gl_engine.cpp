@@ -115,7 +115,7 @@ void GlEngine::upload_discs() {
   discs_ = gl_->float_texture(discs.columns, discs.rows, discs.rgba.data());
 }
 
-// Of each pixel, as the processor finds it.
+// Uploads the position of each pixel, as the processor finds it.
 void GlEngine::upload_positions(const Gbuffer& gbuffer) {
   const auto wide = static_cast<std::size_t>(gbuffer.width), high = static_cast<std::size_t>(gbuffer.height);
   std::vector<float> texels(4 * wide * high, 0.0F);

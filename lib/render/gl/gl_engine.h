@@ -1,5 +1,5 @@
-// The engine gl shades G-buffers with OpenGL, by a program that is written for the scene. goniochrome-theory(7),
-// RENDERING, Engines.
+// The engine gl shades G-buffers with OpenGL, by a program that is written for the scene.
+// goniochrome-rendering(7), "Engines".
 #pragma once
 
 #include <string>

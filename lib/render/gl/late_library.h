@@ -23,7 +23,7 @@ class LateLibrary {
     complete_ = complete_ && function != nullptr;
   }
 
-  // Whether the library was loaded and had every function that was asked for.
+  // True if the library was loaded and had every function that was asked for.
   bool complete() const { return complete_; }
   // Why it could not be loaded, in parentheses after a space; "" where it was loaded.
   const std::string& reason() const { return reason_; }

@@ -8,7 +8,7 @@ namespace goniochrome::render {
 
 namespace {
 
-// What a slot meets of the maps in a mirror direction.
+// The light of a slot from the maps in a mirror direction.
 std::string map_light_function(const Effects& effects) {
   std::string text = "\nvec4 map_light(vec3 r, int slot, vec3 n) {\n  vec4 light = vec4(0.0);\n";
   for (const LightLayer& layer : light_layers(effects)) {
@@ -20,7 +20,7 @@ std::string map_light_function(const Effects& effects) {
   return text + "  return light;\n}\n";
 }
 
-// What the flakes or the gloss of a lobe send from a disc: the same sums as in the shading program, without weights.
+// The light of a disc by the flakes or the gloss of a lobe: the sums of the shading program, without weights.
 std::string lamp_light_function(const Effects& effects) {
   return fmt::format(R"(
 float lamp_light(vec3 r, int slot, vec3 l, vec3 n, vec3 wo, int light, vec2 seen) {{
@@ -93,7 +93,7 @@ std::string gathering_fragment_shader(const Effects& effects, const color::Refle
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
   projected_ground = projected_ground && effects.background == Background::kEnvironment;
-  std::string text = std::string(kHead) + "// goniochrome-theory(7), RENDERING, Layers\n" + uniforms(effects) + kRays;
+  std::string text = std::string(kHead) + "// goniochrome-rendering(7), \"Layers\"\n" + uniforms(effects) + kRays;
   text +=
       fmt::format("uniform int slots[{0}];\nuniform float scales[{0}];\nlayout(location = 0) out vec4 layers[{0}];\n",
                   kLayersAtOnce);
@@ -136,7 +136,7 @@ std::string gathering_fragment_shader(const Effects& effects, const color::Refle
 std::string layers_fragment_shader(const Effects& effects, const color::ReflectionOperator& op) {
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
-  std::string text = std::string(kHead) + "// goniochrome-theory(7), RENDERING, Layers\n";
+  std::string text = std::string(kHead) + "// goniochrome-rendering(7), \"Layers\"\n";
   text += fmt::format(
       R"(uniform sampler2D gbuffer;  // normal, part + 1 (negative: seen from inside)
 uniform sampler2D weights;  // a row for each part; two texels for each slot of each segment of the view

@@ -1,7 +1,7 @@
 // Programs that keep the light of a view in layers. As long as the view and the light stay, a picture is a sum of what
 // the slots of weights meet at each point, times the weights of the paint there: where that light is kept, another
 // paint takes one product for each layer in the place of look-ups in maps and sums over lamps.
-// goniochrome-theory(7), RENDERING, Layers.
+// goniochrome-rendering(7), "Layers".
 #pragma once
 
 #include <string>

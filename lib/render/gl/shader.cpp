@@ -48,7 +48,7 @@ std::string fetched_disc_weights(const Effects& effects) {
   return text;
 }
 
-// What the lobes send from a disc: one part with the cosine and the coat at the disc, the other with those at r.
+// The light of a disc by the lobes: one part with the cosine and the coat at the disc, the other with those at r.
 std::string disc_lobes(const Effects& effects) {
   std::string text = fmt::format(
       "\nvec3 lit_lobes(vec3 r, vec3 l, vec3 n, vec3 wo, int light, float irradiance, float above) {{\n"
@@ -66,7 +66,7 @@ std::string disc_lobes(const Effects& effects) {
   return text + "  return sum;\n}\n";
 }
 
-// What the lobes show of the environment in a mirror direction, and what they send from a light.
+// The light of the lobes from the environment in a mirror direction, and from a light.
 std::string lobe_functions(const Effects& effects, Product product) {
   std::string text;
   if (effects.environment) {
@@ -114,7 +114,7 @@ std::string environment_terms(const Effects& effects, Product product, bool tilt
   return text;
 }
 
-// The same of discs, with their mirror images.
+// The terms of discs, with their mirror images.
 std::string disc_terms(const Effects& effects) {
   std::string text = fmt::format(
       R"(
@@ -173,7 +173,7 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
   // 1. What the program is given, and the functions that it needs.
-  std::string text = std::string(kHead) + "// goniochrome-theory(7), RENDERING\n";
+  std::string text = std::string(kHead) + "// goniochrome-rendering(7), \"RENDERING\"\n";
   text += uniforms(effects) + tilt_uniforms(effects, tilted) + kRays + "layout(location = 0) out vec4 color;\n" +
           kWeight + placed_lamp_functions(effects);
   if (effects.reflection && (product == Product::kOperator || effects.single_lights() > 0))

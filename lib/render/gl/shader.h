@@ -1,5 +1,5 @@
 // The programs of OpenGL. The shading program is written for one scene and contains only the effects and lobes that the
-// scene uses. goniochrome-theory(7), RENDERING.
+// scene uses. goniochrome-rendering(7), "RENDERING".
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ std::string shading_vertex_shader();
 // The operator is written into it where the effects have it. `tilted` are the exponents of tilted lobes. With
 // `projected_ground` an environment in the background may lie on the ground: ground_eye is the camera's eye relative to
 // the point above the ground from which the environment was seen, and ground_drop how far below that the ground lies; 0
-// for no ground. goniochrome-theory(7), PATHS, Ground.
+// for no ground. goniochrome-paths(7), "Ground".
 std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
                                     const std::vector<double>& tilted, bool projected_ground = false);
 // Returns the program of a scene, with its tilted lobes. Textures are added by the processor.

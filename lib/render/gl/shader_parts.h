@@ -1,4 +1,4 @@
-// Pieces of shading programs that several of them have in common. goniochrome-theory(7), RENDERING.
+// Pieces of shading programs that several of them have in common. goniochrome-rendering(7), "RENDERING".
 #pragma once
 
 #include <cstddef>
@@ -31,8 +31,8 @@ vec4 W(int slot) {
 }
 )";
 
-// What a coat lets in, by brdf's form of the Fresnel reflectance; `index2` is the square of its index, 1 without a
-// coat, where the amplitudes would be 0/0 at c = 0.
+// The transmission of a coat, by brdf's form of the Fresnel reflectance; `index2` is the square of its index, 1 without
+// a coat, where the amplitudes would be 0/0 at c = 0.
 inline constexpr const char* kLetIn = R"(
 float let_in(float c, float index2) {
   if (index2 <= 1.0) return 1.0;
@@ -42,7 +42,8 @@ float let_in(float c, float index2) {
 }
 )";
 
-// What stands on the ground where a ray meets it was seen from ground_eye = 0; elsewhere it is the ray's own direction.
+// The direction in which the eye of the environment, at 0, saw the place where a ray meets the ground; elsewhere the
+// ray's own direction.
 inline constexpr const char* kProjectedGround = R"(uniform vec3 ground_eye;
 uniform float ground_drop;
 vec3 projected(vec3 ray) {
@@ -60,21 +61,21 @@ std::string row_of_view(const Effects& effects);
 // brdf's fresnel_dielectric() with the refracted cosine g/n written in c: r_s = (c-g)/(c+g), r_p = (n^2 c-g)/(n^2 c+g).
 std::string fresnel_function();
 
-// Whether gloss meets single lights, whose reflection then depends on the angle at which they are seen.
+// True if gloss meets single lights, whose reflection then depends on the angle at which they are seen.
 bool lit_gloss(const Effects& effects);
 
-// What a lobe gathers of a disc, by the chord from the mirror direction to its middle; and how much of a disc stands
-// above the horizon, by the elevation of its middle relative to its radius: irradiance and part.
+// The light of a disc in a lobe, by the chord from the mirror direction to its middle; and the part of a disc above the
+// horizon, by the elevation of its middle relative to its radius: irradiance and part.
 std::string disc_functions(std::size_t lobes);
 
 // Lamps at a place: `lamps` holds the direction of each and its light relative to light_white, as they are at a point,
 // once see_lamps() was called. The texts are empty where every lamp is far away.
 std::string placed_lamp_functions(const Effects& effects);
 std::string placed_lamp_start(const Effects& effects);
-// What the program has for lamp i: its direction, and the white that faces it.
+// Names of lamp i in the program: its direction, and the white that faces it.
 const char* lamp_direction(const Effects& effects);
 const char* lamp_white(const Effects& effects);
-// Whether the program finds lamps at each point.
+// True if the program finds lamps at each point.
 bool finds_lamps(const Effects& effects);
 
 // The start of a loop over lamps that are discs: l, disc, and `seen`, the cosine as the coat lets it in and the part of
@@ -101,7 +102,7 @@ std::string tilt_frame(const Effects& effects);
 std::string over_tilts(const Effects& effects, const std::string& sum, const std::string& function,
                        const std::string& more);
 
-// What a ray shows that meets nothing.
+// The color of a ray that meets nothing.
 std::string background_color(Background background, Product product, bool projected_ground);
 
 }  // namespace goniochrome::render

@@ -1,5 +1,5 @@
 // The part of the shading program that looks tilted lobes up, and the layout of the texture that it reads them from.
-// goniochrome-theory(7), TILTED LOBES.
+// goniochrome-interference(7), "TILTED LOBES".
 #pragma once
 
 #include <cstddef>

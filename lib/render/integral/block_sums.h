@@ -1,5 +1,5 @@
 // Light from all around is handed to a gatherer in patches: pieces of texels, or whole blocks of them. A gatherer has a
-// Grain, and `add(patch, light)`; see gatherer.h. goniochrome-theory(7), REFERENCE INTEGRATOR.
+// Grain, and `add(patch, light)`; see gatherer.h. goniochrome-plan(7), "REFERENCE INTEGRATOR".
 #pragma once
 
 #include <algorithm>

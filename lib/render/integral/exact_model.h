@@ -1,5 +1,5 @@
-// Points whose light the reference integrator sums, and how their BRDF is evaluated. goniochrome-theory(7), REFERENCE
-// INTEGRATOR.
+// Points whose light the reference integrator sums, and how their BRDF is evaluated.
+// goniochrome-plan(7), "REFERENCE INTEGRATOR".
 #pragma once
 
 #include <optional>

@@ -30,14 +30,14 @@ class Grain {
   // The numbers of pieces that lobes ask for of the texel about this direction, ascending: 1, and those of lobes that
   // reach it.
   const std::vector<int>& cuts(const Vec3& direction) const;
-  // Whether the light of a block is too wide to come from one direction. `variance` of its directions, along each axis.
+  // True if the light of a block is too wide to come from one direction. `variance` of its directions, along each axis.
   bool opens(const envmap::BlockTree::Block& block, double variance) const;
-  // Of this exponent, by a patch of this variance; as it is far from the lobe, where wide patches were let through.
+  // The lobe of this exponent, blurred by a patch of this variance; far from the lobe wide patches were let through.
   BlurredLobe blurred(double exponent, double variance) const {
     const double most = most_spread_ * most_spread_ * (1 / exponent + apart2_);
     return {exponent, variance <= most ? variance : 0};
   }
-  // Whether a block that the horizon cuts is too wide for its mean direction to stand on one side of it.
+  // True if a block that the horizon cuts is too wide for its mean direction to stand on one side of it.
   bool opens_at_horizon(const envmap::BlockTree::Block& block) const { return block.sine > 0.5 * most_spread_; }
 
  private:
@@ -57,8 +57,8 @@ class Grain {
   std::vector<Bundle> bundles_;
 };
 
-// What of a point takes the light of a patch: all, or the lobes that ask for a texel to be cut into so many pieces. The
-// whole texel, which is one piece, also lights the base, and the finest pieces what is no lobe.
+// The part of a point that takes the light of a patch: all, or the lobes that ask for a texel to be cut into so many
+// pieces. The whole texel, which is one piece, also lights the base, and the finest pieces light everything but lobes.
 struct PatchPart {
   int pieces = 0;  // 0: all
   bool is_finest = true;
@@ -74,7 +74,7 @@ class Gatherer {
 
   const Vec3& reflected() const { return reflected_; }
   const Grain& grain() const { return grain_; }
-  // Whether only what is above the horizon counts.
+  // True if only what is above the horizon counts.
   bool ends_at_horizon() const { return model_.horizon; }
   const Vec3& normal() const { return point_.normal; }
 
@@ -115,9 +115,9 @@ class Gatherer {
   color::Rgb lobes_toward_disc(const Light& light, bool mapped) const;
   color::Rgb lobe_over_disc(const paint::Lobe& lobe, const Vec3& mirrored, const Light& light, bool mapped) const;
   void add_reflected(const color::Rgb& f, const color::Rgb& light);
-  // What the coat lets in of a disc.
+  // The transmission of the coat for a disc.
   double let_in_of(const Light& light) const;
-  // What the coat lets in from there.
+  // The transmission of the coat from there.
   double let_in(double cos_i) const {
     return paint_.coat_index == paint::kNoCoat ? 1 : brdf::coat_transmission(std::min(cos_i, 1.0), paint_.coat_index);
   }

@@ -1,6 +1,5 @@
 // The engine integral shades G-buffers without prefiltered maps: at every visible point it sums the environment itself,
-// by blocks of texels that are as coarse as the lobes there allow. goniochrome-theory(7), REFERENCE INTEGRATOR, Sums
-// over blocks.
+// by blocks of texels that are as coarse as the lobes there allow. goniochrome-plan(7), "Sums over blocks".
 #pragma once
 
 #include <vector>

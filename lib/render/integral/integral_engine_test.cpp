@@ -27,7 +27,7 @@ envmap::Environment lat_long(const std::function<Vec3(int column, int row)>& rad
   return *envmap::Environment::from_lat_long(std::move(image), envmap::Environment::BadPixels::kError, "made");
 }
 
-// What is hard on blocks: a long thin lamp, a colored window beside a wall, a small sun and a floor's edge.
+// A hall that is hard on blocks: a long thin lamp, a colored window in a wall, a small sun and a floor's edge.
 envmap::Environment hall() {
   return lat_long([](int column, int row) {
     if (row == 14 && column > 10 && column < 60) return Vec3{40, 38, 30};

@@ -1,5 +1,5 @@
-// Light that comes from a small part of all around, and what lobes and matt bases make of it. goniochrome-theory(7),
-// REFERENCE INTEGRATOR, Sums over blocks.
+// Light that comes from a small part of all around, and what lobes and matt bases make of it.
+// goniochrome-plan(7), "Sums over blocks".
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct Patch {
   // How far the mean directions of R, G and B are from `direction`, as vectors across it; null: all are there.
   const std::array<Vec3, 3>* of_channels = nullptr;
 
-  // The same along an axis.
+  // The light along an axis.
   color::Rgb along(const Vec3& axis) const {
     if (of_channels == nullptr) return {};
     return {dot((*of_channels)[0], axis), dot((*of_channels)[1], axis), dot((*of_channels)[2], axis)};
@@ -44,10 +44,10 @@ struct BlurredLobe {
   double peak, exponent, variance, bend;
 };
 
-// What a matt base under a coat gets from a patch, with its cosine; nothing where the patch lies below the horizon.
+// The light of a patch on a matt base under a coat, with its cosine; nothing where the patch lies below the horizon.
 class BaseLight {
  public:
-  // As of one direction of this cosine everywhere.
+  // Light of one direction of this cosine everywhere.
   BaseLight(double cosine, double coat_index) : mean_(cosine * brdf::coat_transmission(cosine, coat_index)) {}
   BaseLight(const Patch& patch, const Vec3& normal, double coat_index) : cosine_(dot(normal, patch.direction)) {
     if (!(cosine_ > 0)) return;
@@ -58,7 +58,7 @@ class BaseLight {
   }
 
   double cosine() const { return cosine_; }
-  // Of light whose cosine is more by so much in the mean.
+  // The mean for light whose cosine is more by so much.
   color::Rgb mean(double more = 0) const {
     const double mean = mean_ + slope_ * more;
     return at_least_0(color::Rgb{mean, mean, mean} + slope_ * along_);

@@ -1,4 +1,4 @@
-// What lobes and matt bases make of a patch in the mean, against sums over the patch.
+// Means of lobes and matt bases over a patch, against sums over the patch.
 #include "render/integral/patch.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ struct Cap {
     patch.of_channels = &of_channels;
   }
 
-  // Of a function of direction: for R, and for G.
+  // The mean of a function of direction: for R, and for G.
   template <class Function>
   std::array<double, 2> means(const Function& f) const {
     std::array<double, 2> sums{};

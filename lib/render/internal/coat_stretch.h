@@ -1,5 +1,4 @@
-// The lobes that stand for rough coats where prefiltered maps are looked up. goniochrome-theory(7), SATIN, What maps
-// draw.
+// The lobes that stand for rough coats where prefiltered maps are looked up. goniochrome-coats(7), "What maps draw".
 #pragma once
 
 #include <memory>
@@ -14,7 +13,7 @@ namespace goniochrome::render {
 // some 25 ms.
 std::shared_ptr<const paint::TiltedLobes> drawn_stretch(const Scene& scene, const Effects& effects, std::size_t part);
 
-// Of each part whether there is such a set.
+// Flags of the parts that have such a set.
 std::vector<bool> stretched_parts(const Scene& scene, const Effects& effects);
 
 }  // namespace goniochrome::render

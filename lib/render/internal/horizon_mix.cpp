@@ -153,8 +153,8 @@ class HorizonMix::Zonal {
   std::array<double, kPieces + 1> values_;
 };
 
-// Of each node, the covariance of what a lobe sends in even light of 1 with a map, by where the map is looked up: where
-// what flakes gather comes from, and where what gloss gathers does.
+// A curve holds for each node the covariance of the light that a lobe sends in even light of 1 with a map, by where the
+// map is looked up: where the light of flakes comes from, and where that of gloss does.
 struct HorizonMix::Curve {
   struct Node {
     std::array<double, 2> cosine, plain, fresnel;
@@ -162,7 +162,7 @@ struct HorizonMix::Curve {
   std::vector<Node> nodes;
 };
 
-// Of what two maps hold, by the angle between the directions in which they are looked up.
+// The covariance of two maps, by the angle between the directions in which they are looked up.
 std::shared_ptr<const HorizonMix::Zonal> HorizonMix::covariance(const Kernel& a, const Kernel& b) {
   static KeptValues<std::pair<Kernel, Kernel>, Zonal> kept;
   return kept.get({a, b}, [&] {
@@ -222,8 +222,8 @@ HorizonMix::HorizonMix(const std::vector<double>& exponents, int segments, doubl
     for (std::size_t j = 0; j < maps_.size(); ++j) curves_.push_back(curve(exponent, j));
 }
 
-// Even light comes out exact where the weights have the sum of what is sent: that of the last map is what the others
-// leave, so that their differences from it are what is solved for.
+// Even light comes out exact where the weights have the sum of the sent light: the weight of the last map is the rest,
+// so that the differences of the others from it are solved for.
 HorizonMix::Weights HorizonMix::at(const std::vector<Sent>& sent, int node) const {
   const double x = static_cast<double>(node) / segments_, cos_o = x * x;
   const auto sum = [](const color::Rgb& c) { return std::abs(c.x) + std::abs(c.y) + std::abs(c.z); };

@@ -1,7 +1,7 @@
 // Maps hold what whole lobes gather. What a lobe gathers that the horizon cuts, each direction with its own cosine, is
 // estimated from all the wide maps that a point looks up anyway: their weights are those of the best linear estimate in
 // light of which nothing is known but how its variance falls with the degree of spherical harmonics, and even light
-// comes out exact. goniochrome-theory(7), RENDERING, Horizon.
+// comes out exact. goniochrome-rendering(7), "Horizon".
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ namespace goniochrome::render {
 
 class HorizonMix {
  public:
-  // What a paint sends by a lobe in even light of 1: weights times the integrals of internal/lobe_curves.h.
+  // The light that a paint sends by a lobe in even light of 1: weights times the integrals of internal/lobe_curves.h.
   struct Sent {
     color::Rgb flake, gloss;
   };

@@ -54,8 +54,7 @@ struct Light {
   }
 };
 
-// What is unlike in them: a bright horizon over dark ground, half a room in the dark, lamps overhead, lamps at the
-// side.
+// Lights differ: a bright horizon over dark ground, half a room in the dark, lamps overhead, lamps at the side.
 std::vector<Light> lights() {
   return {Light([](const Vec3& w) { return w.y < 0 ? 0.1 : 0.4 + 2 * std::exp(-8 * w.y); }),
           Light([](const Vec3& w) { return w.x + 0.3 * w.y > 0.2 ? 1.0 : 0.1; }), Light([](const Vec3& w) {

@@ -1,5 +1,5 @@
 // Under uniform light of 1, a lobe about the mirror direction sends to the viewer an amount of light that depends on
-// the view alone. These are its integrals. goniochrome-theory(7), RENDERING, Horizon.
+// the view alone. These are its integrals. goniochrome-rendering(7), "Horizon".
 #pragma once
 
 #include <memory>
@@ -27,7 +27,7 @@ struct LobeIntegrals {
 };
 LobeIntegrals lobe_integrals(double exponent, double cos_o, bool horizon, double coat_index = paint::kNoCoat);
 
-// The same at cos_o = (i/segments)^2, i = 0..segments. Kept for the next time.
+// The integrals at cos_o = (i/segments)^2, i = 0..segments. Kept for the next time.
 using LobeCurve = std::vector<LobeIntegrals>;
 std::shared_ptr<const LobeCurve> lobe_curve(double exponent, int segments, bool horizon,
                                             double coat_index = paint::kNoCoat);

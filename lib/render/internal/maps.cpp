@@ -15,7 +15,7 @@ namespace {
 // A class holds maps down to this share of its face size.
 constexpr double kSmallest = 0.4;
 
-// Whether the lobe is there; else an error with the command that adds it.
+// Checks that the lobe is there; else an error has the command that adds it.
 Result<void> check_lobe(const envmap::PrefilteredEnvironment& env, double exponent, const Effects& effects) {
   if (env.lobe(exponent) != nullptr) return {};
   std::string list;

@@ -1,5 +1,5 @@
 // The maps of the environment as engines look them up. Maps that are looked up in one direction are brought to few face
-// sizes, so that one set of texel addresses serves many lobes. goniochrome-theory(7), RENDERING, Engines.
+// sizes, so that one set of texel addresses serves many lobes. goniochrome-rendering(7), "Engines".
 #pragma once
 
 #include <vector>

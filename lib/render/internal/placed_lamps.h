@@ -1,5 +1,5 @@
 // Lamps at a place, as the kernels and the programs of OpenGL have them: they find direction and strength at each
-// point. goniochrome-theory(7), RENDERING, Lamps.
+// point. goniochrome-rendering(7), "LAMPS".
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace goniochrome::render {
 
-// What light_at() needs of a lamp, in single precision. Lengths are in units of the mesh.
+// Data of a lamp for light_at(), in single precision. Lengths are in units of the mesh.
 struct PlacedLamp {
   float position[3] = {0, 0, 0};  // from origin_of() the mesh
   float reach2 = 0;   // the square of the distance at which its light is that of the scene; 0: it is far away
@@ -17,7 +17,7 @@ struct PlacedLamp {
   float radius2 = 0;  // of the sphere, squared
 };
 
-// Of each lamp, in order; nothing if all are far away.
+// Places each lamp, in order; nothing if all are far away.
 std::vector<PlacedLamp> placed_lamps(const std::vector<Light>& lights, const Vec3& origin);
 
 // Points and lamps are told from the middle of the mesh, so that single precision serves meshes far from 0.

@@ -20,13 +20,13 @@ double dot6(const Vec6& a, const Vec6& b) {
   return sum;
 }
 
-// What channel c of A (x) A takes of A's squares and mixed products.
+// The coefficients of A's squares and mixed products in channel c of A (x) A.
 Vec6 quadratic(const color::ReflectionOperator& op, std::size_t c) {
   const auto& k = op.k[c];
   return {k[0][0], k[1][1], k[2][2], 2 * k[0][1], 2 * k[0][2], 2 * k[1][2]};
 }
 
-// The same of the square of a linear form.
+// The coefficients of the square of a linear form.
 Vec6 square(const Vec3& a) {
   return {a.x * a.x, a.y * a.y, a.z * a.z, 2 * a.x * a.y, 2 * a.x * a.z, 2 * a.y * a.z};
 }

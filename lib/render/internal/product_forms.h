@@ -1,5 +1,5 @@
 // The bilinear product of two colors is written as a few plain products of numbers, so that a sum over many maps costs
-// as much as with the component-wise product. goniochrome-theory(7), COLORED LIGHT, Forms.
+// as much as with the component-wise product. goniochrome-color(7), "Forms".
 #pragma once
 
 #include <array>

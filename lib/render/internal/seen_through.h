@@ -1,4 +1,4 @@
-// What engines that shade G-buffers draw behind panes. goniochrome-theory(7), PANES.
+// Surfaces behind panes, as engines that shade G-buffers draw them. goniochrome-paths(7), "PANES".
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // The look-ups of tilted lobes, as all engines with prefiltered maps read them: for each part and each segment of the
-// view, the lobes that have any weight there. goniochrome-theory(7), TILTED LOBES.
+// view, the lobes that have any weight there. goniochrome-interference(7), "TILTED LOBES".
 #pragma once
 
 #include <array>

@@ -7,7 +7,7 @@ namespace goniochrome::render {
 
 enum class LobeWeight { kDirectionalDiffuse, kGloss };
 
-// Whether the lobe of this exponent, which may be the mirror's, has such a weight in the paint's own lobes or in those
+// True if the lobe of this exponent, which may be the mirror's, has such a weight in the paint's own lobes or in those
 // of one of its views: an exponent may stand in a view alone.
 bool wears_lobe(const paint::LobeFit& paint, double exponent, LobeWeight weight);
 

@@ -85,7 +85,7 @@ bool gathered(const LobeTransport& t, const std::vector<Weights>& parts, std::ve
   return agree;
 }
 
-// What each group sends to a probe.
+// The light that each group sends to a probe.
 std::vector<Arriving> arriving(const LobeTransport& t, const BounceProbe& probe, const std::vector<Products>& groups) {
   std::vector<Arriving> result;
   for (int g = 0; g < t.worn.groups.count; ++g)
@@ -117,7 +117,7 @@ namespace {
 
 constexpr std::size_t kProbesAtOnce = 8;
 
-// What the classes show at a probe in the paints worn there, before and after.
+// The light of the classes at a probe in the paints worn there, before and after.
 struct OfClasses {
   std::vector<color::Rgb> before, after;
   double weight = 0;

@@ -1,5 +1,5 @@
 // Bounced light was traced with the paints of that moment. Here it is scaled to other paints, to first order, with the
-// error of that. goniochrome-theory(7), TRANSPORT.
+// error of that. goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@ namespace goniochrome::render {
 struct BounceScale {
   bool changed = false;              // whether any paint is another than the one worn
   std::vector<color::Rgb> of_class;  // factor of each class of PaintGroups
-  // What scaling changes wrongly, CIEDE2000 at the probes: the 95th percentile over all of them. Infinite where parts
-  // of one group wear different paints now.
+  // The error of scaling, CIEDE2000 at the probes: the 95th percentile over all of them. Infinite where parts of one
+  // group wear different paints now.
   double error_p95_de00 = 0;
 };
 
@@ -27,7 +27,7 @@ class BounceScaler {
   BounceScaler& operator=(BounceScaler&&) noexcept;
   ~BounceScaler();
 
-  // As bounce_scale(). Bit-identical for any number of threads. Not for several threads at once.
+  // The scale as of bounce_scale(). Bit-identical for any number of threads. Not for several threads at once.
   BounceScale scale(const std::vector<std::vector<color::Rgb>>& weights);
 
  private:

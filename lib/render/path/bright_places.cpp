@@ -20,9 +20,9 @@ using rays::Hit;
 constexpr std::size_t kGroups = 512;  // a power of 2
 // How far apart pieces count that face away from each other, in units of half the mesh.
 constexpr float kTurned = 0.25F;
-// Of the weight of a piece in the choice of groups, the part that goes by its area.
+// The part of a piece's weight that goes by its area, in the choice of groups.
 constexpr double kByArea = 0.75;
-// Of each piece one path is followed, and so many of each group.
+// One path is followed from each piece, and so many from each group.
 constexpr std::uint32_t kMostPieces = 1U << 14, kPathsOfGroup = 64;
 // About so many rays of a receiver are shared out among the places, of which each gets no less and no more than this.
 constexpr double kTestRays = 8192;
@@ -30,7 +30,7 @@ constexpr std::uint32_t kLeastPairs = 8, kMostPairs = 256;
 // Where light is spread this evenly, places are not worth while: the mean square of what the surface sends over the
 // square of its mean; and what they have to gain.
 constexpr double kEven = 10, kLeastGain = 2;
-// Of more directions toward places the others would be so few that what they carry grows from surface to surface.
+// More directions toward places would leave so few others that their light grows from surface to surface.
 constexpr std::array<double, 3> kChances{0, 0.25, 0.5};
 
 // The number of a pair of points of a receiver and a place, of which there are kMostPairs.
@@ -123,11 +123,11 @@ class Grouping {
 // not face each other, and where a ray is asked for, also where something stands between them.
 struct BrightPlaces::Link {
   double cos = 0, toward = 0;
-  // Of the integral of light^2 cos_i^2 over the density within the place, for light of 1 and an area of 1.
+  // The moment is the integral of light^2 cos_i^2 over the density within the place, for light of 1 and an area of 1.
   double moment() const { return toward > 0 ? cos * cos / (toward * toward) : 0; }
 };
 
-// Of a receiver, in the order of the places.
+// Links of a receiver, in the order of the places.
 struct BrightPlaces::Links {
   std::vector<Link> all;
   std::vector<std::uint32_t> first;  // of each place, and where the last one ends
@@ -181,7 +181,8 @@ double BrightPlaces::sent_square(const Sent& sent, std::uint32_t piece, const Se
   return light * light;
 }
 
-// Of each piece, by one path each; where there are more pieces, of some of them, each of which stands for as many.
+// Squares of the light of each piece, by one path each; where there are more pieces, of some of them, each of which
+// stands for as many.
 std::vector<double> BrightPlaces::sent_squares(const Sent& sent, std::uint64_t seed) const {
   const std::uint32_t count = pieces_.count(), step = (count + kMostPieces - 1) / kMostPieces;
   const Sequence sequence(mixed(seed, 0xB1), kMostPieces);

@@ -1,5 +1,5 @@
-// Places whose light surfaces get most of what they pass on from, and directions toward them. goniochrome-theory(7),
-// PATHS, Bright places.
+// Places whose light surfaces get most of what they pass on from, and directions toward them.
+// goniochrome-paths(7), "Bright places".
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ class BrightPlaces {
   // these places: the geometric mean over the surface, as predicted.
   double gain() const { return gain_; }
 
-  // What a point of the surface draws by.
+  // The directions that a point of the surface draws by.
   class Receiver {
    public:
     Receiver() = default;
@@ -47,8 +47,8 @@ class BrightPlaces {
   // `wide_share`: the part of what the point sends back that is not of such lobes.
   Receiver receiver(std::uint32_t triangle, float u, float v, double wide_share) const;
 
-  // What the surface at a hit sends, root mean square, over the mean over all of the surface, but no less than 1; 1 on
-  // emitters and floors.
+  // The light that the surface at a hit sends, root mean square, over the mean over all of the surface, but no less
+  // than 1; 1 on emitters and floors.
   double brightness(const rays::Hit& hit) const;
 
   // A direction from `from` toward a point of a triangle, drawn by numbers in [0,1). It counts where that triangle is

@@ -124,7 +124,7 @@ struct Moments {
   double error = 0;                             // of the mean over all points
 };
 
-// Of a batch, at points that the camera sees, mean over these.
+// Moments of a batch, at points that the camera sees, mean over these.
 Moments moments(const PathStage& stage, const Rays& through, int batches) {
   PathOptions options;
   options.bounces = 12;

@@ -86,7 +86,7 @@ inline double excess(const SphereBins& bins, int draws,
   return (chi2 - freedom) / std::sqrt(2.0 * freedom);
 }
 
-// The same of the directions that a point draws, about its mirror direction.
+// The excess of the directions that a point draws, about its mirror direction.
 inline double excess_of_draws(const PaintedPoint& point, int rows, int columns,
                               const std::function<double(const Vec3&)>& density) {
   const SphereBins bins(rays::vec3(point.mirrored()), rows, columns);

@@ -13,9 +13,9 @@ namespace {
 
 using rays::Float3;
 
-// What is farther than so many of its radii is drawn from by power and evenly by area.
+// Nodes that are farther than so many of their radii are drawn from by power and evenly by area.
 constexpr float kFar = 2;
-// Of the square of a distance, so that no worth is infinite.
+// The least square of a distance, so that no importance is infinite.
 constexpr float kLeastSquare = 1e-24F;
 // Cuts whose costs differ by no more than this part are equal: the more even one is taken, so that triangles on one
 // place make no deep tree.

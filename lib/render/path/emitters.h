@@ -1,4 +1,4 @@
-// Parts of a mesh that shine by themselves. goniochrome-theory(7), PATHS, Emitters.
+// Parts of a mesh that shine by themselves. goniochrome-paths(7), "Emitters".
 #pragma once
 
 #include <vector>

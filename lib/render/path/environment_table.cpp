@@ -115,7 +115,7 @@ void EnvironmentTable::fetch(double u, double v) const {
   __builtin_prefetch(&column_guide_[row * kColumnGuide + static_cast<std::size_t>(v * kColumnGuide)]);
 }
 
-// Of a lat-long map directions are even in solid angle within a texel: in longitude and in the cosine from the pole.
+// Directions in a lat-long map are even in solid angle within a texel: in longitude and in the cosine from the pole.
 // Elsewhere they are even in column and row, for the density hardly changes over a texel.
 EnvironmentTable::Place EnvironmentTable::place(double u, double v) const {
   if (dark()) return {};
@@ -148,7 +148,7 @@ EnvironmentTable::Place EnvironmentTable::place(double u, double v) const {
           environment_->solid_angle_density(column + right, row + down)};
 }
 
-// The share as the tables have it, whose floats round: what is drawn and what at() says are the same.
+// The share as the tables have it, whose floats round: drawn directions and at() agree.
 LightSample EnvironmentTable::light(const Float3& direction, int column, int row, double density) const {
   const auto r = static_cast<std::size_t>(row);
   const float* edge = cumulative(r) + column;

@@ -1,4 +1,4 @@
-// Directions drawn in proportion to the light that comes from them. goniochrome-theory(7), PATHS.
+// Directions drawn in proportion to the light that comes from them. goniochrome-paths(7), "PATHS".
 #pragma once
 
 #include <cstdint>

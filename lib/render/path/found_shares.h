@@ -1,5 +1,5 @@
-// What each share of the light changes of a picture, by its first round of samples, and which of them need no more.
-// goniochrome-theory(7), PLAN, Effects of rays.
+// The change of a picture by each share of the light, by its first round of samples, and the shares that need no more.
+// goniochrome-plan(7), "Effects of rays".
 #pragma once
 
 #include <array>

@@ -28,7 +28,7 @@ TEST(FoundShares, TellWhatEachChangesAndStopWhatIsUnseen) {
   EXPECT_EQ(found.of[3].de00_p95, 0);
   EXPECT_EQ(found.stopped, 0b1100U);
   EXPECT_EQ(found.stopped_de00, found.of[2].de00_p95);
-  // What changes little in the mean, but is noisy, goes on: its pixels could not stay as they are.
+  // A share that changes little in the mean, but is noisy, goes on: its pixels could not stay as they are.
   const FoundShares noisy = found_shares(points_with(shares, 0.02), smooth, 0.2, 1);
   EXPECT_EQ(noisy.stopped, 0b1000U);
   EXPECT_EQ(noisy.of[2].de00_p95, found.of[2].de00_p95);

@@ -1,4 +1,4 @@
-// Estimates of what a point shows, gathered round by round. goniochrome-theory(7), PATHS, Numbers.
+// Estimates of what a point shows, gathered round by round. goniochrome-paths(7), "Numbers".
 #pragma once
 
 #include <algorithm>

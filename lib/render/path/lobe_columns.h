@@ -1,5 +1,5 @@
 // The lobes of a basis one by one: with light, surface and view fixed, what a point shows is the sum over these columns
-// of light times weight. goniochrome-theory(7), TRANSPORT.
+// of light times weight. goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ struct LobeColumns {
   static constexpr std::size_t flake(std::size_t lobe) { return 1 + 2 * lobe; }
   static constexpr std::size_t gloss(std::size_t lobe) { return 2 + 2 * lobe; }
   std::size_t mirror() const { return count() - 1; }
-  // Whether the column is light off the coat: gloss or the mirror.
+  // True if the column is light off the coat: gloss or the mirror.
   bool is_gloss(std::size_t column) const { return column > 0 && (column % 2 == 0 || column == mirror()); }
   // "diffuse", "flake-1.3", "gloss-1.3" or "mirror".
   std::string name(std::size_t column) const;
@@ -54,8 +54,8 @@ class LobeKernels {
   // Writes f cos_i of weight 1 for each column, under the coat of the point and the mirror's 0, and returns the density
   // (1/sr) by which drawn() gives the direction. Where the direction is below the horizon both are 0.
   float at(const rays::Float3& to_light, float* values) const;
-  // The same, integrated over the disc of a lamp that has no place, relative to pi sin^2 of its radius; the mirror's is
-  // 0. Whether there is anything above the horizon. `tabled` as in PaintedPoint::toward_disc().
+  // The values integrated over the disc of a lamp that has no place, relative to pi sin^2 of its radius; the mirror's
+  // is 0. Whether there is anything above the horizon. `tabled` as in PaintedPoint::toward_disc().
   bool toward_disc(const Light& light, bool tabled, float* values) const;
   // A direction drawn evenly from the cosine and the lobes, by numbers in [0,1). It may lie below the horizon.
   rays::Float3 direction(double choice, double u, double v) const;

@@ -34,7 +34,7 @@ struct LobePoint::Ray {
   bool above = false, occluded = false, from_light = false;
 };
 
-// What a surface that a ray met sends back along it, by class; apart from them, the light off a floor that no paint
+// The light that a surface on a ray sends back along it, by class; apart from them, the light off a floor that no paint
 // changes.
 struct LobePoint::Sent {
   color::Rgb base, gloss, deeper, fixed;
@@ -246,7 +246,7 @@ void LobePoint::add_mirror(std::uint64_t seed, Sums& sums, int which) const {
   }
 }
 
-// What the columns gather of a disc that the mesh may hide in part: even directions of it, of which some are free.
+// The columns gather light of a disc that the mesh may hide in part: even directions of it, of which some are free.
 bool LobePoint::lamp_values(std::size_t which, const Transport::SeenLamp& lamp, float* values) const {
   constexpr std::uint32_t kDirections = 64;
   const bool any = kernels_.toward_disc(lamp.light, !lamp.is_placed, values);
@@ -300,8 +300,8 @@ void LobePoint::add_deterministic(const color::Rgb* open_mirror, double share, s
 
 namespace {
 
-// Of so many points, the one that a sequence starts from: the even sequences go through all of them in one order and
-// the odd ones in another, so that where one half starts says nothing of where the other does.
+// Among so many points, the one that a sequence starts from: the even sequences go through all of them in one order and
+// the odd ones in another, so that the start of one half says nothing of the other.
 std::size_t start_of(int sequence, std::size_t points, std::uint64_t seed) {
   const auto half = static_cast<std::uint64_t>(sequence % 2), turn = static_cast<std::uint64_t>(sequence / 2) / points;
   const auto step = static_cast<std::size_t>(sequence / 2) % points;
@@ -470,7 +470,7 @@ LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const
 void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* values, double scale,
                           const Sequence& sequence, std::uint32_t index, Pairs& pairs) const {
   const Transport& t = transport_;
-  // What a column of the visible point shows; a floor that shows the environment has a color of its own.
+  // The tint of a column of the visible point; a floor that shows the environment has a color of its own.
   const color::Rgb tint = on_projected_ ? rgb(painted_.diffuse()) : color::Rgb{1, 1, 1};
   if (t.is_projected(hit)) {
     const Transport::FloorLight floor = t.off_floor(hit, spot_.start, direction, options_.bounces, sequence, index, 4);

@@ -1,4 +1,5 @@
-// One visible point and the light that each lobe of a basis gathers there, by rays. goniochrome-theory(7), TRANSPORT.
+// One visible point and the light that each lobe of a basis gathers there, by rays.
+// goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
 #include <cstdint>
@@ -24,7 +25,7 @@ struct PaintGroups {
   std::size_t at(int group, Kind kind) const { return static_cast<std::size_t>(group * kKinds + kind); }
 };
 
-// What a point shows in each column of weight 1, in the order of the columns. Direct light is that of lights,
+// The light of a point in each column of weight 1, in the order of the columns. Direct light is that of lights,
 // environment and emitters; bounced light has met a surface before.
 struct LobeEstimate {
   std::vector<color::Rgb> direct, bounced;
@@ -42,13 +43,13 @@ class LobePoint {
   LobePoint(const LobePoint&) = delete;  // its kernels are those of its own surface
   LobePoint& operator=(const LobePoint&) = delete;
 
-  // Whether nothing rises above its horizon.
+  // True if nothing rises above its horizon.
   bool open() const { return open_; }
 
   // Bounced light by every pair of columns: what column k of weight 1 gathers of the light that column l of weight 1
-  // sends there from a surface of a group. What that surface got from lights, environment and emitters at once is told
-  // apart from what came to it through further surfaces in the paints that they wear. Sums in any product of colors
-  // are products with l's weight first and k's after it. Sampled without regard to any weight.
+  // sends there from a surface of a group. The direct light of that surface, from lights, environment and emitters, is
+  // kept apart from the light that came to it through further surfaces in the paints that they wear. Sums in any
+  // product of colors are products with l's weight first and k's after it. Sampled without regard to any weight.
   struct Pairs {
     std::size_t columns = 0;
     std::vector<color::Rgb> once, deeper;  // (group, k, l)
@@ -59,13 +60,12 @@ class LobePoint {
   Pairs pairs(int sequences, int directions, std::uint64_t seed) const;
 
   // The mean over at most kMostPoints points of one part, and at least one, by so many sequences of `directions` each,
-  // a power of two: each sequence starts from one of them. `open_light` has what each column gathers there, in the
-  // mean, of the environment without any surface in the way: it is corrected by what rays find, without bias, so that
-  // points whose rays are all free have no noise. `open_mirrors` has what the mirror of each point sees of it. Both
-  // null: rays alone.
+  // a power of two: each sequence starts from one of them. `open_light` has the mean light of each column there, of the
+  // environment without any surface in the way: rays correct it without bias, so that points whose rays are all free
+  // have no noise. `open_mirrors` has what the mirror of each point sees of it. Both null: rays alone.
   static LobeEstimate estimate(std::span<const LobePoint* const> points, const color::Rgb* open_light,
                                const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed);
-  // Of this point alone.
+  // The estimate of this point alone.
   LobeEstimate estimate(const color::Rgb* open_light, int sequences, int directions, std::uint64_t seed) const {
     const color::Rgb* mirror = open_light != nullptr ? open_light + columns_.mirror() : nullptr;
     const LobePoint* const alone = this;

@@ -107,7 +107,7 @@ class Tracing {
     ++round_;
   }
 
-  // What the center of a pixel shows.
+  // The point in the center of a pixel.
   LobePoint point_at(std::size_t i) const {
     const LobeTransport& t = result_.transport;
     const int x = static_cast<int>(t.places[i]) % t.width, y = static_cast<int>(t.places[i]) / t.width;
@@ -239,8 +239,8 @@ class Tracing {
     return percentile_95(std::move(noise));
   }
 
-  // As path_picture(): few estimates tell little of their variance, and how many samples a point is to get is decided
-  // by its neighbors alone, so that no point stops where its own sums happen to be bright.
+  // The judgment is that of path_picture(): few estimates tell little of their variance, and the neighbors alone decide
+  // the number of samples of a point, so that no point stops where its own sums happen to be bright.
   void judge(std::size_t i) {
     LobeTransport& t = result_.transport;
     t.noise_de00[i] = 0, needed_[i] = 0;
@@ -271,9 +271,9 @@ class Tracing {
     needed_[i] = needed / (request_.tolerance_de00 * request_.tolerance_de00);
   }
 
-  // How many batches each point is to get next: what its neighborhood asks for, at most four times what it has. The
-  // twentieth part of the points that would need most get no more than the rest. Where the neighborhoods are content
-  // but the picture is not, all is scaled by what it lacks.
+  // The number of further batches for each point: as its neighborhood asks for, at most four times the batches that it
+  // has. The twentieth part of the points that would need most get no more than the rest. Where the neighborhoods are
+  // content but the picture is not, all is scaled by what it lacks.
   bool plan(std::vector<int>& more) const {
     const double lacking = result_.noise_p95_de00 / request_.tolerance_de00;
     for (double scale = 1.1;; scale *= 1.1 * std::max(1.0, lacking * lacking)) {

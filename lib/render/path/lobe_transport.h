@@ -1,5 +1,5 @@
 // The light that each lobe of a basis gathers at every visible point, with shadows and bounced light: what a picture is
-// linear in. goniochrome-theory(7), TRANSPORT.
+// linear in. goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
 #include <cstdint>
@@ -13,17 +13,17 @@
 
 namespace goniochrome::render {
 
-// What the paints were while bounced light was traced: of each group, by column.
+// The paints while bounced light was traced: of each group, by column.
 struct WornPaints {
   PaintGroups groups;
   std::vector<std::vector<color::Rgb>> weights;
   std::vector<paint::Anisotropy> brushed;  // of each part of the mesh: its lobes are those of such a surface
-  // Of each part of the mesh, then of the floor, the index of the coat that its base is lit through. The light of a
+  // The index of the coat that the base is lit through, for each part of the mesh, then for the floor. The light of a
   // paint under another coat is that of brdf::under_coat().
   std::vector<double> coats;
   std::vector<color::Rgb> emission;  // radiance of each part of the mesh by itself, whatever it wears
   bool has_floor = false;            // as the part after the mesh's
-  // Whether that floor shows the environment. Its weights are 1 in the diffuse column and 0 elsewhere, for any paint.
+  // True if that floor shows the environment. Its weights are 1 in the diffuse column and 0 elsewhere, for any paint.
   bool floor_is_projected = false;
 
   bool is_projected(int part) const { return floor_is_projected && part == static_cast<int>(brushed.size()); }

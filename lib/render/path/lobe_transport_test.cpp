@@ -1,4 +1,4 @@
-// The light of each lobe at every visible point: what paints show of it, its noise, and what it is without rays.
+// The light of each lobe at every visible point: pictures of paints from it, its noise, and its values without rays.
 #include "render/path/lobe_transport.h"
 
 #include <gtest/gtest.h>
@@ -368,7 +368,7 @@ TEST(LobeTransport, HoldsAFloorThatShowsTheEnvironment) {
     std::printf("ball %.2f, floor %.2f, told %.2f; controls %.2f, %.2f\n", percentile_95(of_ball),
                 percentile_95(of_floor), scale.error_p95_de00, percentile_95(without_floor),
                 percentile_95(in_the_open));
-    // As in ShowsTheWornPaintsWithBouncesAsTracingDoes, and what is told of the change of paint.
+    // The bound is that of ShowsTheWornPaintsWithBouncesAsTracingDoes, and the stated error of the change of paint.
     const double most = 2.2 * std::hypot(0.5, 0.4) + 0.5 + 1.2 * scale.error_p95_de00;
     EXPECT_LT(percentile_95(of_ball), most);
     EXPECT_LT(percentile_95(of_floor), most);
@@ -377,8 +377,9 @@ TEST(LobeTransport, HoldsAFloorThatShowsTheEnvironment) {
   }
 }
 
-// What it says of its noise, against another of a third of it: over the points of each column, the root mean square
-// difference in the nominal paint is at most what is told of the worst column, and that of the worst column is near.
+// The stated noise, against another estimate of a third of it: over the points of each column, the root mean square
+// difference in the nominal paint is at most the stated noise of the worst column, and that of the worst column is
+// near.
 void expect_as_noisy_as_told(int pixel_samples) {
   Stage stage(matt({0.7, 0.6, 0.5}), matt({0.3, 0.3, 0.4}), 24, 18);
   LobeTransportRequest request;
@@ -419,7 +420,7 @@ void expect_as_noisy_as_told(int pixel_samples) {
 TEST(LobeTransport, IsAsNoisyAsItSays) {
   expect_as_noisy_as_told(1);
 }
-// What the samples of a pixel differ by is no noise, since all of them are part of its mean.
+// The differences between the samples of a pixel are no noise, since all of them are part of its mean.
 TEST(LobeTransport, IsAsNoisyAsItSaysWithSeveralSamples) {
   expect_as_noisy_as_told(4);
 }

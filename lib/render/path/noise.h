@@ -1,4 +1,4 @@
-// How visible the random error of a radiance is. goniochrome-theory(7), PATHS.
+// How visible the random error of a radiance is. goniochrome-paths(7), "PATHS".
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ class Estimates {
   }
   int count() const { return count_; }
   color::Rgb mean() const { return count_ > 0 ? first_ + (1.0 / count_) * sum_ : color::Rgb{}; }
-  // Of a single estimate; that of their mean is smaller by count(). 0 where there are fewer than two.
+  // The covariance of a single estimate; that of their mean is smaller by count(). 0 where there are fewer than two.
   Covariance covariance() const;
 
  private:

@@ -1,6 +1,6 @@
-// What each lobe of a basis gathers of an environment where no surface is in the way, by the environment's prefiltered
-// maps and its bright spots or, where these err by too much, by sums over the environment. goniochrome-theory(7),
-// RENDERING and TRANSPORT.
+// The light that each lobe of a basis gathers of an environment where no surface is in the way, by the environment's
+// prefiltered maps and its bright spots or, where these err by too much, by sums over the environment.
+// goniochrome-rendering(7), "RENDERING" and goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
 #include <map>
@@ -41,7 +41,7 @@ class OpenLight {
   // first view alone: at the others they differ from it as the maps do.
   void mean(const std::vector<OpenView>& views, int part, color::Rgb* light) const;
 
-  // That of the mirror's column alone.
+  // The light of the mirror's column alone.
   color::Rgb mirror(const OpenView& view, int part) const;
 
  private:

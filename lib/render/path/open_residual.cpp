@@ -17,10 +17,10 @@ namespace goniochrome::render {
 namespace {
 
 // Between nodes the residual is off by the square of their distance: so many cells at a tolerance of kUsual, by the
-// figures of goniochrome-theory(7), RENDERING, Sums.
+// figures of goniochrome-rendering(7), "Sums".
 constexpr double kUsual_de00 = 0.5;
 constexpr int kViews = 13, kNormals = 23;
-// Of the tolerance, what the blocks of a sum take.
+// The part of the tolerance that the blocks of a sum take.
 constexpr double kOfSums = 0.2;
 // Beyond so many sums those of other views are forgotten, and beyond so many surfaces those of other paints.
 constexpr std::size_t kMostSums = std::size_t{1} << 19, kMostSurfaces = 64;
@@ -43,7 +43,7 @@ void for_weights(paint::LobeFit& paint, const Visit& visit) {
   for (paint::ViewLobes& view : paint.views) visit(view.diffuse, view.lobes);
 }
 
-// What is summed of a paint.
+// The part of a paint that is summed.
 paint::LobeFit summed(const Scene& scene, const Effects& effects, std::size_t part, bool brushed, bool stretched) {
   const bool covered = scene.layer != nullptr &&
                        (scene.layer->surface(static_cast<int>(part)).texture != nullptr || is_mapped(scene, part));
@@ -221,7 +221,7 @@ void OpenResidual::complete() {
   }
 }
 
-// Of sums, in the weights that the paint has at this view.
+// The light of sums, in the weights that the paint has at this view.
 color::Rgb OpenResidual::shown(const TransportPaint& paint, const float* sums, double cos_o) const {
   const double view_deg = std::acos(std::clamp(cos_o, 0.0, 1.0)) / kDegree;
   const auto above = std::ranges::upper_bound(paint.view_deg, view_deg) - paint.view_deg.begin();

@@ -1,7 +1,7 @@
-// What prefiltered maps miss of the light that the diffuse part and the wide lobes of paints gather where no surface is
-// in the way: the sum over the environment itself, less what the engines of maps show. It changes slowly with normal
-// and view, so that it is told at the nodes of a grid that a picture meets, and is linear between them.
-// goniochrome-theory(7), RENDERING, Sums.
+// The error of prefiltered maps in the light that the diffuse part and the wide lobes of paints gather where no surface
+// is in the way: the sum over the environment itself, less the light of the engines of maps. It changes slowly with
+// normal and view, so that it is told at the nodes of a grid that a picture meets, and is linear between them.
+// goniochrome-rendering(7), "Sums".
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class OpenResidual {
   // The tree is that of the environment which the maps of the scenes were made from, and must outlive it.
   explicit OpenResidual(const envmap::BlockTree& tree) : tree_(&tree) {}
 
-  // Whether there is anything to correct: image light, and effects of which the sums have all that the engines draw.
+  // True if there is anything to correct: image light, and effects of which the sums have all that the engines draw.
   static bool applies(const Effects& effects) { return effects.environment && effects.horizon; }
 
   // Takes a scene as engines draw it with these effects, whose tolerance decides how close the nodes are. Sums that
@@ -35,7 +35,7 @@ class OpenResidual {
   // for any number of threads.
   void add(const Gbuffer& seen, float gain, image::Image& picture);
   std::vector<color::Rgb> at(const std::vector<VisiblePoint>& points);
-  // What it changes of a picture without it, at 95 of 100 points, told from some of them: CIEDE2000.
+  // The change of a picture without it, at 95 of 100 points, estimated from some of them: CIEDE2000.
   double change(const Gbuffer& seen, const image::Image& picture, double white_luminance);
 
   std::size_t count() const;  // of sums by now
@@ -56,7 +56,7 @@ class OpenResidual {
     }
     std::int32_t& slot_to_fill(const ViewGrid::Node& node, std::size_t normals);
   };
-  // What several parts wear.
+  // The paints of several parts.
   struct Wear {
     std::size_t surface = 0;
     int part = 0;  // one of them

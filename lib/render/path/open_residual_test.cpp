@@ -47,7 +47,7 @@ const Sky& dusk() {
   static const Sky made(dusk_at);
   return made;
 }
-// The same behind blinds, whose slats a mirror shows.
+// The sky behind blinds, whose slats a mirror shows.
 const Sky& blinds() {
   static const Sky made([](int x, int y) { return (y % 4 < 2 ? 1.6 : 0.4) * dusk_at(x, y); });
   return made;

@@ -1,5 +1,6 @@
 // The light of a view by lobes where no surface is in the way, by the maps of an environment: pictures of any number of
-// paints follow from it by TransportShader, and none of the maps is looked up again. goniochrome-theory(7), TRANSPORT.
+// paints follow from it by TransportShader, and none of the maps is looked up again.
+// goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
 #include <memory>

@@ -176,7 +176,7 @@ class Reader {
   bool ok_ = true;
 };
 
-// What a rounding changes in the gray paint of a column.
+// The change of the gray paint of a column by a rounding.
 double rounding_error(const LobeTransport& t, std::size_t column, bool bounced, const Rounding& rounding) {
   std::vector<double> errors;
   const double weight = nominal_weight(t.columns, column);

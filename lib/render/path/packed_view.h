@@ -1,5 +1,5 @@
 // A traced view as a page holds it: its transport in few bytes, and what is seen beside the mesh. It says no more than
-// shading takes, so that it also unpacks where there are no files. goniochrome-theory(7), TRANSPORT, Packed views.
+// shading takes, so that it also unpacks where there are no files. goniochrome-transport(7), "Packed views".
 #pragma once
 
 #include <string>
@@ -39,7 +39,7 @@ struct UnpackedView {
 // Error: the bytes are not those of packed_view().
 Result<UnpackedView> unpacked_view(std::string_view bytes);
 
-// What packing changes in pictures: the largest mean and the largest 95th percentile over all points, CIEDE2000 before
+// The change of pictures by packing: the largest mean and the largest 95th percentile over all points, CIEDE2000 before
 // the white of the scene, in any of these paints. `reflection` as bounce_scale() takes it.
 struct PackingError {
   double mean_de00 = 0, p95_de00 = 0;

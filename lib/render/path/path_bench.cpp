@@ -77,7 +77,7 @@ std::unique_ptr<BenchScene> bench_scene(const std::string& probe, int width, int
   return bench;
 }
 
-// Of the open light, point by point, as the engine `integral` sums it.
+// The unoccluded light, point by point, as the engine `integral` sums it.
 image::Image open_light(const BenchScene& bench) {
   const Gbuffer& g = bench.surface.gbuffer;
   image::Image image{g.width, g.height, 4, std::vector<float>(static_cast<std::size_t>(g.width) * g.height * 4), {}};

@@ -17,7 +17,7 @@ namespace goniochrome::render {
 
 namespace {
 
-// What is left of a time limit at least when the search for bright places is done.
+// The least time that is left of a time limit when the search for bright places is done.
 constexpr double kLeastTime_s = 1e-3;
 
 }  // namespace

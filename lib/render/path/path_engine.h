@@ -1,5 +1,5 @@
 // The engine path follows light on its way: it draws shadows, the body mirrored in itself, light that surfaces pass on,
-// floors and parts that shine, without prefiltered maps and without OpenGL. goniochrome-theory(7), PATHS.
+// floors and parts that shine, without prefiltered maps and without OpenGL. goniochrome-paths(7), "PATHS".
 #pragma once
 
 #include <memory>
@@ -10,8 +10,8 @@
 
 namespace goniochrome::render {
 
-// What the engine follows paths through in a scene that it can shade. The scene must outlive it. `rays`: its mesh with
-// its floor, where they are there already; null: they are made.
+// The scene in which the engine follows paths, made of a scene that it can shade. The scene must outlive it. `rays`:
+// its mesh with its floor, where they are there already; null: they are made.
 PathScene path_scene_of(const Scene& scene, std::shared_ptr<const rays::RayScene> rays);
 
 class PathEngine : public Engine {

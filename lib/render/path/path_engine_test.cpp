@@ -198,7 +198,7 @@ TEST(PathEngine, SaysHowNoisyItsPictureIs) {
   EXPECT_TRUE(fine.noise->reached);
   EXPECT_LE(fine.noise->de00_p95, 0.5);
   EXPECT_GT(fine.noise->samples_mean, rough.noise->samples_mean);
-  // What is stated covers what is found: the two pictures are as far apart as both noises together.
+  // Stated noise covers the difference: the two pictures are as far apart as both noises together.
   std::vector<double> found, stated;
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 48; ++x) {

@@ -1,4 +1,4 @@
-// The light of one point by paths, for references and tests. goniochrome-theory(7), PATHS.
+// The light of one point by paths, for references and tests. goniochrome-paths(7), "PATHS".
 #pragma once
 
 #include <cstdint>

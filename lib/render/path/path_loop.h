@@ -1,5 +1,5 @@
 // One step and one loop for all paths, over what carries their light: three channels, classes of light, or bands.
-// goniochrome-theory(7), PATHS.
+// goniochrome-paths(7), "PATHS".
 //
 // A carrier knows its own product of light and paints. It has
 //   kWeighsLamps                           whether light of discs is weighed against the same light found by the lobes

@@ -1,4 +1,5 @@
-// Light that several paints reflect one after the other. goniochrome-theory(7), COLORED LIGHT and PATHS.
+// Light that several paints reflect one after the other.
+// goniochrome-color(7), "COLORED LIGHT" and goniochrome-paths(7), "PATHS".
 #pragma once
 
 #include <algorithm>
@@ -28,7 +29,7 @@ class PathProduct {
         for (std::size_t k = 0; k < 3; ++k) result[i][j] += matrix_[i][k] * next[k][j];
     matrix_ = result;
   }
-  // Of a surface that reflects each channel by itself, whatever the operator.
+  // Reflects off a surface that reflects each channel by itself, whatever the operator.
   void reflect_plain(const color::Rgb& paint) {
     diagonal_ = diagonal_ * paint;
     for (auto& row : matrix_)

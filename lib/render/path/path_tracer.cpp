@@ -259,7 +259,7 @@ class Picture {
     first_.keep(i, means);
   }
 
-  // What the first round shows of a point, with what is known without samples.
+  // The shares of a point in the first round, with the light that is known without samples.
   LightShares first_shares(std::size_t i) const {
     LightShares shares = first_.mean(i);
     shares.direct += states_[i].deterministic;
@@ -294,7 +294,7 @@ class Picture {
     first_ = {};
   }
 
-  // What the first round found of these shares stays as it is.
+  // The result of the first round stays for these shares.
   void draw_without(unsigned stopped) {
     drawn_ = kAllShares & ~stopped;
     options_.into_lobes = options_.into_lobes && (drawn_ & 2U) != 0;
@@ -315,7 +315,7 @@ class Picture {
     }
   }
 
-  // What a sample of a pixel sees, which is something.
+  // A sample of a pixel sees this, which is something.
   SeenPoint transport_at(std::size_t i, std::size_t sample, rays::Spot& spot, rays::Float3& to_viewer) const {
     const PathPoint& point = points_[i];
     const rays::RayScene& scene = transport_.eye();
@@ -499,7 +499,7 @@ class Picture {
     return {rgb[0], rgb[1], rgb[2]};
   }
 
-  // What the shares leave of it that stopped.
+  // The part of the tolerance that the stopped shares leave.
   double tolerance() const {
     const double whole = request_.tolerance_de00, stopped = found_.stopped_de00;
     return whole > stopped ? std::sqrt(whole * whole - stopped * stopped) : 1e-9;

@@ -1,5 +1,5 @@
 // Pictures by paths: samples go where the picture is noisy, until its noise is below a tolerance or the time is up.
-// goniochrome-theory(7), PATHS.
+// goniochrome-paths(7), "PATHS".
 #pragma once
 
 #include <array>
@@ -24,7 +24,8 @@ struct PathRequest {
   int most_samples = 1 << 16;  // of a pixel
   double white_luminance = 1;  // what noise is seen before
   std::uint64_t seed = 1;
-  // Of a pixel, as sample_shifts() has them; with 1 the pixel centers are seen. Paths are spread over them.
+  // The number of samples of a pixel, as sample_shifts() has them; with 1 the pixel centers are seen. Paths are spread
+  // over them.
   int pixel_samples = 1;
   // If set, reconstruction() smooths the light along the surface, and the noise is the error that it measures.
   bool reconstruct = false;
@@ -34,8 +35,8 @@ struct PathRequest {
   std::function<void(double noise_de00, double seconds)> progress = {};
 };
 
-// Of one visible point; with several samples in a pixel, the mean over all of them, of which those that see nothing are
-// black.
+// The light of one visible point; with several samples in a pixel, the mean over all of them, of which those that see
+// nothing are black.
 struct PathPoint {
   int x = 0, y = 0;
   float coverage = 1;     // share of the pixel's samples that see the scene or its floor
@@ -67,8 +68,8 @@ struct PathPicture {
 PathPicture path_picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
                          const PathRequest& request);
 
-// The same of pixels whose samples are these surfaces, of which there are at most 16: paths are spread over them, and
-// PathRequest::pixel_samples is not used. The points of a surface may be others than those that rays find.
+// The picture of pixels whose samples are these surfaces, of which there are at most 16: paths are spread over them,
+// and PathRequest::pixel_samples is not used. The points of a surface may be others than those that rays find.
 PathPicture path_picture(const Transport& transport, const std::vector<VisibleSurface>& samples,
                          const image::Image* base, const PathRequest& request);
 

@@ -94,7 +94,7 @@ TEST(PathPicture, IsAsNoisyAsItSays) {
     stated2 += a.noise_de00 * a.noise_de00 + b.noise_de00 * b.noise_de00, true2 += difference * difference, ++count;
     within += difference <= 2 * std::hypot(a.noise_de00, b.noise_de00);
   }
-  // Of some 500 points in neighborhoods that share variances; the rotation term of CIEDE2000 is left out.
+  // Some 500 points lie in neighborhoods that share variances; the rotation term of CIEDE2000 is left out.
   EXPECT_NEAR(std::sqrt(true2 / stated2), 1, 0.1);
   EXPECT_GT(within, 0.92 * count);
   // The 95th percentile of differences is that of a spread, whose standard deviation is the noise; three channels, in

@@ -1,6 +1,6 @@
 // Pixels whose samples all show one piece of surface, and what follows from it: such a pixel needs fewer samples than
-// one at an edge, and pixels beside each other on one piece tell each other's light. goniochrome-theory(7),
-// RECONSTRUCTION.
+// one at an edge, and pixels beside each other on one piece tell each other's light.
+// goniochrome-paths(7), "RECONSTRUCTION".
 #pragma once
 
 #include <cstdint>

@@ -138,10 +138,11 @@ void PointTransport::aim(rays::Fan& fan, std::uint32_t ray, const Float3& direct
   if (rays::dot(direction, painted_.normal()) > 0) fan.wanted |= 1U << ray;
 }
 
-// What lamps that are discs add to deterministic(), as the mean over samples. A place on the disc is drawn and, where
-// the paint has lobes narrower than the disc, a direction of the lobes, which may meet it too; together they count the
-// light once (the balance heuristic, [Veach1995] 3.1). By places alone, gloss beside a wide lamp would be specks: few
-// of them lie in a narrow lobe, and those are bright. The paint is asked for those rays alone that add anything.
+// The light that lamps with an extent add to deterministic(), as the mean over samples. A place on the disc is drawn
+// and, where the paint has lobes narrower than the disc, a direction of the lobes, which may meet it too; together they
+// count the light once (the balance heuristic, [Veach1995] 3.1). By places alone, gloss beside a wide lamp would be
+// specks: few of them lie in a narrow lobe, and those are bright. The paint is asked for those rays alone that add
+// anything.
 color::Rgb PointTransport::lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count,
                                         bool* any_occluded) const {
   constexpr std::uint32_t kSet = 60;         // that nothing else draws from
@@ -212,7 +213,7 @@ void PointTransport::add_mirror() {
   mirror_samples_ = static_cast<std::uint32_t>(std::clamp(static_cast<int>(std::lround(kBatch * share)), 1, kBatch));
 }
 
-// Of a direction that is not drawn from the environment, by what finds lights.
+// The density of a direction that is not drawn from the environment, by the samplers of lights.
 double PointTransport::drawn_pdf(const Float3& direction, const Reflection& reflection) const {
   return window_ ? transport_.ground_->density(*window_, rays::vec3(direction))
                  : (1 - receiver_.chance()) * reflection.pdf;
@@ -256,8 +257,8 @@ PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbe
   return ray;
 }
 
-// What a drawn direction is worth. One set of directions serves every lobe and the environment: each is weighed by the
-// density that the mixture gives it, which is the balance heuristic.
+// The contribution of a drawn direction. One set of directions serves every lobe and the environment: each is weighed
+// by the density that the mixture gives it, which is the balance heuristic.
 LightShares PointTransport::shown(const Ray& ray, bool occluded, const Sequence& sequence, std::uint32_t index) const {
   const Reflection reflection = painted_.at(ray.direction);
   LightSample light;
@@ -305,9 +306,9 @@ LightShares PointTransport::shown(const Ray& ray, bool occluded, const Sequence&
 }
 
 // A floor that shows the environment hides what is below the horizon, and shows the same light from elsewhere. Both are
-// drawn together: a direction that is drawn from the environment below the horizon is what is hidden, and the way to
-// the place of the floor that shows it is what is seen instead. Light by density is the same for both, so that the
-// brightest texels add no more noise than others.
+// drawn together: a direction that is drawn from the environment below the horizon stands for the hidden light, and the
+// way to the place of the floor that shows it stands for the visible light. Light by density is the same for both, so
+// that the brightest texels add no more noise than others.
 LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, const Sequence& sequence,
                                               std::uint32_t index) const {
   LightShares shares;
@@ -353,7 +354,7 @@ LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, co
   return shares;
 }
 
-// What surfaces send along a direction, times `scale`: one over the density of the direction.
+// Adds the light that surfaces send along a direction, times `scale`: one over the density of the direction.
 void PointTransport::add_sent(const Float3& direction, const color::Rgb& sent, float scale, LightShares& shares) const {
   if (sent == color::Rgb{}) return;
   const PaintedPoint::Parts parts = painted_.parts(direction);

@@ -73,7 +73,7 @@ double cell_cosine(int row) {
   return kColumnRad * 0.5 * (high * high - low * low);
 }
 
-// Whether cells hold whole texels.
+// True if cells hold whole texels.
 bool is_fine(const envmap::Environment& environment) {
   const int around =
       environment.layout() == envmap::Environment::Layout::kCube ? 4 * environment.width() : environment.width();

@@ -1,4 +1,4 @@
-// The lower half of an environment, projected onto a floor. goniochrome-theory(7), PATHS, Ground.
+// The lower half of an environment, projected onto a floor. goniochrome-paths(7), "Ground".
 #pragma once
 
 #include <array>
@@ -22,11 +22,11 @@ class ProjectedGround {
   static Result<ProjectedGround> create(const Ground& ground, const envmap::Environment& environment,
                                         const std::vector<Light>& lights);
 
-  // What the point of the floor shows in the open; `position` in units of the mesh.
+  // The radiance of the floor at a point where nothing occludes it; `position` in units of the mesh.
   color::Rgb open_radiance(const Vec3& position) const;
-  // The same as a matt paint, in 1/sr: the radiance by the irradiance of the open floor; 0 where there is no light.
+  // The radiance as a matt paint, in 1/sr: over the irradiance of the unoccluded floor; 0 where there is no light.
   color::Rgb paint(const color::Rgb& open_radiance) const;
-  // Of the floor in the open, from above.
+  // The irradiance of the unoccluded floor, from above.
   const color::Rgb& irradiance() const { return irradiance_; }
   // (integral L)^2 / integral L^2 of the environment below the horizon, of the mean over channels: 2 pi for even
   // ground.

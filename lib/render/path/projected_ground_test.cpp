@@ -89,7 +89,7 @@ TEST(ProjectedGround, ShowsWhatTheMeshLeavesOfTheLight) {
       EXPECT_NEAR(seen.radiance[c], truth[c], 4 * deviation(seen, c) + 0.004 * ground->open_radiance(at)[c])
           << at.x << " " << at.z << ", channel " << c;
     }
-    // What a mesh can change is more than what it changes.
+    // The mesh can change more light than it changes.
     const double hidden = ground->light_share(ground->window(at, bounding_box(box)));
     const color::Rgb open = ground->open_radiance(at);
     EXPECT_LE(1 - seen.radiance[1] / open[1], hidden + 4 * deviation(seen, 1) / open[1] + 1e-3);

@@ -48,7 +48,7 @@ class Radiosity {
     solve();
   }
 
-  // What a point of a wall shows. `rays`: how many look at other walls, where the lamp's light is taken at the very
+  // The light of a point of a wall. `rays`: how many look at other walls, where the lamp's light is taken at the very
   // point, and that of patches as the patch there has it; the lamp is cut into grid * grid points.
   color::Rgb shown(const Vec3& point, const Vec3& normal, std::size_t part, int rays, int grid) const {
     color::Rgb light = direct(point, normal, grid);
@@ -87,7 +87,7 @@ class Radiosity {
     return sum / (grid * grid * kPi) * emission_;
   }
 
-  // What is met in the direction of these numbers, which has the density cos / pi; the patch is -1 where it is none.
+  // The surface in the direction of these numbers, which has the density cos / pi; the patch is -1 where it is none.
   struct Met {
     std::int64_t patch = -1;
     std::size_t triangle = 0;

@@ -1,5 +1,5 @@
 // Draws the effects of rays on a picture that an engine made without them: at each sample of a pixel what the mesh
-// changes of its light. goniochrome-theory(7), PLAN, Effects of rays.
+// changes of its light. goniochrome-plan(7), "Effects of rays".
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace goniochrome::render {
 // pixel on an edge is corrected as the surface that it shows. The G-buffer must have triangles.
 VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer);
 
-// As many samples of a pixel are corrected together as there is memory for: 4 to 16.
+// Samples of a pixel are corrected together, as many as there is memory for: 4 to 16.
 int corrected_together(int width, int height);
 
 struct CorrectionRequest {
@@ -38,11 +38,11 @@ struct CorrectionNoise {
   double ms = 0;
   bool reached = true;  // whether the noise is within the tolerance
   bool dark = false;    // whether the mesh changes nothing at all
-  // What each of the effects changes, in the order of plans, and whether the first pass was its last.
+  // The change by each of the effects, in the order of plans, and whether the first pass was its last.
   std::array<FoundShare, kShareCount> found;
 };
 
-// What is seen beside the mesh of a picture with a floor that shows the environment.
+// The background around the mesh of a picture with a floor that shows the environment.
 struct Backdrop {
   Background background = Background::kNone;
   color::Rgb color;
@@ -51,7 +51,7 @@ struct Backdrop {
   color::Rgb at(const rays::Float3& direction) const;
 };
 
-// What the floor changes beside the mesh, at 95 of 100 pixels that show it: CIEDE2000 to the backdrop.
+// The change of the background by the floor, at 95 of 100 pixels that show it: CIEDE2000 to the backdrop.
 double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Backdrop& backdrop,
                     const RayEffects& effects, double white_luminance);
 

@@ -1,4 +1,4 @@
-// What is seen beside a mesh: one sample of a pixel stands for all where no edge is seen.
+// The background around a mesh: one sample of a pixel stands for all where no edge is seen.
 #include "render/path/ray_correction.h"
 
 #include <gtest/gtest.h>

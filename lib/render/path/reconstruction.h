@@ -1,6 +1,6 @@
 // Reconstructs light on a surface from noisy samples of it. Several filters of growing reach smooth it along the
 // surface; two independent halves of the samples tell which of them errs least at each point, and by how much.
-// goniochrome-theory(7), RECONSTRUCTION.
+// goniochrome-paths(7), "RECONSTRUCTION".
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // Local regression over images of a surface: around each element, values are fitted by a function that is linear in
 // place and normal. Compiled for several instruction sets, of which the best that the processor has is chosen at run
-// time. goniochrome-theory(7), RECONSTRUCTION.
+// time. goniochrome-paths(7), "RECONSTRUCTION".
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Rounds of samples that end in time. goniochrome-theory(7), PATHS, Numbers.
+// Rounds of samples that end in time. goniochrome-paths(7), "Numbers".
 #pragma once
 
 #include <algorithm>

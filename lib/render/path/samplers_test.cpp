@@ -274,7 +274,7 @@ TEST(Samplers, EmittersWithoutAreaOrWithoutAnEndAreRefused) {
   EXPECT_FALSE(Emitters::create(*scene, {{std::numeric_limits<double>::infinity(), 0, 0}}).ok());
 }
 
-// What is evaluated in floats is the model that the reference integrator has in doubles.
+// The model in floats is the model that the reference integrator has in doubles.
 TEST(TracedPaint, IsTheModelOfTheReference) {
   paint::LobeFit paint = glossy();
   paint.views = {{15, paint.diffuse, paint.lobes}, {60, {0.2, 0.1, 0.1}, {{30, {1, 2, 3}, {}}, {200, {}, {4, 4, 5}}}}};

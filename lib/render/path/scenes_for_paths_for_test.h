@@ -97,7 +97,7 @@ struct PathStage {
     return *transport;
   }
 
-  // What is seen from `eye` toward `target`.
+  // The light from `target` at `eye`.
   PathEstimate seen(const PathOptions& options, const Vec3& eye, const Vec3& target, int batches,
                     std::uint64_t seed = 1) const {
     const Vec3 toward = normalized(target - eye);

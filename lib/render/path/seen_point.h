@@ -1,4 +1,5 @@
-// What a camera sees along one ray: a point, or a pane and the points behind it. goniochrome-theory(7), PANES.
+// The points that a camera sees along one ray: a point, or a pane and the points behind it.
+// goniochrome-paths(7), "PANES".
 #pragma once
 
 #include <vector>
@@ -17,7 +18,7 @@ class SeenPoint {
     if (transport.meets_pane({spot.triangle, spot.u, spot.v, 0})) look_behind(transport, options, spot, to_viewer);
   }
 
-  // As PointTransport has them; each point behind panes counts by what these let through.
+  // True as PointTransport has it; each point behind panes counts by the light that these let through.
   bool certain() const {
     bool certain = front_.certain();
     for (const Behind& point : behind_) certain = certain && point.at.certain();

@@ -1,5 +1,5 @@
 // Low-discrepancy numbers for paths: Sobol's sequence in four dimensions, scrambled as Owen has it, a fresh scramble
-// for each further set of four. goniochrome-theory(7), PATHS; [Sobol1967], [Owen1995], hashing after [Burley2020].
+// for each further set of four. goniochrome-paths(7), "PATHS"; [Sobol1967], [Owen1995], hashing after [Burley2020].
 #pragma once
 
 #include <array>

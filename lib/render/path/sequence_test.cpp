@@ -71,7 +71,7 @@ TEST(Sequence, SeedsAndSetsAreIndependent) {
               return Pair{Sequence(i).point(3, 0)[1], Sequence(i + 1).point(3, 0)[1]};
             }),
             kMost);
-  // The same index of two dimensions, over the index: points of one seed are not independent, but even.
+  // One index in two dimensions, over the index: points of one seed are not independent, but even.
   EXPECT_LT(chi_square([](std::uint64_t i) {
               const auto p = Sequence(i / 1024).point(static_cast<std::uint32_t>(i % 1024), 0);
               return Pair{p[2], p[3]};

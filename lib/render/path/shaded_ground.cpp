@@ -325,8 +325,8 @@ void ShadedGround::divide() {
   });
 }
 
-// Means over the nodes beside each one, by 1 2 1 each way: what a mesh sends to a floor changes slowly, and has more
-// noise than what it takes.
+// Means over the neighboring nodes, by 1 2 1 each way: light from a mesh to a floor changes slowly, and has more noise
+// than the light that the mesh blocks.
 void ShadedGround::smooth(Grid& grid) {
   const std::size_t columns = grid.x.size(), rows = grid.z.size();
   const auto along = [&](std::size_t count, std::size_t step, std::size_t lines, std::size_t line_step) {

@@ -1,5 +1,5 @@
-// What a mesh leaves of the light of a floor that shows the environment, known beforehand on a grid: a floor is seen by
-// every ray that goes down, and its soft light changes slowly. goniochrome-theory(7), PATHS, Ground.
+// The light that a mesh leaves to a floor that shows the environment, known beforehand on a grid: a floor is seen by
+// every ray that goes down, and its soft light changes slowly. goniochrome-paths(7), "Ground".
 #pragma once
 
 #include <cstdint>

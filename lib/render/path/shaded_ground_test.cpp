@@ -51,7 +51,7 @@ struct Stage : PathStage {
 TEST(ShadedGround, ShowsWhatPathsShow) {
   const Stage stage;
   constexpr int kBounces = 4;
-  // As pictures have it, and with eight times as many directions of light that the mesh sends.
+  // The transport of pictures, and one with eight times as many directions of light that the mesh sends.
   Transport shaded = *stage.transport, finer = *stage.transport;
   shaded.shade_ground({}, kBounces);
   finer.shade_ground({.bounced_directions = 2048}, kBounces);
@@ -188,8 +188,8 @@ TEST(ShadedGround, LightsTheBodyAsPathsDo) {
             << at.x << " " << at.y << " " << at.z << ", channel " << c << ", " << correction;
         EXPECT_LT(noise, 0.02);
       }
-      // What the grid is for: corrections have less noise. A whole sum has that of the light above the horizon either
-      // way, which differs by a few percent from seed to seed.
+      // The purpose of the grid is less noise in corrections. A whole sum has that of the light above the horizon
+      // either way, which differs by a few percent from seed to seed.
       EXPECT_LT(deviation(read), (correction ? 0.7 : 1.05) * deviation(truth));
     }
   }

@@ -10,7 +10,7 @@ namespace goniochrome::render {
 
 namespace {
 
-// What brdf::under_coat() misses of the image in a coat.
+// The error of brdf::under_coat() in the image in a coat.
 std::vector<float> mirror_by_view(double traced_index, double index) {
   const double weight = brdf::mirror_change(math::cos(brdf::kMirrorReading_deg * kDegree), traced_index, index);
   std::vector<float> by_view;

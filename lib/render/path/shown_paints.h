@@ -1,4 +1,4 @@
-// The paints of a mesh as a transport shows them, part by part. goniochrome-theory(7), TRANSPORT.
+// The paints of a mesh as a transport shows them, part by part. goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace goniochrome::render {
 
-// What a part of the mesh is to be shown in. `paint` must outlive it.
+// The paint that a part of the mesh is to be shown in. `paint` must outlive it.
 struct PartPaint {
   const paint::LobeFit* paint = nullptr;
   paint::Anisotropy anisotropy;
@@ -30,7 +30,7 @@ struct ShownPaints {
 Result<ShownPaints> shown_paints(const LobeColumns& columns, const WornPaints& worn,
                                  const std::vector<PartPaint>& parts);
 
-// The same operator, or null where it multiplies channel by channel, as bounce_scale() and TransportShader take it.
+// The operator, or null where it multiplies channel by channel, as bounce_scale() and TransportShader take it.
 const color::ReflectionOperator* operator_or_null(const color::ReflectionOperator& reflection);
 
 }  // namespace goniochrome::render

@@ -54,7 +54,7 @@ Scene mean_scene(const Scene& scene) {
   return mean;
 }
 
-// Whether gloss and mirror are the same in all bands, so that a rough coat can stand for them.
+// True if gloss and mirror are the same in all bands, so that a rough coat can stand for them.
 bool is_coat_gray(const paint::BandLobes& lobes) {
   const auto even = [](const color::Bands& bands) {
     constexpr double kEven = 1e-9;

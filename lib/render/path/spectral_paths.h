@@ -1,5 +1,5 @@
 // Paths whose light and paints are in bands of wavelength: what the products of three channels are compared with.
-// goniochrome-theory(7), LIGHT IN BANDS.
+// goniochrome-color(7), "LIGHT IN BANDS".
 #pragma once
 
 #include <vector>

@@ -31,7 +31,7 @@ paint::BandLobes matt(const Bands& reflectance) {
   return lobes;
 }
 
-// The same weights in every band.
+// Bands with these weights in every band.
 paint::BandLobes even(const paint::LobeFit& fit) {
   paint::BandLobes lobes;
   lobes.coat_index = fit.coat_index;

@@ -1,4 +1,4 @@
-// A triangle as a point sees it, whose directions are drawn evenly. goniochrome-theory(7), PATHS, Emitters.
+// A triangle as a point sees it, whose directions are drawn evenly. goniochrome-paths(7), "Emitters".
 #pragma once
 
 #include <array>

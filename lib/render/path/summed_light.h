@@ -1,6 +1,6 @@
-// What the diffuse part and the wide lobes of a basis gather of an environment where no surface is in the way, summed
-// over the environment itself: where its prefiltered maps err by more than is asked. goniochrome-theory(7), TRANSPORT,
-// Control variate.
+// The light that the diffuse part and the wide lobes of a basis gather of an environment where no surface is in the
+// way, summed over the environment itself: where its prefiltered maps err by too much.
+// goniochrome-transport(7), "Control variate".
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// The triangles of a scene cut into pieces that are small beside it. goniochrome-theory(7), PATHS, Bright places.
+// The triangles of a scene cut into pieces that are small beside it. goniochrome-paths(7), "Bright places".
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Paints as paths meet them: evaluated and sampled in floats. goniochrome-theory(7), PATHS and LOBE MODEL.
+// Paints as paths meet them: evaluated and sampled in floats.
+// goniochrome-paths(7), "PATHS" and goniochrome-lobes(7), "LOBE MODEL".
 #pragma once
 
 #include <cmath>
@@ -40,7 +41,7 @@ class TracedPaint {
   void put_coat(const paint::LobeFit& paint, double gloss_deg);
   bool has_rough_coat() const { return coat_.has_value(); }
 
-  // Whether all that it shows are its lobes, its diffuse part and its mirror, which is not so with a texture or a map.
+  // True if it shows only its lobes, its diffuse part and its mirror, which is not so with a texture or a map.
   bool is_lobe_model() const { return map_ == nullptr && layer_ == nullptr && !coat_; }
 
  private:
@@ -111,8 +112,8 @@ class PaintedPoint {
   };
   Parts parts(const rays::Float3& to_light) const;
 
-  // What each weight of the paint counts in f cos_i: K_D, and of each lobe of the paint, by its number among those with
-  // weight, K_DD and K_G; f cos_i of a rough coat; and the density that drawn() gives the direction. So that other
+  // The factor of each weight of the paint in f cos_i: K_D, and of each lobe of the paint, by its number among those
+  // with weight, K_DD and K_G; f cos_i of a rough coat; and the density that drawn() gives the direction. So that other
   // weights than those in three channels can be taken. Not for textures and color maps.
   struct Shares {
     float pdf = 0;  // 1/sr; 0: below the horizon, no light
@@ -146,8 +147,8 @@ class PaintedPoint {
   // K_D T(theta_o), 1/sr, and its part of even light that the point sends back
   const rays::Float3& diffuse() const { return diffuse_; }
   rays::Float3 diffuse_albedo() const;
-  // What the coat leaves of the base's light from a direction of that cosine, and what it mirrors to the viewer;
-  // without a coat 1, and what kCoatIndex mirrors.
+  // The transmission of the coat for the base's light from a direction of that cosine, and its reflection to the
+  // viewer; without a coat 1, and the reflection of kCoatIndex.
   float passages(float cos_i) const { return let_out_ * let_in(cos_i); }
   float coat_mirror() const;
   const rays::Float3& to_viewer() const { return viewer_; }
@@ -159,10 +160,10 @@ class PaintedPoint {
   const std::vector<Axis>& axes() const { return axes_; }
   // A direction drawn with the density (E + 1)/(2 pi) cos^E about an axis, by numbers in [0,1).
   static rays::Float3 drawn_about(const rays::Float3& axis, float exponent, float u, float v);
-  // About what part of even light each sends back, mean of the channels: what samples are shared out by.
+  // The approximate part of even light that each sends back, mean of the channels: samples are shared out by it.
   float lobes_weight() const { return total_; }
   float mirror_weight() const;
-  // The same for all lobes narrower than a light of this extent in sr, as a part of lobes_weight(): lobes that find the
+  // The share of all lobes narrower than a light of this extent in sr, as a part of lobes_weight(): lobes that find the
   // light better than the light finds them.
   float narrow_share(double light_sr) const;
   bool black() const { return !(total_ > 0) && mirror_.x == 0 && mirror_.y == 0 && mirror_.z == 0; }

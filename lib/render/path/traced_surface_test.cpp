@@ -21,7 +21,7 @@ namespace {
 using rays::Float3;
 using rays::float3;
 
-// As in transport_test.cpp: beyond so many standard errors an estimate is wrong.
+// The bound of transport_test.cpp: beyond so many standard errors an estimate is wrong.
 constexpr double kMostErrors = 5;
 
 struct Worst {
@@ -30,7 +30,7 @@ struct Worst {
 void judge(const PathEstimate& estimate, const color::Rgb& truth, Worst& worst) {
   for (int c = 0; c < 3; ++c) {
     const double off = std::abs(estimate.radiance[c] - truth[c]);
-    // What is summed in floats without noise is off by 1e-4 of the sharpest lobe's flank, as in samplers_test.cpp.
+    // A sum in floats without noise is off by 1e-4 of the sharpest lobe's flank, as in samplers_test.cpp.
     worst.errors = std::max(worst.errors, off / (deviation(estimate, c) + 1e-4 * std::abs(truth[c])));
     worst.relative = std::max(worst.relative, off / std::abs(truth[c]));
   }

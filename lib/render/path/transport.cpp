@@ -135,7 +135,8 @@ Float3 Transport::toward_ground(const Float3& from, const Float3& from_eye) cons
   return rays::normalized(place - from);
 }
 
-// That of the environment's table where it was seen from, by the ratio of the solid angles of a piece of the floor.
+// The density of the environment's table where it was seen from, by the ratio of the solid angles of a piece of the
+// floor.
 double Transport::ground_pdf(const Float3& from, const Float3& direction, const HorizonShares& horizon) const {
   const float distance = rays_->floor_distance(from, direction);
   const Float3 seen = from + distance * direction - ground_eye_;

@@ -1,4 +1,4 @@
-// Light on its way through a scene: what one point shows, by rays. goniochrome-theory(7), PATHS.
+// Light on its way through a scene: what one point shows, by rays. goniochrome-paths(7), "PATHS".
 #pragma once
 
 #include <limits>
@@ -23,33 +23,34 @@ namespace goniochrome::render {
 
 class SpectralPaths;
 
-// What paths meet.
+// The surfaces and lights that paths meet.
 struct PathScene {
   const Scene* scene = nullptr;  // its mesh, paints, lights and product of colors; its maps are not used
   const envmap::Environment* environment = nullptr;  // none: dark
-  // What mirrors show where its sun is one of the scene's lights and is no part of `environment`; none: that.
+  // The environment that mirrors show where its sun is one of the scene's lights and is no part of `environment`; none:
+  // that.
   const envmap::Environment* mirrored = nullptr;
   std::vector<color::Rgb> emission = {};  // radiance of each part; none where there are fewer
   std::optional<Ground> ground = {};
   // The mesh with its floor, where they are there already; else they are made.
   std::shared_ptr<const rays::RayScene> rays = nullptr;
-  // The same with the panes of the scene, which other rays pass: what cameras see. Where there are panes and it is
-  // null, it is made.
+  // The surfaces with the panes of the scene, which other rays pass: the ones that cameras see. Where there are panes
+  // and it is null, it is made.
   std::shared_ptr<const rays::RayScene> eye = nullptr;
-  // Of that environment, where it is there already; else it is made.
+  // The table of that environment, where it is there already; else it is made.
   std::shared_ptr<const EnvironmentTable> table = nullptr;
-  // Whether satin coats are drawn as rough surfaces, and not by the lobes that stand for them: for pictures that are
+  // True if satin coats are drawn as rough surfaces, and not by the lobes that stand for them: for pictures that are
   // drawn by paths alone.
   bool rough_coats = false;
   double tilt_tolerance = 1e-3;  // of the tilted normals of brushed paints, relative to the lobe's peak
 };
 
-// What is asked of them.
+// Options of the light along paths.
 struct PathOptions {
   // How many surfaces may pass light on before it reaches the point that is seen: 0 lets a surface that is met be
   // black, apart from what it emits. A floor that shows the environment is light, and does not count.
   int bounces = 8;
-  // Whether the light that surfaces pass on reaches the lobes and the mirror of the point that is seen, and whether it
+  // True if the light that surfaces pass on reaches the lobes and the mirror of the point that is seen, and if it
   // reaches its diffuse part.
   bool into_lobes = true, into_diffuse = true;
   // Only what the mesh changes: the radiance with the mesh in the way less the radiance without it. That is 0 without
@@ -59,7 +60,7 @@ struct PathOptions {
   bool white = false;
 };
 
-// What a point shows, by the way that the light took. The sum is what it shows.
+// The light of a point, by the way that it took. The sum is what it shows.
 struct LightShares {
   // From light straight to the point; with PathOptions::correction less what the mesh blocks. A floor that shows the
   // environment is light, apart from what the mesh sends it.
@@ -71,7 +72,7 @@ struct LightShares {
   color::Rgb from_floor = {};
 
   color::Rgb sum() const { return direct + into_lobes + into_diffuse + from_floor; }
-  // What pictures with these effects show of it.
+  // The part of it that pictures with these effects show.
   color::Rgb shown(const RayEffects& effects) const {
     color::Rgb shown;
     if (effects.shadow) shown += direct + from_floor;
@@ -104,22 +105,22 @@ class Transport {
   static Result<Transport> create(const PathScene& scene);
 
   const rays::RayScene& rays() const { return *rays_; }
-  // What cameras see: the same, and panes as well. Its triangles are those of rays().
+  // The surfaces that cameras see: those of rays(), and panes as well. Its triangles are those of rays().
   const rays::RayScene& eye() const { return eye_ != nullptr ? *eye_ : *rays_; }
-  // Whether what a ray of a camera meets is a pane.
+  // True if a ray of a camera meets a pane there.
   bool meets_pane(const rays::Hit& hit) const {
     return eye_ != nullptr && hit.triangle < rays::kFloor && panes_[static_cast<std::size_t>(eye_->part(hit.triangle))];
   }
   // The part of what lies behind the scene that is seen there: 1 beside the scene, less through panes, 0 before others.
   double clear_share(const rays::Float3& from, const rays::Float3& direction) const;
   const Emitters& emitters() const { return emitters_; }
-  // What a floor that shows the environment shows in the open.
+  // The light of a floor that shows the environment, where nothing occludes it.
   color::Rgb open_ground(const rays::Spot& spot) const;
   // From here on paths that meet such a floor read its light from a grid, and go no farther. They lose what little
   // noise they had from there, and are no longer exact: ShadedGround says by how much. Not for scenes with emitters.
   // Without such a floor it does nothing.
   void shade_ground(GroundRequest request, int bounces);
-  // What the floor shows then.
+  // The light of the floor then.
   LightShares shaded_ground(const rays::Spot& spot) const;
   // The places that surfaces get most of the light from that they pass on, each of which so many bounces may light;
   // null where directions toward them are not worth while, as in all scenes without emitters. Bit-identical for any
@@ -137,7 +138,7 @@ class Transport {
   friend class LobePoint;
   friend class SpectralPaths;
   explicit Transport(std::shared_ptr<const rays::RayScene> rays) : rays_(std::move(rays)) {}
-  // As create(), without spectra.
+  // Creates one without spectra.
   static Result<Transport> in_channels(const PathScene& scene);
   color::Rgb bounced(const rays::Hit& hit, const rays::Float3& origin, const rays::Float3& direction, int bounces,
                      const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
@@ -153,7 +154,7 @@ class Transport {
   rays::Float3 toward_ground(const rays::Float3& from, const rays::Float3& from_eye) const;
   double ground_pdf(const rays::Float3& from, const rays::Float3& direction, const HorizonShares& horizon) const;
   LightShares shown_ground(const rays::Spot& spot, const GroundLight& light) const;
-  // The same where a path meets the floor, by a number in [0,1); nothing from below.
+  // The light of the floor where a path meets it, by a number in [0,1); nothing from below.
   LightShares met_ground(const rays::Hit& hit, const rays::Float3& origin, const rays::Float3& direction,
                          double number) const;
   // A ray to a point of an emitter ends this part of the way short of it.
@@ -179,7 +180,7 @@ class Transport {
     if (places_ == nullptr || is_projected(spot)) return {};
     return places_->receiver(spot.triangle, spot.u, spot.v, 1 - painted.narrow_share(BrightPlaces::kNarrow_sr));
   }
-  // What the chance of a path to go on from there is multiplied by.
+  // The factor of the chance of a path to go on from there.
   double brightness(const rays::Hit& hit) const { return places_ != nullptr ? places_->brightness(hit) : 1; }
   // A direction in which a path goes on from a surface by its lobes or toward a bright place, and what is met there.
   struct Onward {
@@ -195,7 +196,7 @@ class Transport {
     Light light;
     float reach = std::numeric_limits<float>::infinity();
     bool is_placed = false;
-    // Of a disc: two unit vectors across its direction, and 1 - cos of its radius.
+    // Values of a disc: two unit vectors across its direction, and 1 - cos of its radius.
     Vec3 across, along;
     double versine = 0;
 
@@ -213,11 +214,11 @@ class Transport {
     double extent_sr = 0;  // 1 over the density of the direction
   };
   static LampSample drawn_from(const SeenLamp& lamp, double u, double v);
-  // The same of any one lamp.
+  // The sample of any one lamp.
   LampSample drawn_lamp(const rays::Float3& from, double choice, double v) const;
-  // What a mirror sees of the environment, which is there.
+  // The light of the environment in a mirror; there is one.
   color::Rgb mirrored_environment(const rays::Float3& direction) const;
-  // What a mirror sees of lamps in that direction, where a ray meets `hit`.
+  // The light of lamps in a mirror in that direction, where a ray meets `hit`.
   color::Rgb mirrored_lamps(const rays::Float3& from, const rays::Float3& toward, const rays::Hit& hit) const;
   bool is_projected(const rays::Spot& spot) const;
   bool is_projected(const rays::Hit& hit) const { return ground_ && hit.triangle == rays::kFloor; }
@@ -240,8 +241,8 @@ class Transport {
   std::vector<Light> lights_;
   std::vector<SeenLamp> seen_;  // those that have no place, as every point sees them; of the others only the number
   const color::ReflectionOperator* reflection_ = nullptr;  // null: channel by channel
-  // Of a scene with spectra: all that its points show. Paints, emitters and lights are then gray, and what directions
-  // and lamps are drawn by.
+  // The paths of a scene with spectra: all light of its points. Paints, emitters and lights are then gray, and what
+  // directions and lamps are drawn by.
   std::shared_ptr<const SpectralPaths> spectral_;
 };
 
@@ -252,10 +253,10 @@ class PointTransport {
   PointTransport(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
                  const rays::Float3& to_viewer);
 
-  // What needs no samples: directional lights, the point's own emission, and what the mirror lobe sees without
+  // The deterministic part: directional lights, the point's own emission, and the light of the mirror lobe without
   // bounces.
   const color::Rgb& deterministic() const { return deterministic_; }
-  // Whether that is all: then the shares below are 0.
+  // True if that is all: then the shares below are 0.
   bool certain() const { return certain_; }
   // The mean by shares of the samples first, first + 1, ... of the rest, drawn from a sequence of this seed; `first`
   // and `count` are multiples of kHalfFan. Its expectation is the rest, exactly. `any_occluded`, unless null, is told
@@ -305,8 +306,8 @@ class PointTransport {
   HorizonShares horizon_;  // of such directions
   rays::Hit mirror_hit_;
   std::uint32_t mirror_samples_ = 0;  // in a batch
-  // Lamps that are discs, parts of which the mesh may hide: samples tell what is hidden, or what is free where that is
-  // less.
+  // Lamps that are discs, parts of which the mesh may hide: samples estimate the hidden part, or the free part where
+  // that is less.
   struct Lamp {
     Transport::SeenLamp seen;
     bool hidden = true;

@@ -1,4 +1,4 @@
-// What an edited paint costs where the light of a picture is known by lobes: the check of its bounced light and its
+// Times of an edited paint where the light of a picture is known by lobes: the check of its bounced light and its
 // shading. A ball in a cup has some 100,000 points in 640x360 pixels, half as many as a vehicle in 1280x720; the time
 // goes with the points and the columns, whatever they show.
 #include <benchmark/benchmark.h>

@@ -38,7 +38,7 @@ image::Image blank(const LobeTransport& t, int channels) {
   return image;
 }
 
-// What rounding to halves changes in the gray paint of a column, the 95th percentile.
+// The change of the gray paint of a column by rounding to halves, the 95th percentile.
 double half_error(const LobeTransport& t, const image::Image& image, std::size_t column) {
   std::vector<double> errors;
   const double weight = nominal_weight(t.columns, column);
@@ -228,7 +228,7 @@ class Reader {
     return {};
   }
 
-  // Whether what a group wears is a floor that shows the environment; a paint reflects less than its weights.
+  // True if a group wears a floor that shows the environment; a paint reflects less than its weights.
   bool is_projected(int group) const {
     std::vector<color::Rgb> laid(t_.columns.count());
     laid[LobeColumns::diffuse()] = {1, 1, 1};

@@ -1,4 +1,4 @@
-// Pictures of other paints from a transport, in milliseconds. goniochrome-theory(7), TRANSPORT.
+// Pictures of other paints from a transport, in milliseconds. goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
 #include <memory>
@@ -22,7 +22,7 @@ struct TransportPaint {
 // Error: as column_weights().
 Result<TransportPaint> transport_paint(const LobeColumns& columns, const paint::LobeFit& paint, double gloss_deg);
 
-// Of each point, the angle of the viewer from the normal, by the buffer that the points were seen in.
+// The angle of the viewer from the normal at each point, by the buffer that the points were seen in.
 std::vector<float> view_angles_deg(const LobeTransport& transport, const Gbuffer& gbuffer);
 
 // A transport laid out for shading: points of one part side by side, their light in halves where halves hold it.

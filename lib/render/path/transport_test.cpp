@@ -56,7 +56,7 @@ TEST(HardCase, WhiteSurfacesInEvenLightShowThatLight) {
           options.bounces = bounces;
           judge(stage->seen(options, {0.02, 0.6, 0.01}, 0.999 * target, 200), {1, 1, 1}, bounces > 0 ? ours : direct);
         }
-        // The same as a correction of the open light.
+        // The light as a correction of the unoccluded light.
         PathOptions options;
         options.bounces = 100;
         options.correction = true;
@@ -256,8 +256,8 @@ TEST(Transport, AConvexShapeShowsTheReferenceIntegral) {
   }
 }
 
-// Where a mesh blocks and bounces, the correction is the whole less what the reference integrator sums without it, for
-// every share of what is gathered.
+// Where a mesh blocks and bounces, the correction is the whole less the sum of the reference integrator without it, for
+// every share of the gathered light.
 TEST(Transport, TheCorrectionIsTheWholeLessTheOpenLight) {
   mesh::Mesh mesh = box_mesh(false);
   add_mesh(mesh, sphere_mesh(48), 0.4, {0.2, -0.5, 0.1});
@@ -363,7 +363,7 @@ TEST(HardCase, ASunInAMirrorIsFoundAndItsErrorTold) {
     variance += std::pow(deviation(estimate) / expected, 2);
   }
   ASSERT_GT(points, 20);
-  // Of 95 % intervals of skewed estimates (each batch finds the sun with a chance of some percent).
+  // The bound is that of 95 % intervals of skewed estimates (each batch finds the sun with a chance of some percent).
   EXPECT_GT(covered, 0.85 * points);
   hard_case("transport-firefly",
             {"light of a sun of 1e8 by way of a mirror, mean of its points", std::abs(cut) / std::sqrt(variance),

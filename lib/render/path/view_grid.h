@@ -1,5 +1,5 @@
 // A grid over the directions to viewers and, for each of them, over the normals that face it. What changes slowly with
-// both is told at its nodes and is linear between them. goniochrome-theory(7), RENDERING, Sums.
+// both is told at its nodes and is linear between them. goniochrome-rendering(7), "Sums".
 #pragma once
 
 #include <array>

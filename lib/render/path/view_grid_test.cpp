@@ -26,7 +26,7 @@ ViewGrid::Facing drawn(std::mt19937_64& random) {
   return {dot(normal, to_viewer) < 0 ? -normal : normal, to_viewer};
 }
 
-// As smooth as what a lobe of exponent 4 gathers.
+// A function as smooth as the light of a lobe of exponent 4.
 double smooth(const ViewGrid::Facing& at) {
   const Vec3 mirrored = 2 * dot(at.normal, at.to_viewer) * at.normal - at.to_viewer;
   return std::exp(2 * dot(mirrored, normalized({1, 2, -1}))) + dot(at.normal, {0.3, 1, 0.2});

@@ -1,4 +1,4 @@
-// What a camera sees, by rays: the G-buffer that every engine shades, and the surface points behind it.
+// The surfaces that a camera sees, by rays: the G-buffer that every engine shades, and the surface points behind it.
 #pragma once
 
 #include <array>

@@ -1,5 +1,4 @@
-// How bright white is in a scene that no environment and no directional light lights. goniochrome-theory(7), PATHS,
-// Noise.
+// How bright white is in a scene that no environment and no directional light lights. goniochrome-paths(7), "Noise".
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,7 @@
 namespace goniochrome::render::visible_white_test {
 namespace {
 
-// Of a rectangle a x b parallel to an element at the distance c, one corner on its normal.
+// The form factor of a rectangle a x b parallel to an element at the distance c, one corner on its normal.
 double form_factor(double a, double b, double c) {
   const double x = a / c, y = b / c, rx = std::hypot(1, x), ry = std::hypot(1, y);
   return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);

@@ -43,7 +43,7 @@ Bright brightest_texel(const envmap::CubeMap& map) {
   return brightest;
 }
 
-// Of the maps and their spots: these are the same for every point.
+// The bright directions of the maps and their spots: these are the same for every point.
 std::vector<Bright> bright_directions(const Scene& scene, const Effects& effects) {
   std::vector<Bright> all;
   const auto add = [&](const Bright& light) {

@@ -1,4 +1,4 @@
-// Points at which a part may show the brightest light of a scene. goniochrome-theory(7), PLAN.
+// Points at which a part may show the brightest light of a scene. goniochrome-plan(7), "PLAN".
 #pragma once
 
 #include <vector>

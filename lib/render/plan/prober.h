@@ -1,4 +1,4 @@
-// The trial of effects on a sample of the visible points, by the engine cpu. goniochrome-theory(7), PLAN.
+// The trial of effects on a sample of the visible points, by the engine cpu. goniochrome-plan(7), "PLAN".
 #pragma once
 
 #include <algorithm>

@@ -13,8 +13,7 @@ namespace goniochrome::render {
 namespace {
 
 // The part of the tolerance that the errors of these effects may take at 95 of 100 points; as much is left for what
-// maps leave out, since both add as the roots of squares. A picture for which nobody asks how accurate it is may take
-// all.
+// maps leave out, since both add as the roots of squares. Without --tolerance a picture may take all of it.
 constexpr double kRayNoiseShare = 0.7;
 // The most samples of a point that are drawn for effects that nobody asked for by name. Most points get far fewer.
 constexpr int kMostUnaskedSamples = 1024;

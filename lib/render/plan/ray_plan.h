@@ -1,4 +1,4 @@
-// Which sums and effects of rays a picture is drawn with. goniochrome-theory(7), PLAN, Effects of rays.
+// Which sums and effects of rays a picture is drawn with. goniochrome-plan(7), "Effects of rays".
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace goniochrome::render {
 
-// Whether an effect is drawn that nobody asked for by name.
+// True if an effect is drawn that nobody asked for by name.
 bool is_drawn_unasked(const Plan& plan, const std::string& effect);
 
 // The rows of these effects; turns them on in `effects`, which has the other effects of the plan. Effects that need

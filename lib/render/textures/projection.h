@@ -1,5 +1,5 @@
 // How a texture is laid on a part of a mesh that has no texture coordinates of its own, or not the right ones.
-// goniochrome-theory(7), SPATIALLY VARYING SURFACES, Projections.
+// goniochrome-surfaces(7), "Projections".
 #pragma once
 
 #include "base/vec3.h"

@@ -18,7 +18,7 @@ Vec3 tangent_of(const TexturePlace& place) {
   return {place.tangent[0], place.tangent[1], place.tangent[2]};
 }
 
-// Whether the two sides of a box that are nearest to the normal are about as near.
+// True if the two sides of a box that are nearest to the normal are about as near.
 bool near_an_edge(const Vec3& n) {
   std::array<double, 3> size = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
   std::ranges::sort(size);
@@ -174,7 +174,7 @@ TEST(Projection, ADecalThatEndsShowsNothingElsewhere) {
   EXPECT_EQ(projected(laying, {0.6, 3, 0}, {0, 1, 0}).share, 1);
 }
 
-// What a G-buffer shows is projected pixel by pixel, as the point of the mesh is.
+// Pixels of a G-buffer are projected one by one, as the point of the mesh is.
 TEST(Projection, PlacesOfPixelsAreThoseOfPoints) {
   const mesh::Mesh mesh = sphere_mesh(32);
   Camera camera;

@@ -107,7 +107,7 @@ Result<void> SbrdfShader::has_all_maps() const {
   return input_error("{}", missing_);
 }
 
-// Of the exponents there are, those between which the textures' lie.
+// Maps are made of the exponents between which those of the textures lie.
 void SbrdfShader::make_maps(const envmap::PrefilteredEnvironment& env, const MipCube* mip, double low, double high) {
   std::vector<const envmap::CubeMap*> all;
   const auto add = [&](double exponent, const envmap::CubeMap& map) {

@@ -1,5 +1,5 @@
-// Shading of spatially varying surfaces under lights and a prefiltered environment. goniochrome-theory(7), SPATIALLY
-// VARYING SURFACES; [McAllister2002] 4.1 and 6.1
+// Shading of spatially varying surfaces under lights and a prefiltered environment.
+// goniochrome-surfaces(7), "SPATIALLY VARYING SURFACES"; [McAllister2002] 4.1 and 6.1
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ struct MipCube {
 // that makes them.
 Result<MipCube> mip_cube(const envmap::PrefilteredEnvironment& env);
 
-// What textures are seen in, and how much of them.
+// The light in which textures are seen, and its share.
 struct SbrdfLight {
   bool environment = true;  // as far as there is one
   std::vector<Light> lights = {};

@@ -1,4 +1,4 @@
-// What pixels show of textures before any light falls on it.
+// The values of textures in pixels, before any light falls on it.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace goniochrome::render {
 
-// What a band of rows of a picture shows of textures: the points of each texture or level together, and for each the
-// texels that it shows.
+// The textures in a band of rows of a picture: the points of each texture or level together, and for each the texels
+// that it shows.
 struct SeenBand {
   struct Point {
     std::uint32_t place = 0;  // its number among the places
@@ -31,8 +31,8 @@ struct SeenBand {
   std::size_t bytes() const;
 };
 
-// What the pixels of a view show of textures. From the second picture of a view on it is kept, as far as there is room,
-// so that a picture in other light takes no more than the shading of the texels. Most views are drawn once, and keeping
+// The textures in the pixels of a view. From the second picture of a view on it is kept, as far as there is room, so
+// that a picture in other light takes no more than the shading of the texels. Most views are drawn once, and keeping
 // what they show would take time and memory for nothing.
 class SeenPixels {
  public:

@@ -1,5 +1,5 @@
 // Minification of textures: a pixel that covers many texels shows their mean, which is shaded at some places of a
-// coarser map. goniochrome-theory(7), SPATIALLY VARYING SURFACES, Minification.
+// coarser map. goniochrome-surfaces(7), "Minification".
 #pragma once
 
 #include <cstddef>
@@ -45,8 +45,8 @@ struct FilterProbes {
 FilterProbes filter_probes(const TexturePlace& place, double scale, int width, int height, int levels);
 // The probe of this number.
 TexturePlace probe_place(const TexturePlace& place, double scale, const FilterProbes& probes, int number);
-// Whether a footprint lies between the middles of texels that are neighbors, where it has no edge. Its mean is then
-// the value in its middle, but for the small part of the blend that is bilinear.
+// True if a footprint lies between the middles of texels that are neighbors, where it has no edge. Its mean is then the
+// value in its middle, but for the small part of the blend that is bilinear.
 bool is_between_texels(const TexturePlace& place, double scale, int width, int height);
 
 // The texels that the probes of a footprint show, each once, with the part that it has of the whole. All probes of a

@@ -23,7 +23,7 @@ TexturePlace footprint(double u, double v, double across, double down, double an
   return place;
 }
 
-// What a texel of so many contributes to a pixel's mean, by a fine grid.
+// The contribution of a texel of so many to a pixel's mean, by a fine grid.
 double true_share(const TexturePlace& place, std::size_t texel) {
   constexpr int kSteps = 80;
   const FilterProbes grid{0, kSteps, kSteps};

@@ -1,5 +1,4 @@
-// Where on its texture each pixel lies, for the parts that have one. goniochrome-theory(7), SPATIALLY VARYING SURFACES,
-// Drawing.
+// Where on its texture each pixel lies, for the parts that have one. goniochrome-surfaces(7), "Drawing".
 #pragma once
 
 #include <array>
@@ -26,10 +25,10 @@ class TextureLayout {
   // The places of what a G-buffer of the mesh shows, pixel by pixel; those of other parts, and of nothing, are left at
   // 0, and so are footprints. The G-buffer must have triangles. Bit-identical for any number of threads.
   std::vector<TexturePlace> places(const Gbuffer& gbuffer) const;
-  // The same with footprints, which takes longer. Their middles, which become the places, lie so far from
-  // the points, in pixels to the right and downward.
+  // Places with footprints, which take longer. Their middles, which become the places, lie so far from the points, in
+  // pixels to the right and downward.
   std::vector<TexturePlace> filtered_places(const Gbuffer& gbuffer, const std::array<double, 2>& middle = {}) const;
-  // That of one pixel, which shows one of the parts, with its footprint.
+  // The place of one pixel, which shows one of the parts, with its footprint.
   TexturePlace place(const Gbuffer& gbuffer, int x, int y) const;
 
   // The place of a point of the mesh, of which the triangle and the shares are read. The triangle is one of a part that

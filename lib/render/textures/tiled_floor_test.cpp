@@ -62,10 +62,10 @@ class TiledFloor : public TexturedScene {
   }
 };
 
-// The same picture with 256 samples a pixel is the truth, whose own noise is .1 to .3; one sample without the filter is
-// the control (2.6 to 30). Metal that is brushed in all directions within a few texels is the hardest surface that
-// there is for a level, under a lamp moreover. With one probe a texel, 1.4 were left of 8 x 4 texels that are about as
-// large as pixels, 4.3 of 5 x 3 and 3.8 of 16 x 16 whose directions and lobes are random; of the last, 1.3 are left.
+// A picture with 256 samples a pixel is the truth, whose own noise is .1 to .3; one sample without the filter is the
+// control (2.6 to 30). Metal that is brushed in all directions within a few texels is the hardest surface that there is
+// for a level, under a lamp moreover. With one probe a texel, 1.4 were left of 8 x 4 texels that are about as large as
+// pixels, 4.3 of 5 x 3 and 3.8 of 16 x 16 whose directions and lobes are random; of the last, 1.3 are left.
 TEST_F(TiledFloor, OneFilteredSampleIsNearerToManyWithout) {
   struct Floor {
     int width, height, size;  // each texel becomes `size` along each side

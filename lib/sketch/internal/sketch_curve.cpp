@@ -57,7 +57,7 @@ SketchCell robust_mean(const SketchSample* samples, std::size_t count) {
   return cell;
 }
 
-// What reweighted least squares needs of a cell: weights that turn each channel's residual into lightness.
+// The data of a cell for reweighted least squares: weights that turn each channel's residual into lightness.
 struct Weighing {
   std::vector<color::Rgb> lightness;  // dL*/dv of each channel
   std::vector<double> count;          // 0..1
@@ -156,8 +156,8 @@ constexpr int kLobeColumns = 1 + 9 + 6;
 constexpr double kShownFrom_deg = 15;  // the curve is asked for from here on
 constexpr double kMostGrowth = 2;      // of a lobe from the first angle seen to the first asked for
 
-// Whether the angles seen tell the weight of a lobe this sharp. A lobe that is nearly 0 at all of them could take any
-// weight, and would follow the noise of the first cells up to any color.
+// True if the angles seen determine the weight of a lobe this sharp. A lobe that is nearly 0 at all of them could take
+// any weight, and would follow the noise of the first cells up to any color.
 bool is_lobe_seen(double exponent, double from_deg) {
   return kMostGrowth * lobe_at(from_deg, exponent) >= lobe_at(std::min(from_deg, kShownFrom_deg), exponent);
 }

@@ -1,5 +1,5 @@
 // The color of a paint against aspecular angle, from the pixels of a picture under one point light.
-// [Shimizu2009] 3.7.3, goniochrome-theory(7), SKETCH FITTING.
+// [Shimizu2009] 3.7.3, goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace goniochrome::sketch {
 
-// What many pixels of nearly the same angles show, without the outliers among them.
+// The common color of many pixels of nearly the same angles, without the outliers among them.
 struct SketchCell {
   double aspecular_deg = 0, cos_i = 0, count = 0;
   color::Rgb seen;      // light relative to a white that faces the lamp
@@ -43,14 +43,14 @@ struct SketchCurve {
   color::Rgb diffuse;
   std::vector<double> exponents;
   std::vector<color::Rgb> flake, glare;
-  // Of the coat that these flake weights are lit through; reflectance() is then as an instrument reads it.
+  // The index of the coat that these flake weights are lit through; reflectance() is then as an instrument reads it.
   double coat_index = paint::kNoCoat;
 
   color::Rgb reflectance(double aspecular_deg) const;
   color::Rgb gloss(double aspecular_deg) const;
 };
 
-// What a coat leaves of the base's light where an instrument reads that aspecular angle, see
+// The share of the base's light that a coat leaves where an instrument reads that aspecular angle, see
 // brdf::flake_reflectance_factor().
 double instrument_passages(double aspecular_deg, double coat_index);
 

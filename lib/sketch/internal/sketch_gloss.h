@@ -1,5 +1,5 @@
 // The gloss of paint in a picture: by the contrast of a highlight, and by its shape. [Shimizu2009] 3.5.3
-// goniochrome-theory(7), SKETCH FITTING.
+// goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
 #include <optional>

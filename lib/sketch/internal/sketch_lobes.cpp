@@ -172,7 +172,7 @@ std::vector<FreeLobeFit::Unknown> FreeLobeFit::unknowns(bool free_gloss) const {
   return all;
 }
 
-// What weight 1 of an unknown adds to a sample's light.
+// The light that weight 1 of an unknown adds to a sample.
 Vec3 FreeLobeFit::effect(const Unknown& unknown, std::size_t sample) const {
   const Vec3& light = samples_.columns_of(sample)[unknown.column];
   if (unknown.channel == 3) return light;  // the operator is coherent
@@ -191,8 +191,8 @@ double FreeLobeFit::cost(const std::vector<color::Rgb>& weights, std::vector<dou
   return robust_cost(r, samples_.importance);
 }
 
-// The weights >= 0 of least squares in Lab, linear about what is seen (`first`) or about what the weights `at` show.
-// Outliers there count little.
+// The weights >= 0 of least squares in Lab, linear about the observed color (`first`) or about that of the weights
+// `at`. Outliers there count little.
 std::vector<color::Rgb> FreeLobeFit::solved(const std::vector<color::Rgb>& at, const std::vector<double>& r,
                                             bool free_gloss, bool first) const {
   const std::vector<Unknown> unknown = unknowns(free_gloss);

@@ -1,5 +1,5 @@
-// What a search for a picture's paint looks at, and the lobes that explain it best, whatever curve they make.
-// goniochrome-theory(7), SKETCH FITTING.
+// The samples for the search of a picture's paint, and the lobes that explain them best, whatever curve they make.
+// goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
 #include <optional>
@@ -34,7 +34,7 @@ struct PaintWeights {
   Mixed mixed_at(double view_deg) const;
 };
 
-// What was seen, and the light of each part of the lobe model with weight 1 (1/sr) there, all relative to white.
+// The observed colors, and the light of each part of the lobe model with weight 1 (1/sr) there, all relative to white.
 struct SearchSamples {
   std::size_t columns = 0;  // K_D, then K_DD and K_G of every lobe of the basis, then the mirror
   std::vector<Vec3> light;  // `columns` for each sample
@@ -49,7 +49,7 @@ struct SearchSamples {
   const Vec3* columns_of(std::size_t sample) const { return &light[sample * columns]; }
   // The light of a sample as the picture could show it.
   color::Lab shown(const color::Rgb& rgb) const;
-  // What the paint shows there.
+  // The color of the paint there.
   color::Lab shown_by(const PaintWeights& weights, std::size_t sample) const;
 };
 
@@ -93,7 +93,7 @@ class FreeLobeFit {
   // The best from that start, with its gloss.
   FreeLobes refined(const FreeLobes& start) const;
 
-  // The same, and the best gloss about that of the start where the mirror has a share of it. Elsewhere gloss is known
+  // The lobes with the best gloss about that of the start where the mirror has a share of it. Elsewhere gloss is known
   // to no better than a part of a unit, and a flat search would only drift.
   FreeLobes sharpened(const FreeLobes& start) const;
 

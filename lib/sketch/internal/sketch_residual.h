@@ -1,4 +1,4 @@
-// How far a picture is from the paint found, pixel by pixel and by angle. goniochrome-theory(7), SKETCH FITTING.
+// How far a picture is from the paint found, pixel by pixel and by angle. goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
 #include <cstdint>

@@ -121,7 +121,7 @@ inline SketchFit fit(const SketchInput& i) {
   return sketch_point(i, *sketch_pixels(i), basis(), {}, false);
 }
 
-// The largest CIEDE2000 at 15, 45 and 110 deg between what was found and what was planted.
+// The largest CIEDE2000 at 15, 45 and 110 deg between the paint found and the planted one.
 inline double worst_de00(const SketchFit& found, const paint::Appearance& planted) {
   double worst = 0;
   for (const paint::LabReading& row : found.rows)

@@ -77,9 +77,9 @@ std::vector<double> appearance_of(const std::vector<double>& rows) {
   return {a.face.L, a.face.a, a.face.b, a.flop.L, a.flop.a, a.flop.b, a.travel_deg, rows.back()};
 }
 
-// What differs from picture to picture least, and where a search of paints by gloss and travel begins: a paint read off
-// lobes of any weight, a neutral silver of medium gloss, the start of [Shimizu2009] 3.7.5, and that paint with some and
-// much gloss, since wide gloss lobes look like flake.
+// Starts of a search of paints by gloss and travel, which differ least from picture to picture: a paint read off lobes
+// of any weight, a neutral silver of medium gloss, the start of [Shimizu2009] 3.7.5, and that paint with some and much
+// gloss, since wide gloss lobes look like flake.
 std::vector<std::vector<double>> first_starts(const std::vector<double>& read_off) {
   std::vector<std::vector<double>> all = {read_off, {80, 0, 0, 30, 0, 0, 60, 50}, read_off, read_off};
   all[2].back() = 20, all[3].back() = 90;

@@ -1,5 +1,5 @@
 // Paints whose lobes make given lights look as a picture shows them.
-// [Shimizu2009] 3.7.5, goniochrome-theory(7), SKETCH FITTING.
+// [Shimizu2009] 3.7.5, goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
 #include <optional>
@@ -59,7 +59,7 @@ class LobeSearch {
   // The cost of a paint found, with another gloss (gloss units).
   double cost_with_gloss(const FoundPaint& found, double gloss) const;
 
-  // Whether a paint found explains the samples as well with another gloss (gloss units). The samples that show both
+  // True if a paint found explains the samples as well with another gloss (gloss units). The samples that show both
   // alike cannot tell them apart, however many there are, so that the others alone are asked.
   bool explains_as_well(const FoundPaint& found, double gloss) const;
 

@@ -85,7 +85,7 @@ TEST(LobeSearch, ASolidWhoseCoatTakesItsReadingsIsFoundByItsViews) {
   }
 }
 
-// The same under one lamp, 25 to 110 deg from specular, from viewers at any angle. A lamp lights no mirror image, and
+// A solid under one lamp, 25 to 110 deg from specular, from viewers at any angle. A lamp lights no mirror image, and
 // gloss passes for flake there, so that the rows alone are asked for. The control is as above.
 TEST(LobeSearch, UnderALampASolidIsFoundByItsViewsAsWell) {
   std::mt19937_64 random(22);

@@ -1,4 +1,4 @@
-// The small solvers behind sketch fitting. goniochrome-theory(7), SKETCH FITTING.
+// The small solvers behind sketch fitting. goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
 #include <functional>

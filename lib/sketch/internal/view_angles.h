@@ -18,7 +18,7 @@ class ViewAngles {
     if (normal.ok() && buffers.has_rays) normal_ = *normal;
   }
 
-  // Whether the buffers have normals and the rays of the camera.
+  // True if the buffers have normals and the rays of the camera.
   bool are_known() const { return normal_ >= 0; }
 
   // In degrees, 0 to 90. Only where they are known.

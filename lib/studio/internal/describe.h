@@ -1,4 +1,4 @@
-// What a page shows of a paint in numbers, curves and colors.
+// The description of a paint on a page in numbers, curves and colors.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ std::string css_color(const color::Lab& lab, const color::ViewingCondition& cond
 // of a* and b* at the lightness of the face. Error: a paint without color, or of an unknown illuminant.
 Result<Json> description(const paint::Paint& paint);
 
-// What the lobes of a paint show at the angles of a curve: a list of angle and lab.
+// The colors of the lobes of a paint at the angles of a curve: a list of angle and lab.
 Json curve_json(const paint::LobeFit& fit, const color::ViewingCondition& condition);
 
 }  // namespace goniochrome::studio

@@ -19,7 +19,7 @@ char lower(char c) {
   return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
 }
 
-// Whether `text` holds `part`, which is in lower case; letters beyond ASCII are compared as they are.
+// True if `text` holds `part`, which is in lower case; letters beyond ASCII are compared as they are.
 bool holds(std::string_view text, std::string_view part) {
   return std::ranges::search(text, part, [](char x, char y) { return lower(x) == y; }).begin() != text.end() ||
          part.empty();

@@ -1,4 +1,4 @@
-// A traced view beside a page: the picture of every paint on it. goniochrome-theory(7), TRANSPORT.
+// A traced view beside a page: the picture of every paint on it. goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
 #include <cstddef>

@@ -56,7 +56,7 @@ def by_view(fit, view_deg):
 
 
 def lobes(path, name, light, view):
-    """f of a paint in Rec.2020: goniochrome-theory(7), LOBE MODEL."""
+    """f of a paint in Rec.2020: goniochrome-lobes(7), "LOBE MODEL"."""
     paint = next(p for p in xml.etree.ElementTree.parse(path).iter(SPACE + "paint") if p.get("name") == name)
     fit, coat = paint.find(SPACE + "lobes"), paint.find(SPACE + "coat")
     def three(node, names):

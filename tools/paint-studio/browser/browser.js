@@ -102,7 +102,7 @@ class Browser {
     for (let i = 1; i <= steps; ++i) await this.mouse("mouseMoved", x + (dx * i) / steps, y + (dy * i) / steps);
     await this.mouse("mouseReleased", x + dx, y + dy);
   }
-  // The same by a finger.
+  // A drag by a finger.
   async touchDrag(from, to, steps = 5) {
     const touch = (type, points) => this.send("Input.dispatchTouchEvent", { type, touchPoints: points });
     await touch("touchStart", [from]);

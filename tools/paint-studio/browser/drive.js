@@ -1,4 +1,4 @@
-// What the scripts share that drive a page: they open it, note what does not hold, and end with what was wrong.
+// Parts that the scripts share that drive a page: they open it, note what does not hold, and end with what was wrong.
 "use strict";
 const path = require("node:path");
 const { pathToFileURL } = require("node:url");

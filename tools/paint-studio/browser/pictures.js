@@ -118,7 +118,7 @@ async function main() {
     const middle = (list) => list.sort((a, b) => a - b)[list.length >> 1];
     return { edit_to_picture_ms: middle(all), fit_ms: middle(fits) };
   })()`);
-  // The same in the page as a whole, whose view has come to rest: all that an edit changes beside the small pictures.
+  // The times in the page as a whole, whose view has come to rest: all that an edit changes besides the small pictures.
   const settled = await browser.evaluate(`(async () => {
     const { stageView, stage } = studio, view = stageView, all = [], frame = () => new Promise(requestAnimationFrame);
     view.canvas.style.width = "${width}px";
@@ -141,8 +141,8 @@ async function main() {
     }
     return { settled_ms: all.sort((a, b) => a - b)[2], settled_size: [view.canvas.width, view.canvas.height], layers_drawn: ready() ? stage.gathered.held.drawn.size : 0, layer_bytes: stage.gathered.bytes };
   })()`);
-  // The same as a designer meets it: a handle that moves, until the picture of its frame is drawn, with as many pixels as
-  // the page takes for this computer; the pixels are read back here too.
+  // The time that a designer meets: a handle that moves, until the picture of its frame is drawn, with as many pixels as the page takes for
+  // this computer; the pixels are read back here too.
   const dragged = await browser.evaluate(`(async () => {
     const view = studio.stageView, all = [], frame = () => new Promise(requestAnimationFrame);
     studio.tiles.stop();

@@ -140,7 +140,7 @@ drive("the picture answers", { width: 1400, height: 720 }, async ({ browser, val
     return [sum(0, 80, apart(both, own)), sum(80, 160, apart(both, other)), sum(0, 160, apart(own, other))];
   })()`);
   check("each side shows its paint: " + sides, sides[0] === 0 && sides[1] === 0 && sides[2] > 1);
-  // The same two paints from gathered light; a step of a channel is what rounding may change.
+  // The two paints from gathered light; a step of a channel is what rounding may change.
   const gathered = await value(`(() => {
     const { stageView, stage } = studio, gl = stage.gl, view = [stageView.camera, 320, 180, stageView.weights, stageView.environment];
     const pixels = () => {

@@ -33,7 +33,7 @@ drive("the views were looked at", { width: 1000, height: 1000 }, async ({ browse
   await drawn();
   check("dragging does not turn it", (await canvas()) === before && (await value("document.getElementById('drag-hint').textContent")).includes("stay as they are"));
 
-  // What is under the pointer, and the cross whose buttons change the color there.
+  // The surface under the pointer, and the cross whose buttons change the color there.
   await value("(() => { const drag = document.querySelector('input[value=color]'); drag.checked = true; drag.dispatchEvent(new Event('change')); })()");
   const angle = await value(`(() => {
     for (let y = 0.45; y < 0.8; y += 0.02)

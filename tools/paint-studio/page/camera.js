@@ -36,7 +36,7 @@ function cameraOf(view) {
            fov: view.fov };
 }
 
-// The same camera for a picture of another shape: one that is narrower than 16:9 shows as much of the width.
+// The camera for a picture of another shape: one that is narrower than 16:9 shows as much of the width.
 function widened(camera, aspect) {
   const tangent = Math.tan((camera.fov * Math.PI) / 360) * Math.max(1, 16 / 9 / aspect);
   return { ...camera, fov: (Math.atan(tangent) * 360) / Math.PI };

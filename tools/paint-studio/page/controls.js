@@ -21,7 +21,7 @@ function drawn(tag, attributes = {}, text = null) {
 const rounded = (value, digits = 2) => Number(value.toFixed(digits));
 const clamped = (value, low, high) => Math.min(high, Math.max(low, value));
 
-// What is dragged, by mouse, pen or touch: begin() and move() get the event, end() comes when it is let go.
+// An element that is dragged, by mouse, pen or touch: begin() and move() get the event, end() comes when it is let go.
 function draggable(element, { begin, move, end }, button = 0) {
   element.addEventListener("pointerdown", (event) => {
     if (event.button !== button) return;
@@ -126,7 +126,7 @@ class NumberControls {
     }
   }
 
-  // What the screen does not show of an end, and a button that takes the nearest that it shows.
+  // The part of an end that the screen does not show, and a button that takes the nearest color that it shows.
   lossOf(end, { de00, nearest }) {
     const [, a, b] = nearest.map((value) => value.toFixed(1));
     const take = () => this.app.commit({ [end]: nearest.map((value) => rounded(value)), ...this.residual() });

@@ -1,7 +1,7 @@
 // The project's own C++, compiled to WebAssembly: every color and every number of this page comes from there.
 "use strict";
 
-// What the compiled library imports of WASI. It reads the clock for the time of a fit; there are no files.
+// The functions that the compiled library imports of WASI. It reads the clock for the time of a fit; there are no files.
 function wasiImports(memoryOf) {
   const view = () => new DataView(memoryOf().buffer);
   return {

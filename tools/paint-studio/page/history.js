@@ -1,5 +1,6 @@
-// What the designer did. A state holds the paint that it began with, the edits since then, and the paint that they made.
-// The first is the number `start` of a paint of the library, or `own`, {file, paint}, of a file that was opened. Undo and redo go from state to state, without limit.
+// The history of the designer's edits. A state holds the paint that it began with, the edits since then, and the paint that they made. The
+// first is the number `start` of a paint of the library, or `own`, {file, paint}, of a file that was opened. Undo and redo go from state to
+// state, without limit.
 
 const saidState = ({ start, own, steps, name, code }) => ({ ...(own ? { own } : { start }), steps, ...(name !== undefined && { name }), ...(code !== undefined && { code }) });
 
@@ -22,7 +23,7 @@ class EditHistory {
   }
   undo() { if (this.canUndo) --this.at; }
   redo() { if (this.canRedo) ++this.at; }
-  // As it is saved: a state that goes on from the one before it is its last edit alone.
+  // The history as it is saved: a state that goes on from the one before it is its last edit alone.
   saved() {
     return { at: this.at, states: this.states.map((state) => (state.goesOn ? { edit: state.steps.at(-1), name: state.name, code: state.code } : saidState(state))) };
   }

@@ -1,6 +1,6 @@
 // The light of a view, kept in layers: what each slot of weights meets at every pixel. While the view and the light stay,
 // the picture of a paint is a sum of its weights times these layers, with no look-up in maps and no sum over lamps.
-// goniochrome-theory(7), RENDERING, Layers.
+// goniochrome-rendering(7), "Layers".
 
 const mostLayerBytes = 96e6;
 // Wide lobes look a little beside the mirror direction, by as much as their gloss and their flakes call for. A layer is drawn
@@ -29,7 +29,7 @@ class GatheredLight {
   // How many layers of pictures of this size may be kept.
   capacity(width, height) { return Math.min(this.layers.list.length + 1, Math.floor(mostLayerBytes / (8 * width * height))); }
 
-  // Whether any row of these weights has numbers in a slot. The last number of a lamp's color is no weight.
+  // True if any row of these weights has numbers in a slot. The last number of a lamp's color is no weight.
   isUsed({ slot, lamps }, values) {
     const ends = lamps ? [0, 1, 2, 4, 5, 6] : [0, 1, 2, 3, 4, 5, 6, 7], row = 4 * this.stage.columns;
     for (let begin = 0; begin < values.length; begin += row)
@@ -46,7 +46,7 @@ class GatheredLight {
     return this.known.list;
   }
 
-  // What a layer depends on of a paint: by how much its lobe looks beside the mirror direction, for each segment.
+  // The shifts that a layer depends on: by how much its lobe looks beside the mirror direction, for each segment.
   shiftsOf({ shift }, { values }) {
     if (!shift) return [];
     const [slot, channel] = shift;
@@ -56,15 +56,15 @@ class GatheredLight {
     const known = this.held.drawn.get(layer.slot);
     return known !== undefined && this.shiftsOf(layer, weights).every((shift, i) => Math.abs(shift - known[i]) <= shiftTolerance);
   }
-  // What all layers depend on of a paint: the index of its coat and its tilted normals.
+  // The values of a paint that all layers depend on: the index of its coat and its tilted normals.
   ownOf({ values, tiltValues }) { return [values[this.numbersAt(this.layers.light_slot, 0) + 3], ...(tiltValues ?? [])].join(" "); }
-  // What they depend on beside the paint.
+  // The key of everything else that they depend on.
   keyOf(camera, width, height, environment) {
     const { lamp, ground, turn } = this.stage;
     return JSON.stringify([width, height, camera, turn, environment, lamp, ground]);
   }
 
-  // Whether layers of this view in this light are kept that show a paint, but for a few that are drawn in its place.
+  // True if layers of this view in this light are kept that show a paint, but for a few that are drawn in its place.
   serves(key, weights, environment) {
     const { held } = this;
     if (!held || held.key !== key || held.own !== this.ownOf(weights) || !held.drawn.has(this.layers.beside)) return false;
@@ -120,7 +120,7 @@ class GatheredLight {
     held.places.set(slot, place);
     return place;
   }
-  // What a layer is divided by, so that halves can hold it.
+  // The divisor of a layer, so that halves can hold it.
   scaleOf({ sampler, lamps, slot }, environment, program) {
     const cube = this.stage.data.environments[environment].cubes.find((one) => one.sampler === sampler);
     if (!lamps) return cube ? cube.scale : 1;

@@ -309,7 +309,7 @@ class App {
     list.value = value;
     this.compare(value);
   }
-  // What the paint can be compared with, anew after the history or the palette changed.
+  // The choices for a comparison with the paint, anew after the history or the palette changed.
   showChoices() {
     const list = document.getElementById("compare"), group = (label, options) => options.length > 0 && list.append(made("optgroup", { label }, options));
     const option = (value, text) => made("option", { value, text });
@@ -337,7 +337,7 @@ class App {
       ...rows.flatMap(([name, value]) => [made("dt", { text: name }), made("dd", { text: value })]));
   }
 
-  // What a link holds: the design, by the library's paint and the edits, and how it is seen.
+  // The contents of a link: the design, by the library's paint and the edits, and how it is seen.
   linked() {
     const { start, steps, own, name, code } = saidState(this.history.now), { view, environment, stops, lamp, stage } = this.stageView;
     return JSON.stringify({ start, of: own ? undefined : this.library.paint(start).name, own, steps, name, code, view, environment, stops, lamp, turn: stage.turn });

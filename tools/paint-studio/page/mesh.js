@@ -7,7 +7,7 @@ function bytesOf(base64) {
   return bytes;
 }
 
-// What an element of the page held, which is then no longer kept.
+// The contents of an element of the page, which is then no longer kept.
 function taken(id) {
   const element = document.getElementById(id), text = element.textContent;
   element.remove();

@@ -94,7 +94,7 @@ class Pictures {
     this.show();
     if (keep) this.app.store();
   }
-  // As a session has them: pictures as the files that they came in, and droppers by the numbers of board and picture.
+  // The pictures as a session has them: as the files that they came in, and droppers by the numbers of board and picture.
   saved() {
     const places = new Map();
     this.boards.forEach((board, b) => board.pictures.forEach((picture, i) => places.set(picture, [b, i])));

@@ -1,5 +1,5 @@
-// The picture: the mesh under prefiltered light, drawn by the project's own programs in WebGL 2. goniochrome-theory(7),
-// RENDERING.
+// The picture: the mesh under prefiltered light, drawn by the project's own programs in WebGL 2.
+// goniochrome-rendering(7), "RENDERING".
 
 class Stage {
   // Throws a sentence where the browser cannot draw the page.
@@ -93,9 +93,9 @@ class Stage {
     return texture;
   }
 
-  // What the programs read of the paint that the engine fitted last: {texture, tilts, values, tiltValues, version}, in the
-  // place of `made` where that is given. The texture has its weights, which are `values`, and those of the finishes below.
-  // `tilts` is null where it is not brushed. No two paints have the same version.
+  // The weights of the paint that the engine fitted last, for the programs: {texture, tilts, values, tiltValues, version}, in the place of
+  // `made` where that is given. The texture has its weights, which are `values`, and those of the finishes below. `tilts` is null where it
+  // is not brushed. No two paints have the same version.
   weights(engine, made = null) {
     const gl = this.gl, tilts = engine.list("tilts"), values = engine.list("weights");
     if (made === null) {
@@ -197,7 +197,7 @@ class Stage {
     return made;
   }
 
-  // What is visible at one point of every pixel. It is drawn again only where the view changed.
+  // The visible points of every pixel at one sample. It is drawn again only where the view changed.
   gbuffer(name, camera, width, height, shift) {
     const gl = this.gl, target = this.target("gbuffer " + name, width, height, gl.RGBA32F, true);
     const key = JSON.stringify([camera, shift, this.turn]);
@@ -332,8 +332,7 @@ class Stage {
     if (overlay) this.drawOver(gbuffer, overlay);
   }
 
-  // The same from gathered light, where that is kept for this view and this light; else it draws nothing. Returns whether it
-  // drew.
+  // The picture from gathered light, where that is kept for this view and this light; else it draws nothing. Returns whether it drew.
   drawGathered(name, camera, width, height, weights, environment, stops, overlay = null) {
     const own = weights.left ?? weights, key = this.gathered.keyOf(camera, width, height, environment);
     if (this.gathered.held && this.gathered.held.key !== key) this.gathered.drop();
@@ -384,8 +383,8 @@ class Stage {
     gl.disable(gl.BLEND);
   }
 
-  // What is seen at a place of the picture, 0..1 from its upper left corner: the normal and the direction to the viewer,
-  // as the environment sees them, and whether it wears the paint; null beside the mesh. The buffer that tells it is kept while the view stays.
+  // The surface at a place of the picture, 0..1 from its upper left corner: the normal and the direction to the viewer, as the environment
+  // sees them, and whether it wears the paint; null beside the mesh. The buffer that tells it is kept while the view stays.
   surfaceAt(camera, aspect, x, y) {
     const gl = this.gl, width = 640, height = Math.round(width / aspect), known = this.surface;
     const gbuffer = this.gbuffer("surface", camera, width, height, [0, 0]);
@@ -438,7 +437,7 @@ class Stage {
     const gbuffer = this.gbuffer("tile", camera, width, height, [0, 0]);
     return this.pixels(this.shade("tile", gbuffer, weights, environment, false), this.environment(environment).white, stops);
   }
-  // What a screen shows of a picture, as pixels of a canvas.
+  // The pixels of a picture on a screen, as those of a canvas.
   pixels(radiance, white, stops) {
     const gl = this.gl, { width, height } = radiance, target = this.target("tile screen", width, height, gl.RGBA8, false);
     this.display(radiance, 1, white, stops, target.framebuffer);
@@ -455,7 +454,7 @@ class Stage {
     const gbuffer = this.gbuffer("radiance", camera, width, height, [0, 0]);
     return this.valuesOf(this.shade("radiance", gbuffer, weights, environment, false));
   }
-  // The same from gathered light, which is gathered for it.
+  // The radiance from gathered light, which is gathered for it.
   gatheredRadiance(camera, width, height, weights, environment) {
     const gbuffer = this.gbuffer("radiance", camera, width, height, [0, 0]);
     const key = this.gathered.keyOf(camera, width, height, environment);

@@ -1,5 +1,5 @@
-// What the pointer and the keyboard do on the picture, and what is read under them: the aspecular angle, the color that
-// the paint has there, and a cross with buttons that move that color. [Shimizu2009] 3.6
+// The actions of the pointer and the keyboard on the picture, and the values under them: the aspecular angle, the color that the paint has
+// there, and a cross with buttons that move that color. [Shimizu2009] 3.6
 
 const dragKinds = {
   view: "Dragging goes around the mesh; arrow keys do so too.",
@@ -25,7 +25,7 @@ class Surface {
     this.canvas.addEventListener("keydown", (event) => this.key(event));
   }
 
-  // Whether dragging would move the camera or the light of a traced view, which stay.
+  // True if dragging would move the camera or the light of a traced view, which stay.
   get fixed() { return this.app.stageView.traced !== null && ["view", "light", "lamp"].includes(this.kind); }
 
   setKind(kind) {
@@ -125,7 +125,7 @@ class Surface {
     }
     return null;
   }
-  // The same over the surface: the lamp goes to where its highlight is seen there; travel and gloss end there.
+  // The drag over the surface: the lamp goes to where its highlight is seen there; travel and gloss end there.
   draggedTo(seen) {
     if (this.kind === "lamp") {
       const { azimuth, elevation } = anglesOf(turnedAgainst(seen.mirror, -this.app.stageView.stage.turn));

@@ -52,7 +52,7 @@ class TracedViews {
     return stage.pixels({ texture: this.tileTexture, width, height }, this.list[number].white, stops);
   }
 
-  // What is said of a view beside the picture.
+  // The text about a view beside the picture.
   text(number) {
     const parts = [`This view was traced: shadows, ${this.list[number].floor ? "the floor " : ""}and the light that parts send to each other are in it. Its camera and its light stay as they are.`];
     if (this.answer?.scaled) {

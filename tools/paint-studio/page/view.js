@@ -128,7 +128,7 @@ class StageView {
     }
     this.showTraced();
   }
-  // What is said of a traced view.
+  // The text about a traced view.
   showTraced() {
     const place = document.getElementById("traced-text"), text = this.traced === null ? "" : this.app.traced.text(this.traced);
     place.hidden = this.traced === null;
@@ -201,7 +201,7 @@ class StageView {
     const usual = this.app.data.mesh.view.distance;
     this.look({ ...this.view, distance: clamped(this.view.distance * factor, 0.05 * usual, 4 * usual) }, moving);
   }
-  // Moves what the camera goes around, by pixels of the window: what is at the target follows the pointer.
+  // Moves the target of the camera, by pixels of the window: the surface at the target follows the pointer.
   pan(view, dx, dy) {
     if (this.traced !== null) return;
     const { fov } = this.camera, pixel = (2 * view.distance * Math.tan((fov * Math.PI) / 360)) / this.canvas.clientHeight;
@@ -367,8 +367,8 @@ class StageView {
     });
   }
 
-  // What is seen under a place of the window: null beside the mesh. `angle` is the aspecular angle to the light,
-  // and what is `lit` wears the paint.
+  // The surface under a place of the window: null beside the mesh. `angle` is the aspecular angle to the light, and what is `lit` wears the
+  // paint.
   pointAt(clientX, clientY) {
     const box = this.canvas.getBoundingClientRect();
     const seen = this.stage.surfaceAt(this.camera, box.width / box.height, (clientX - box.left) / box.width,

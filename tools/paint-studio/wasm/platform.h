@@ -1,4 +1,4 @@
-// What WebAssembly has in the place of files and threads.
+// The replacements for files and threads in WebAssembly.
 #pragma once
 
 #include <string>
