@@ -10,8 +10,8 @@
 
 #ifdef __SANITIZE_ADDRESS__
 // Leaks that the address sanitizer shall not report: Mesa keeps its window buffers and its compiled code until the
-// process ends, and the C library keeps the catalogs of a locale. It says nothing about them, because tests compare
-// what tools print. This stands here because every program uses this file.
+// process ends, and the C library keeps the catalogs of a locale. The check keeps silent about them, because tests
+// compare what tools print. This stands here because every program uses this file.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libOSMesa.so\nleak:libLLVM\nleak:argz_add_sep";
 }

@@ -41,7 +41,7 @@ class Statements {
  public:
   Statements(std::string_view text, std::size_t lines_before) : text_(text), line_(lines_before) {}
 
-  // True if there was one more. It is valid until the next call.
+  // True if there was one more. The statement is valid until the next call.
   bool next(std::string_view& statement) {
     if (at_ >= text_.size()) return false;
     std::string_view line = next_line();

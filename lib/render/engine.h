@@ -52,7 +52,7 @@ struct Noise {
 class Sight {
  public:
   virtual ~Sight() = default;
-  // The visible points of this sample of every pixel. It is rasterized when it is first asked for, and kept if there is
+  // The visible points of this sample of every pixel. They are rasterized when first asked for, and kept if there is
   // room. Positions on the mesh follow from it by mesh_point().
   virtual std::shared_ptr<const Gbuffer> gbuffer(int sample) = 0;
   // Where the pixels of that G-buffer lie on the textures of the scene; empty where the scene has none.

@@ -86,7 +86,7 @@ PlaneHit plane_hit(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& o
 // plane, the middle of the triangle.
 MeshPoint mesh_point(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction);
 
-// The point of the mesh that a pixel of the G-buffer shows. It must show something, and the G-buffer must have
+// The point of the mesh that a pixel of the G-buffer shows. The pixel must show something, and the G-buffer must have
 // triangles.
 MeshPoint mesh_point(const mesh::Mesh& mesh, const Gbuffer& gbuffer, int x, int y);
 

@@ -5,8 +5,8 @@
 
 namespace goniochrome::capture {
 
-// Likely values of the shapes: the nearer, the smaller the standard deviations. It decides what the photographs leave
-// open.
+// Likely values of the shapes: the nearer, the smaller the standard deviations. They decide where the photographs leave
+// a shape open.
 struct ShapePrior {
   LobeShapes center;
   double log_exponent = 2, axes = 1;  // standard deviations

@@ -105,7 +105,7 @@ class Transport {
   static Result<Transport> create(const PathScene& scene);
 
   const rays::RayScene& rays() const { return *rays_; }
-  // The surfaces that cameras see: those of rays(), and panes as well. Its triangles are those of rays().
+  // The surfaces that cameras see: those of rays(), and panes as well. Their triangles are those of rays().
   const rays::RayScene& eye() const { return eye_ != nullptr ? *eye_ : *rays_; }
   // True if a ray of a camera meets a pane there.
   bool meets_pane(const rays::Hit& hit) const {

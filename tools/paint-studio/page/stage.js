@@ -197,7 +197,7 @@ class Stage {
     return made;
   }
 
-  // The visible points of every pixel at one sample. It is drawn again only where the view changed.
+  // The visible points of every pixel at one sample. They are drawn again only where the view changed.
   gbuffer(name, camera, width, height, shift) {
     const gl = this.gl, target = this.target("gbuffer " + name, width, height, gl.RGBA32F, true);
     const key = JSON.stringify([camera, shift, this.turn]);
