@@ -62,7 +62,7 @@ done
 while IFS= read -r key; do
   grep -qF "$key" <<<"$body" || complain "goniochrome-references(7): the reference $key is cited nowhere"
 done <<<"$listed"
-# No page is longer than a reader reads at once: README, pages of subjects, pages of tools.
+# No page is longer than a reader reads at once: README, pages of subjects, pages of tools. A catalog may be longer.
 words() {
   local most=$1 page count
   shift
