@@ -25,6 +25,7 @@ _render_osmesa() {
     --light-sweep) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --effects) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --tolerance) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --tilts) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --bounces) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --engine) COMPREPLY=($(compgen -W "auto cpu gl integral path gpu" -- "$word")); return ;;
     --check) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -41,7 +42,7 @@ _render_osmesa() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --paint --basis --part --trim --split --texture --texture-maps --env --no-cache --light --emit --spectral --floor --operator --critical-angle --exposure --background --camera --size --samples --turntable --light-sweep --effects --tolerance --bounces --engine --print-shader --check --check-source --output --sheet --to --view --aov --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --paint --basis --part --trim --split --texture --texture-maps --env --no-cache --light --emit --spectral --floor --operator --critical-angle --exposure --background --camera --size --samples --turntable --light-sweep --effects --tolerance --tilts --bounces --engine --print-shader --check --check-source --output --sheet --to --view --aov --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

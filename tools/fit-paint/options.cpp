@@ -148,9 +148,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "# Measured BRDFs\nA measured BRDF (" + brdf::measured_formats() +
           ") becomes one paint. It is fitted to all measured directions except those within 10 degrees of specular and "
           "those near grazing. Light near specular goes to sharp lobes of gloss and flake.",
-      "# Color maps\nA color map follows an interference paint out of the plane of measurement. A message says whether "
-      "left-out readings support isolines. Under image light tilted lobes stand for the map, unless lobes are visibly "
-      "as good or readings do not support isolines. Such a fit takes seconds."};
+      "# Color maps\nA color map follows an interference paint out of the plane of measurement. Under image light "
+      "tilted lobes stand for the map, unless lobes are visibly as good or readings do not support isolines."};
   spec.inputs = {"PAINTS",
                  "paint XML, CSV, CxF and other files of paints, FILE#NAMES, or measured BRDFs; standard input where "
                  "none is given",

@@ -137,8 +137,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.heading = "moves at a place in a picture";
   spec.option("image", "FILE", "scene.exr", &o.image, "buffers of a picture of the paint")
       .more(
-          "render-osmesa(1) writes them with --aov aspecular,mask. With transport among them, --at-pixel and "
-          "--travel-to take the angle of the one lamp that would show the paint as the traced light does.");
+          "render-osmesa(1) writes them with --aov aspecular,mask. With transport among them, the angle is that of "
+          "traced light.");
   pixel("at-pixel", o.at_pixel, "make shifts at the aspecular angle under this pixel")
       .more("The shifts are --lighter, --chroma (a factor) and --hue (a turn).");
   spec.option("lighter", "D", "3", &o.lighter, "what is added to L* under the pixel of --at-pixel")
@@ -199,8 +199,6 @@ void add_report(cli::ToolSpec& spec) {
   spec.examples = {
       {"paint-edit testdata/paints.paints.xml --only candy_blue --hue 200 --suffix _green -o greener.paints.xml",
        "turn a blue metallic toward green and keep its travel"},
-      {"paint-edit testdata/paints.paints.xml --at 45 --lightness-shift 4 --chroma-factor 1.1 -o brighter.paints.xml",
-       "lighten every paint where it is seen at 45 degrees"},
       {"paint-edit testdata/paints.paints.xml#silver_fine --face 45,55,30 --flop 20,25,12 --travel 70 -o "
        "design.paints.xml",
        "state the color of a paint outright, so that it reads exactly this at 15 and 110 degrees"},
@@ -243,15 +241,14 @@ cli::ToolSpec tool_spec(Options& o) {
       .summary = "change the color, travel and gloss of paints, or make variations and gradients of them"};
   spec.description = {
       "paint-edit changes paints as a designer does: hue, chroma, lightness, face, flop, travel, single readings, "
-      "gloss and anisotropy. It also makes paints from nothing, variations and gradients.",
+      "gloss and anisotropy. It also makes new paints, variations and gradients.",
       "# Order of moves\nWhatever their order on the command line, moves are made in this order: the average of the "
       "whole paint, shifts, face, flop, travel, single readings and gloss. Setting comes before shifting. A move that "
       "a paint cannot take, as a gray has no hue to turn, is left out with a warning, and the exit status is 1.",
-      "# Rows, curve and lobes\nMeasured rows move by as much as the curve moves at their angle. Where face, flop or "
+      "# Rows, curve and lobes\nMeasured rows move as the curve does at their angle. Where face, flop or "
       "travel are set outright, the rows are stated anew from the curve, so that the paint reads what was asked for; "
       "--keep-residual keeps their distance from the curve. A paint that has only rows is fitted first. Lobes and "
-      "color maps are dropped after a move that changes them, with a message; fit-paint(1) makes new ones. Lightness "
-      "stops at 0, where chroma ends with it."};
+      "color maps are dropped after a move that changes them, with a message; fit-paint(1) makes new ones."};
   spec.inputs = {"PAINTS",
                  "paint XML, CSV, CxF and other files of paints, or FILE#NAMES; standard input where none is given",
                  &o.inputs};

@@ -79,8 +79,6 @@ void add_report(cli::ToolSpec& spec) {
        "filter a studio by the seven lobes of a basis, the diffuse lobe and the mirror lobe"},
       {"prefilter-envmap -e 6,70,900 --size 64 --verify 100 --report sky.json testdata/outdoor.exr -o sky.env.exr",
        "make three lobes of 64 texels a face, and verify each at 120 texels"},
-      {"prefilter-envmap --basis testdata/b5.basis.xml testdata/outdoor.exr --picture maps.png -o outdoor.env.exr",
-       "show what each lobe makes of a sky"},
       {"prefilter-envmap -e 256,64,16,4 --layout mip --size 64 --rotate 90 testdata/studio.exr -o studio.mip.exr",
        "make one mip-mapped cube of the studio, turned by a quarter"},
       {"prefilter-envmap -e 1024 --layout ktx2 --size 64 testdata/studio.exr -o studio.ktx2",
@@ -133,7 +131,7 @@ cli::ToolSpec tool_spec(Options& o) {
       "# Formats and colors\nEXR, Radiance HDR, PNG, JPEG, TIFF and PNM are read directly; DPX, WebP, BMP and TGA "
       "through oiiotool. Values are Rec.709, linear in floats and sRGB in whole numbers, unless the file states "
       "otherwise, and are converted to linear Rec.2020. An EXR is read in its display window; FILE[LAYER] names one of "
-      "several layers. The header of Radiance HDR, EXIF orientation, ICC profiles, and cICP or cHRM of PNG are heeded.",
+      "several layers. Headers, EXIF and ICC profiles are heeded.",
       "# Methods\nEvery texel counts as a patch of constant radiance with its exact solid angle. --explain shows the "
       "method of each lobe: zonal harmonics with a proven bound for smooth lobes, brightest texels and bands along the "
       "horizon for lobes with a kink there, and sums over texels or blocks of texels for very sharp lobes."};
