@@ -19,7 +19,7 @@ namespace {
 constexpr int kNoColumn = -1;
 // How far Lab and spectrum of one reading may lie apart. Instruments weigh their spectra by tables for their own bands,
 // which changes the color by a few hundredths.
-constexpr double kAgrees_de00 = 0.2;
+constexpr double kLabAgrees_de00 = 0.2;
 // Three columns of L*, a* and b* under one viewing condition.
 struct LabColumns {
   color::ViewingCondition condition;
@@ -464,7 +464,7 @@ Result<void> WorkbookReader::integrate(Gathered& paint) {
         continue;
       }
       const double apart = color::delta_e_2000(*lab, seen->reading.lab);
-      disagreements_ += apart > kAgrees_de00;
+      disagreements_ += apart > kLabAgrees_de00;
       if (apart > disagreement_de00_) disagreement_de00_ = apart, worst_ = paint.places[i];
     }
   }

@@ -114,7 +114,7 @@ Result<void> PaintHandler::start(const XmlTag& tag) {
 Result<void> PaintHandler::element(const XmlTag& tag) {
   const Node parent = current();
   if (tag.space != kPaintNamespace && parent != Node::kDocument) return foreign_element(tag);
-  const auto* rule =
+  const auto rule =
       std::ranges::find_if(kRules, [&](const ElementRule& r) { return r.parent == parent && r.name == tag.name; });
   if (parent == Node::kDocument && rule != kRules.end() && tag.space != kPaintNamespace)
     return input_error("{}:{}: this <{}> is of the namespace \"{}\": the first element must be {}", file_, tag.line,

@@ -196,6 +196,12 @@ Result<Image> opaque_working_space_rgb(ImagePart part, const std::string& name) 
 
 }  // namespace
 
+std::string text_attribute(const ImagePart& part, const std::string& name) {
+  const auto found = part.attributes.find(name);
+  const auto* text = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
+  return text ? *text : "";
+}
+
 Result<Image> working_space_rgb(ImagePart part, const std::string& name) {
   const std::vector<float> alpha = taken_alpha(part);
   GONIO_ASSIGN(Image rgb, opaque_working_space_rgb(std::move(part), name));

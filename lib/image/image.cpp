@@ -173,12 +173,6 @@ Result<ImagePart> decoded_by_module(const std::string& content, const std::strin
 
 }  // namespace
 
-std::string text_attribute(const ImagePart& part, const std::string& name) {
-  const auto found = part.attributes.find(name);
-  const auto* text = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
-  return text ? *text : "";
-}
-
 std::string image_file(const std::string& path) {
   const std::size_t bracket = path.rfind('[');
   const bool names_layer = path.ends_with(']') && bracket != std::string::npos && bracket > 0 && !is_there(path);

@@ -73,15 +73,18 @@ std::optional<TrimKind> trim_kind(const mesh::MeshPart& part) {
   return std::nullopt;
 }
 
-std::optional<paint::LobeFit> trim_of(const mesh::MeshPart& part, bool with_mirror) {
-  const auto kind = trim_kind(part);
-  if (!kind) return std::nullopt;
+paint::LobeFit trim_finish(TrimKind kind, bool with_mirror) {
   paint::LobeFit finish;
-  const double reflectance = *kind == TrimKind::kGlass ? 0.005 : *kind == TrimKind::kBlack ? 0.03 : 0.2;
+  const double reflectance = kind == TrimKind::kGlass ? 0.005 : kind == TrimKind::kBlack ? 0.03 : 0.2;
   finish.diffuse = (reflectance / kPi) * color::Rgb{1, 1, 1};
-  if (*kind == TrimKind::kBlack || !with_mirror) return finish;
+  if (kind == TrimKind::kBlack || !with_mirror) return finish;
   finish.lobes.push_back({paint::kMirrorExponent, {}, {1, 1, 1}});
   return brdf::under_coat(finish, brdf::kCoatIndex);
+}
+
+std::optional<paint::LobeFit> trim_of(const mesh::MeshPart& part, bool with_mirror) {
+  const auto kind = trim_kind(part);
+  return kind ? std::optional(trim_finish(*kind, with_mirror)) : std::nullopt;
 }
 
 }  // namespace goniochrome::render

@@ -1,6 +1,7 @@
 // Finishes of the parts of a vehicle that nobody paints: glass, rubber, seams, wheels and the underside.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -10,6 +11,7 @@
 namespace goniochrome::render {
 
 enum class TrimKind : std::uint8_t { kGlass, kBlack, kMetal };
+inline constexpr std::array kTrimKinds = {TrimKind::kGlass, TrimKind::kBlack, TrimKind::kMetal};
 
 // The kind of a part that nobody paints, by the words in its name, or else in its material, whatever their case, or
 // else by the look of that material:
@@ -21,9 +23,10 @@ enum class TrimKind : std::uint8_t { kGlass, kBlack, kMetal };
 // or body is that of a painted part, whatever its material looks like. Nothing where none of these is found.
 std::optional<TrimKind> trim_kind(const mesh::MeshPart& part);
 
-// The finish of such a part: glass is black under a coat that mirrors, black reflects 3 %, and metal is a gray of 20 %
+// The finish of such parts: glass is black under a coat that mirrors, black reflects 3 %, and metal is a gray of 20 %
 // under a coat that mirrors. It has no lobes but the mirror, and that only `with_mirror`, so that any prefiltered
 // environment shows it.
+paint::LobeFit trim_finish(TrimKind kind, bool with_mirror);
 std::optional<paint::LobeFit> trim_of(const mesh::MeshPart& part, bool with_mirror);
 
 }  // namespace goniochrome::render

@@ -9,24 +9,20 @@ namespace goniochrome::studio {
 
 namespace {
 
-// A matrix in the order of columns, from the images of the unit vectors.
-std::string columns(const color::Rgb& r, const color::Rgb& g, const color::Rgb& b) {
-  std::string text;
-  for (const color::Rgb& column : {r, g, b})
-    for (int c = 0; c < 3; ++c) text += fmt::format("{}{:.9e}", text.empty() ? "" : ", ", column[c]);
-  return "mat3(" + text + ")";
-}
+// Display P3 from XYZ under D65. [CSS Color Module Level 4, 10.4 and its sample code]
+constexpr double kP3FromXyz[3][3] = {{2.493496911941425, -0.9313836179191239, -0.40271078445071684},
+                                     {-0.8294889695615747, 1.7626640603183463, 0.023624685841943577},
+                                     {0.03584583024378447, -0.07617238926804182, 0.9568845240076872}};
 
 }  // namespace
 
 std::string display_program() {
-  const std::string to_rec709 = columns(color::rec709_from_rec2020({1, 0, 0}), color::rec709_from_rec2020({0, 1, 0}),
-                                        color::rec709_from_rec2020({0, 0, 1}));
   return fmt::format(R"(#version 300 es
 precision highp float;
 precision highp sampler2D;
 uniform sampler2D picture;  // linear Rec.2020
 uniform float gain, share;
+uniform mat3 to_screen;
 uniform int rows;
 out vec4 color;
 
@@ -35,7 +31,7 @@ float srgb_signal(float light) {{
   return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
 }}
 
-vec3 paint_view(vec3 c, float luminance) {{  // linear Rec.709; goniochrome-rendering(7), "RENDERING"
+vec3 paint_view(vec3 c, float luminance) {{  // in the screen's primaries; goniochrome-rendering(7), "RENDERING"
   float least = min(c.x, min(c.y, c.z));
   if (least < 0.0) {{
     float gray = max(0.0, luminance), keep = gray / (gray - least);
@@ -52,12 +48,30 @@ void main() {{
   p *= share;
   vec3 light = gain * p.rgb + (1.0 - p.a) * 0.18;
   float luminance = dot(light, vec3({2:.9e}, {3:.9e}, {4:.9e}));
-  vec3 shown = paint_view({5} * light, luminance);
+  vec3 shown = paint_view(to_screen * light, luminance);
   color = vec4(srgb_signal(shown.r), srgb_signal(shown.g), srgb_signal(shown.b), 1.0);
 }}
 )",
                      display::kKnee, 1 - display::kKnee, color::xyz_d65_from_rgb({1, 0, 0}).Y,
-                     color::xyz_d65_from_rgb({0, 1, 0}).Y, color::xyz_d65_from_rgb({0, 0, 1}).Y, to_rec709);
+                     color::xyz_d65_from_rgb({0, 1, 0}).Y, color::xyz_d65_from_rgb({0, 0, 1}).Y);
+}
+
+std::vector<double> to_srgb_screen() {
+  std::vector<double> columns;
+  for (const color::Rgb& unit : {color::Rgb{1, 0, 0}, color::Rgb{0, 1, 0}, color::Rgb{0, 0, 1}}) {
+    const color::Rgb column = color::rec709_from_rec2020(unit);
+    for (int c = 0; c < 3; ++c) columns.push_back(column[c]);
+  }
+  return columns;
+}
+
+std::vector<double> to_p3_screen() {
+  std::vector<double> columns;
+  for (const color::Rgb& unit : {color::Rgb{1, 0, 0}, color::Rgb{0, 1, 0}, color::Rgb{0, 0, 1}}) {
+    const color::Xyz xyz = color::xyz_d65_from_rgb(unit);
+    for (const auto& row : kP3FromXyz) columns.push_back(row[0] * xyz.X + row[1] * xyz.Y + row[2] * xyz.Z);
+  }
+  return columns;
 }
 
 std::string overlay_program() {

@@ -3,13 +3,18 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace goniochrome::studio {
 
 // A fragment shader with the uniforms `picture` (scene-linear radiance, premultiplied, its first row at the top),
-// `share`, which a sum of samples is multiplied by, `gain`, and `rows`, the height of the picture. What covers nothing
-// shows a gray backdrop, as pictures of render-osmesa do.
+// `share`, which a sum of samples is multiplied by, `gain`, `to_screen`, and `rows`, the height of the picture. What
+// covers nothing shows a gray backdrop, as pictures of render-osmesa do.
 std::string display_program();
+
+// The matrices `to_screen` for screens of sRGB and of Display P3, column by column; the signal curve is the same.
+std::vector<double> to_srgb_screen();
+std::vector<double> to_p3_screen();
 
 // The fragment program that draws over a picture where its surface is seen at 15 and at 45 degrees from the mirror
 // direction of a light and at the travel, as rings in yellow, blue and pink, and the highlight of the light as a

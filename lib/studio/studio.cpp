@@ -20,6 +20,7 @@
 #include "studio/internal/handoff.h"
 #include "studio/internal/json_reader.h"
 #include "studio/internal/library_pane.h"
+#include "studio/internal/opening.h"
 #include "studio/internal/view_pane.h"
 #include "studio/paint_json.h"
 
@@ -51,6 +52,8 @@ struct Studio::State {
   std::map<int, ViewPane> views;
   const ViewPane* shown_view = nullptr;
   std::string attached;
+  PackedNumbers numbers;
+  std::function<void(double)> progress = [](double) {};
 
   Result<Json> load(JsonReader& request);
   Result<Json> edit(JsonReader& request) const;
@@ -66,6 +69,8 @@ struct Studio::State {
   Result<Json> gradient(JsonReader& request) const;
   Result<Json> view(JsonReader& request);
   Result<Json> show(JsonReader& request);
+  Result<Json> open(JsonReader& request);
+  Result<Json> light(JsonReader& request);
   Result<Json> answer(const Json& request);
   Result<paint::Paint> fitted(const paint::Paint& paint) const;
 };
@@ -98,12 +103,17 @@ Json lobes_json(const paint::LobeFit& fit) {
   return json;
 }
 
+Result<formats::Basis> basis_of(JsonReader& request) {
+  JsonReader of(request.member("basis"));
+  formats::Basis basis{of.text("name"), of.numbers("exponents"), of.flag("mirror"), {}};
+  GONIO_TRY(of.status());
+  return Result(std::move(basis));
+}
+
 }  // namespace
 
 Result<Json> Studio::State::load(JsonReader& request) {
-  JsonReader of(request.member("basis"));
-  formats::Basis basis{of.text("name"), of.numbers("exponents"), of.flag("mirror")};
-  GONIO_TRY(of.status());
+  GONIO_ASSIGN(formats::Basis basis, basis_of(request));
   effects = page_effects(basis.exponents, basis.mirror, 0);
   fitter.emplace(std::move(basis), fit::FitOptions{});
   by_de76.reset(), by_de00.reset(), pane.reset();
@@ -224,7 +234,9 @@ Result<Json> Studio::State::nearest(JsonReader& request) const {
   return Json{{"list", std::move(list)},
               {"left_out", plan.left_out},
               {"outside", verdict && verdict->outside},
-              {"off_radial", verdict && verdict->off_radial}};
+              {"off_radial", verdict && verdict->off_radial},
+              {"hue_travel", verdict ? json_number(verdict->hue_travel_deg) : Json()},
+              {"matched_hue_travel", verdict ? json_number(verdict->matched_hue_travel_deg) : Json()}};
 }
 
 Result<Json> Studio::State::write(JsonReader& request) const {
@@ -326,6 +338,21 @@ Result<Json> Studio::State::show(JsonReader& request) {
   return Result(std::move(answer));
 }
 
+Result<Json> Studio::State::open(JsonReader& request) {
+  const std::string name = request.text("name");
+  GONIO_TRY(request.status());
+  numbers = {};
+  return opened(name, numbers);
+}
+
+Result<Json> Studio::State::light(JsonReader& request) {
+  GONIO_ASSIGN(const formats::Basis basis, basis_of(request));
+  const std::string name = request.text("name");
+  GONIO_TRY(request.status());
+  numbers = {};
+  return filtered_light(name, basis, numbers, progress);
+}
+
 Result<Json> Studio::State::answer(const Json& json) {
   JsonReader request(json);
   const std::string wanted = request.text("do");
@@ -343,6 +370,8 @@ Result<Json> Studio::State::answer(const Json& json) {
   if (wanted == "gradient") return gradient(request);
   if (wanted == "view") return view(request);
   if (wanted == "show") return show(request);
+  if (wanted == "open") return open(request);
+  if (wanted == "light") return light(request);
   if (wanted == "filter" || wanted == "rows" || wanted == "cloud") {
     if (!pane) return input_error("\"load\" must come first");
     return wanted == "filter" ? pane->filter(request) : wanted == "rows" ? pane->rows(request) : pane->cloud(request);
@@ -368,6 +397,10 @@ std::string& Studio::attached() {
   return state_->attached;
 }
 
+std::function<void(double)>& Studio::progress() {
+  return state_->progress;
+}
+
 namespace {
 
 template <class Element>
@@ -379,6 +412,7 @@ std::span<const std::byte> bytes_of(const std::vector<Element>& list) {
 
 std::span<const std::byte> Studio::list(List which) const {
   if (which == List::kWeights) return bytes_of(state_->weights);
+  if (which == List::kNumbers) return std::as_bytes(std::span(state_->numbers.bytes()));
   if (which == List::kTilts) return bytes_of(state_->tilts);
   if (which == List::kPicture)
     return state_->shown_view != nullptr ? bytes_of(state_->shown_view->picture()) : std::span<const std::byte>{};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -31,7 +32,8 @@ color::ReflectionOperator page_operator();
 //   describe    paint: its curve, readings, average color, metrics and the colors of a screen.
 //   variations  paint, of ("face", "flop", "travel", "gloss"), step: answers list[] of name, edit and paint.
 //   nearest     paint, metric ("de76", "de00"), count: answers list[] of place, name, code, distance and differences,
-//               and colorsnap's verdicts outside and off_radial.
+//               and colorsnap's verdicts outside and off_radial, and hue_travel and matched_hue_travel (degrees from
+//               face to flop; null where there is none).
 //   write       paint, as ("xml", "csv", "cxf"), file, lobes (true: with its lobes), version and command of its
 //               history, created (date and time, for CxF).
 //   color       lab[]: answers css, the color on a screen.
@@ -42,6 +44,10 @@ color::ReflectionOperator page_operator();
 //   filter      text, classes[], ranges[] of metric, low and high, order: answers count, and fills list kFiltered.
 //   rows        places[]: answers list[] of name, code, class and colors[].
 //   cloud       geometry: answers count, and fills the lists kCloud (three floats each), kCloudColors and kCloudPaints.
+//   open        name: reads that file. Answers kind ("paints", "mesh", "basis" or "light") and what internal/opening.h
+//               lists; numbers fill kNumbers.
+//   light       name, basis{} as in "load": filters that picture of light by the lobes of the basis. Answers
+//               environment{} and remarks[]; numbers fill kNumbers, and progress() hears how far it is.
 //   view        view, parts[] of name and material, mirrors (whether the finishes of parts that nobody paints mirror),
 //               operator[27]: attached() holds a view as render::packed_view() makes it, which has that number from now
 //               on. Answers width and height.
@@ -64,11 +70,14 @@ class Studio {
 
   // The lists that answers fill, in the machine's own number format: floats of weights, tilts, clouds and pictures,
   // else 32-bit whole numbers.
-  enum class List { kWeights, kFiltered, kCloud, kCloudColors, kCloudPaints, kTilts, kPicture };
+  enum class List { kWeights, kFiltered, kCloud, kCloudColors, kCloudPaints, kTilts, kPicture, kNumbers };
   std::span<const std::byte> list(List which) const;
 
   // Bytes for "load" or "view", which takes them.
   std::string& attached();
+
+  // Called during "light" with the part of the work that is done.
+  std::function<void(double)>& progress();
 
  private:
   struct State;

@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "base/scratch_for_test.h"
+#include "base/testdata_for_test.h"
 #include "fit/paint_fit.h"
 #include "formats/cxf.h"
 #include "formats/paint_source.h"
@@ -359,6 +360,44 @@ TEST(Studio, DescribesTheColorsOfAScreen) {
   const auto at_25 = std::ranges::find_if(curve, [](const Json& point) { return point.at("angle") == 25.0; });
   ASSERT_NE(at_25, curve.end());
   EXPECT_EQ(at_25->at("lab"), described.at("rows")[1].at("lab"));
+}
+
+TEST(Studio, OpensFilesByTheReadersOfTheTools) {
+  Studio studio;
+  const auto open = [&](const std::string& name) { return studio.answer({{"do", "open"}, {"name", testdata(name)}}); };
+  const Json paints = open("paints.csv");
+  EXPECT_EQ(paints.at("kind"), "paints");
+  const auto read = formats::read_paints(testdata("paints.csv"));
+  ASSERT_TRUE(read.ok());
+  ASSERT_EQ(paints.at("list").size(), read->size());
+  for (std::size_t i = 0; i < read->size(); ++i) EXPECT_EQ(paints.at("list")[i], paint_json((*read)[i]));
+  const Json box = open("box.obj");
+  EXPECT_EQ(box.at("kind"), "mesh");
+  EXPECT_EQ(box.at("mesh").at("parts").size(), 4U);
+  // Corners are numbers of vertices.
+  const auto numbers = studio.list(Studio::List::kNumbers);
+  const Json& corners = box.at("mesh").at("corners");
+  ASSERT_EQ(corners.at(1), 3 * box.at("triangles").get<std::size_t>());
+  std::vector<std::uint32_t> vertices(corners.at(1).get<std::size_t>());
+  std::memcpy(vertices.data(), numbers.data() + corners.at(0).get<std::size_t>(), vertices.size() * 4);
+  EXPECT_EQ(3 * (*std::ranges::max_element(vertices) + 1), box.at("mesh").at("positions").at(1).get<std::size_t>());
+  EXPECT_EQ(open("b5.basis.xml").at("basis").at("exponents").size(), 5U);
+  EXPECT_EQ(open("studio.exr").at("kind"), "light");
+  EXPECT_THAT(open("absent.csv").at("error").get<std::string>(), HasSubstr("absent.csv"));
+}
+
+TEST(Studio, FiltersLightForTheLobesOfABasis) {
+  Studio studio;
+  double part = 0;
+  bool rises = true;
+  studio.progress() = [&](double done) { rises = rises && done >= part, part = done; };
+  const Json basis = {{"name", "b2"}, {"exponents", {1.3, 20}}, {"mirror", false}};
+  const Json answer = studio.answer({{"do", "light"}, {"name", testdata("studio.exr")}, {"basis", basis}});
+  EXPECT_EQ(answer.at("environment").at("name"), "studio");
+  EXPECT_GE(answer.at("environment").at("cubes").size(), 3U);  // the diffuse one, and each lobe's
+  EXPECT_TRUE(rises);
+  EXPECT_NEAR(part, 1, 1e-9);
+  EXPECT_TRUE(studio.answer({{"do", "light"}, {"name", testdata("studio.exr")}}).contains("error"));
 }
 
 TEST(Studio, AnswersNonsenseWithAnError) {

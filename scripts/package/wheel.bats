@@ -48,6 +48,8 @@ works() {
   if [ -s "$1/lib/goniochrome/studio.html" ]; then
     paint-studio --quiet --mesh "$data/speed-shape.obj" --env studio.env.exr --basis "$data/b7.basis.xml" "$data/paints.paints.xml" -o page.html
     [ -s page.html ]
+    paint-studio --quiet --empty -o empty.html
+    [ -s empty.html ]
   fi
   printf 'sample,geometry,illuminant,observer,L,a,b\none,45as15,D65,10,50,10,5\none,45as45,D65,10,40,8,4\none,45as110,D65,10,30,6,3\n' >one.csv
   paint-book one.csv --basis "$data/b5.basis.xml" --size 32x24 --quiet -o one.html

@@ -20,10 +20,11 @@ cli::ToolSpec tool_spec(Options& o) {
       "focus, and with Ctrl; so do two fingers. Two fingers and the right button move what the camera goes around, and "
       "a double click puts it where the pointer is.",
       "Swatches show what a matt surface of their color shows in the picture. The wheel shows which colors a screen "
-      "has "
-      "at the lightness of the face, and the page tells how far it shows a face or a flop off, with the nearest that "
-      "it "
-      "shows. A paint that is edited becomes a copy with a name that can be changed.",
+      "has at the lightness of the face, and the way of the nearest paint from face to flop, dashed; the page tells "
+      "how far it shows a face or a flop off, with the nearest that it shows. A paint that is edited becomes a copy "
+      "with a name that can be changed. Two or four whole cars stand side by side in step: the design, the paint that "
+      "it is compared with, and the nearest paints. The words of the field have notes, a tour shows the page in two "
+      "minutes, and its texts are English or German.",
       "Pictures can be added, dropped or pasted, and stand on boards with a zoom of their own. Droppers take the face, "
       "the flop and the gloss from them as "
       "paint-pick(1) does, and the page shows the command. The library is a list with a search by name and code and "
@@ -34,15 +35,22 @@ cli::ToolSpec tool_spec(Options& o) {
       "those of paint-edit(1), the lobes are fitted as fit-paint(1) does by default, distances are those of "
       "colorsnap(1), and the picture is drawn by the programs of the engine gl of render-osmesa(1). The page shows "
       "the command line that makes the same paint from the same library. It hands the paint over as paint XML, as "
-      "CSV, and as CxF with the code of the nearest paint. It opens paint XML files, saves the picture and sessions, "
-      "which hold the pictures of "
-      "the boards, "
-      "and copies a link that holds the design and how it is seen. A browser keeps the sessions of its last eight "
-      "tabs.",
+      "CSV, and as CxF with the code of the nearest paint. It saves the picture, a turn of the mesh as WebM, and "
+      "sessions, which hold the pictures of the boards, the parts and notes; it prints a card of one sheet, and copies "
+      "a link that holds the design and how it is seen. A browser keeps the sessions of its last eight tabs.",
+      "Files are opened by one button, or dropped or pasted anywhere: paints in all formats of paint-convert(1), whose "
+      "first becomes the design, with the error of its fit; meshes in OBJ and glTF, with the files that they name; "
+      "pictures of light in Radiance HDR, which are filtered for the basis of the page; pictures and sessions. The "
+      "readers are those of the tools. OpenEXR, and glTF that is packed by Draco or meshoptimizer, are refused by "
+      "name. "
+      "Meshes and lights that were opened stay until the page is closed; sessions do not hold them.",
       "All parts of the mesh wear the design, but for those that nobody paints, such as glass and tires: these are "
-      "told by their names, as in render-osmesa. Beside the traced views of --transport, the page shows no shadows and "
-      "no light from one part to another, and the ground of the environment lies below the mesh as render-osmesa lays "
-      "it, as it is where nothing stands on it. It shows no color maps anywhere, and a warning tells how many paints "
+      "told by their names, as in render-osmesa. A list has all parts, with what was recognized. There, or after a "
+      "click on a part, it wears the paint, a second paint, glass, rubber or chrome, or is hidden. The "
+      "ground of the environment lies below the mesh as render-osmesa lays it, with the shadow that the mesh throws "
+      "on it for eight turns of the light, between which the page interpolates; a mesh that is opened in the page "
+      "throws none. Beside the traced views of --transport, the mesh itself has no shadows and no light from one part "
+      "to another. It shows no color maps anywhere, and a warning tells how many paints "
       "have these. Brushed paints take longer to draw. While something moves, and first after each change, slow "
       "computers draw the picture with fewer pixels. Where a picture takes long, the page keeps the light of a view "
       "that "
@@ -60,11 +68,9 @@ cli::ToolSpec tool_spec(Options& o) {
                  &o.paints};
   spec.heading = "what the page holds";
   spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh,
-              "mesh that wears the paint (OBJ, glTF 2.0, OFF, PLY or STL)")
-      .needed();
+              "mesh that wears the paint (OBJ, glTF 2.0, OFF, PLY or STL); needed without --empty");
   spec.option("env,e", "FILE", "studio.env.exr", &o.environments,
-              "prefiltered environment, made by prefilter-envmap(1)")
-      .needed()
+              "prefiltered environment, made by prefilter-envmap(1); needed without --empty")
       .more("Each environment must have the lobes of the basis.");
   spec.option("transport", "FILE", "view.exr", &o.transports,
               "traced view of the mesh, made by render-osmesa(1) with --aov transport")
@@ -72,6 +78,10 @@ cli::ToolSpec tool_spec(Options& o) {
           "The file needs the lobes of the basis and the parts of the mesh. See Traced views.");
   spec.option("basis,b", "FILE", "testdata/b7.basis.xml", &o.basis, "basis that the page fits paints to")
       .more("Without it there are seven lobes, with exponents from 1.3 to 3000, and the mirror.");
+  spec.flag("empty", &o.empty, "take a mesh, a light and paints of the tool itself where none is named")
+      .more(
+          "The page is the whole studio for somebody who has a browser alone: paints, meshes and light are opened in "
+          "it.");
   spec.option("title", "TEXT", "Spring", &o.title, "title of the page; the name of the mesh by default");
   spec.heading = "output";
   spec.option("output,o", "FILE", "studio.html", &o.output, "page to write; - is standard output");

@@ -1,71 +1,14 @@
 #include "pack.h"
 
-#include <Imath/half.h>
-
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <optional>
 #include <set>
 
-#include "base/angles.h"
 #include "base/text.h"
 #include "library/index.h"
-#include "render/camera.h"
-#include "render/page_stage.h"
-#include "render/page_weights.h"
-#include "render/scene.h"
-#include "render/trim.h"
 #include "studio/paint_json.h"
-#include "studio/studio.h"
 
 namespace goniochrome::tool {
-
-namespace {
-
-// The disc of the lamp that a page has beside the environment, as wide as a softbox some way off.
-constexpr double kLampRadius_rad = 2 * kDegree;
-
-// The first view of a page, which is that of render-osmesa.
-constexpr double kAzimuth_deg = 35, kElevation_deg = 12, kFov_deg = 30;
-
-// Halves reach to 65504: brighter maps are scaled down, and the page scales them up again into floats.
-Json cube_json(const render::PageCube& cube, PackedNumbers& numbers) {
-  constexpr float kMost = 60000;
-  float most = 0;
-  for (const float value : cube.texels) most = std::max(most, std::abs(value));
-  const float scale = most > kMost ? std::exp2(std::ceil(std::log2(most / kMost))) : 1.0F;
-  std::vector<std::uint16_t> halves;
-  halves.reserve(cube.texels.size());
-  for (const float value : cube.texels) halves.push_back(Imath::half(value / scale).bits());
-  return {{"sampler", cube.sampler},
-          {"size", cube.size},
-          {"channels", cube.channels},
-          {"scale", scale},
-          {"texels", numbers.add_smooth(halves, static_cast<std::size_t>(cube.channels))}};
-}
-
-Json programs_json(const render::PageShading& programs) {
-  return {{"shading", programs.shading},
-          {"brushed_shading", programs.brushed_shading},
-          {"gathering", programs.gathering},
-          {"brushed_gathering", programs.brushed_gathering}};
-}
-
-// Where most of the light comes from: the brightest spot, or, without spots, the brightest side.
-Json brightest_json(const envmap::PrefilteredEnvironment& env) {
-  const auto luminance = [](const envmap::Spot& spot) { return color::xyz_d65_from_rgb(spot.white).Y; };
-  const auto spot = std::ranges::max_element(env.spots, {}, luminance);
-  if (spot == env.spots.end())
-    return {{"direction", vector_json(render::diffuse_white(&env, {}).direction)}, {"extent", 0}};
-  return {{"direction", vector_json(spot->direction)}, {"extent", 2 * spot->radius_rad / kDegree}};
-}
-
-bool same_finish(const paint::LobeFit& a, const paint::LobeFit& b) {
-  return a.diffuse == b.diffuse && a.coat_index == b.coat_index && a.lobes.size() == b.lobes.size();
-}
-
-}  // namespace
 
 void PackedLibrary::add(const std::string& file, const paint::Paint& paint) {
   Json json = studio::paint_json(paint);
@@ -105,113 +48,6 @@ Result<std::string> PackedLibrary::index() const {
                  return next == paints_.end() ? std::optional<paint::Paint>() : std::optional(*next++);
                }));
   return std::string(index.content());
-}
-
-PackedMesh packed_mesh(const mesh::Mesh& mesh, bool with_mirror, PackedNumbers& numbers) {
-  PackedMesh result;
-  const mesh::Box box = mesh::bounding_box(mesh);
-  const Vec3 size = box.high - box.low;
-  std::vector<std::uint16_t> positions;
-  std::vector<std::int16_t> normals;
-  for (const Vec3& p : mesh.positions)
-    for (int c = 0; c < 3; ++c)
-      positions.push_back(
-          static_cast<std::uint16_t>(size[c] > 0 ? std::lround((p[c] - box.low[c]) / size[c] * 65535) : 0));
-  for (const Vec3& n : mesh.normals)
-    for (int c = 0; c < 3; ++c)
-      normals.push_back(static_cast<std::int16_t>(std::lround(std::clamp(n[c], -1.0, 1.0) * 32767)));
-  std::vector<std::uint32_t> corners;
-  for (const auto& triangle : mesh.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
-  Json parts = Json::array();
-  for (const mesh::MeshPart& part : mesh.parts) {
-    std::size_t row = 0;
-    if (const auto finish = render::trim_of(part, with_mirror)) {
-      const auto known = std::ranges::find_if(result.finishes,
-                                              [&](const paint::LobeFit& other) { return same_finish(*finish, other); });
-      row = 1 + static_cast<std::size_t>(known - result.finishes.begin());
-      if (known == result.finishes.end()) result.finishes.push_back(*finish);
-    }
-    parts.push_back({{"name", shown(part.name)}, {"first", part.first}, {"count", part.count}, {"row", row}});
-  }
-  // The ground as render-osmesa lays it: seen from a third of the longest side above the middle.
-  const double eye_height = std::max({size.x, size.y, size.z}) / 3;
-  const Vec3 middle = 0.5 * (box.low + box.high);
-  const render::Camera camera = render::Camera::orbit(mesh, kAzimuth_deg, kElevation_deg, 1, kFov_deg, 16.0 / 9);
-  const Vec3 origin = mesh::float_origin(box);  // the page computes in floats
-  result.json = {
-      {"low", vector_json(box.low - origin)},
-      {"high", vector_json(box.high - origin)},
-      {"positions", numbers.add(positions)},
-      {"normals", numbers.add(normals)},
-      {"corners", numbers.add(corners)},
-      {"parts", std::move(parts)},
-      {"ground",
-       {{"seen_from", vector_json(Vec3{middle.x, box.low.y + eye_height, middle.z} - origin)}, {"drop", eye_height}}},
-      {"view",
-       {{"azimuth", kAzimuth_deg},
-        {"elevation", kElevation_deg},
-        {"fov", kFov_deg},
-        {"target", vector_json(camera.target - origin)},
-        {"distance", length(camera.eye - camera.target)}}}};
-  return result;
-}
-
-Result<Json> packed_environment(const std::string& name, const envmap::PrefilteredEnvironment& env,
-                                const formats::Basis& basis, PackedNumbers& numbers) {
-  const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, env.spots.size());
-  GONIO_ASSIGN(const render::PageLight light, render::page_light(env, effects, studio::page_operator()));
-  const Vec3 toward = render::orbit_direction(kAzimuth_deg, kElevation_deg);
-  const render::PageMovableLamp lamp = render::page_movable_lamp(effects, studio::page_operator(), kLampRadius_rad);
-  Json json = {{"name", name},
-               {"programs", programs_json(light.programs)},
-               {"white", render::metered_white(&env, {}, toward)},
-               {"cubes", Json::array()},
-               {"lamp_programs", programs_json(lamp.programs)},
-               {"brightest", brightest_json(env)},
-               {"lamps", Json::array()}};
-  for (const render::PageCube& cube : light.cubes) json["cubes"].push_back(cube_json(cube, numbers));
-  for (const render::PageLamp& spot : light.lamps)
-    json["lamps"].push_back({{"direction", vector_json(spot.direction)},
-                             {"white", vector_json(spot.white)},
-                             {"disc", vector_json(spot.disc)}});
-  if (!light.discs.empty()) json["discs"] = {{"texels", numbers.add(light.discs)}};
-  return Result(std::move(json));
-}
-
-Json packed_lamp(const formats::Basis& basis, PackedNumbers& numbers) {
-  const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, 0);
-  const render::PageMovableLamp lamp = render::page_movable_lamp(effects, studio::page_operator(), kLampRadius_rad);
-  const std::size_t rows = basis.exponents.size() + 1;
-  return {{"extent", 2 * kLampRadius_rad / kDegree},
-          {"disc", vector_json(lamp.disc)},
-          {"columns", lamp.discs.size() / (4 * rows)},
-          {"discs", numbers.add(lamp.discs)}};
-}
-
-Json packed_layers(const formats::Basis& basis) {
-  const render::PageLayers all =
-      render::page_layers(studio::page_effects(basis.exponents, basis.mirror, 0), studio::page_operator());
-  Json list = Json::array();
-  for (const render::LightLayer& layer : all.layers)
-    list.push_back({{"slot", layer.slot},
-                    {"lamps", layer.of_lamps},
-                    {"sampler", layer.sampler},
-                    {"shift", layer.shift_slot < 0 ? Json() : Json::array({layer.shift_slot, layer.shift_channel})}});
-  return {{"program", all.layers_fragment},   {"list", std::move(list)},        {"light_slot", all.light_slot},
-          {"at_once", render::kLayersAtOnce}, {"beside", render::kBesideLayer}, {"none", render::kNoLayer}};
-}
-
-Json packed_finishes(const std::vector<paint::LobeFit>& finishes, const formats::Basis& basis, PackedNumbers& numbers) {
-  const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, 0);
-  render::Scene scene;
-  scene.paints = finishes;
-  scene.reflection = studio::page_operator();
-  const render::WeightTable slots = render::slots_of(effects);
-  const std::vector<float> weights = finishes.empty() ? std::vector<float>() : render::page_weights(scene, effects);
-  return {{"columns", 2 * slots.slots * slots.segments},
-          {"slots", slots.slots},
-          {"rows", finishes.size()},
-          {"texels", numbers.add(weights)}};
 }
 
 }  // namespace goniochrome::tool

@@ -1,4 +1,4 @@
-// The data of a page as JSON. Numbers of meshes, maps and weights stand beside it, and the JSON has their places.
+// The paints of a page.
 #pragma once
 
 #include <map>
@@ -7,10 +7,6 @@
 
 #include "base/json.h"
 #include "base/result.h"
-#include "envmap/prefiltered.h"
-#include "formats/basis.h"
-#include "mesh/mesh.h"
-#include "numbers.h"
 #include "paint/paint.h"
 
 namespace goniochrome::tool {
@@ -35,27 +31,5 @@ class PackedLibrary {
   Json layouts_ = Json::array();
   std::map<std::string, std::size_t> numbers_;  // of layouts, by their text
 };
-
-// Positions as 16 bits within the bounding box, normals as 16 bits an axis, and the parts with the row of their
-// weights: 0 is the design, the others are finishes that nobody paints. `finishes` gets the weights of those rows.
-struct PackedMesh {
-  Json json;
-  std::vector<paint::LobeFit> finishes;
-};
-PackedMesh packed_mesh(const mesh::Mesh& mesh, bool with_mirror, PackedNumbers& numbers);
-
-// Cubes as half floats, with the program that draws by them. `white` is the luminance that exposure 0 brings to 1.
-// Error: an environment that lacks a lobe of the basis.
-Result<Json> packed_environment(const std::string& name, const envmap::PrefilteredEnvironment& env,
-                                const formats::Basis& basis, PackedNumbers& numbers);
-
-// The lamp that a page has beside its environments: its extent in degrees, and its disc as the programs read it.
-Json packed_lamp(const formats::Basis& basis, PackedNumbers& numbers);
-
-// The layers in which a page keeps the light of a view, and the program that draws from them.
-Json packed_layers(const formats::Basis& basis);
-
-// The rows of weights of these finishes, one behind the other, and the size of a row.
-Json packed_finishes(const std::vector<paint::LobeFit>& finishes, const formats::Basis& basis, PackedNumbers& numbers);
 
 }  // namespace goniochrome::tool

@@ -86,7 +86,7 @@ needs_browser() {
 }
 
 # Most of the ground is so far from the mesh that nothing takes its light away.
-@test "the ground lies where render-osmesa lays it" {
+@test "the ground lies where render-osmesa lays it, with the shadow of the mesh" {
   needs_browser
   [ -s candy_red-studio-groundless.f32 ] || skip "the pictures were not drawn"
   for light in studio outdoor; do
@@ -97,6 +97,12 @@ needs_browser() {
     run /usr/bin/python3 "$code/compare.py" "candy_red-$light.f32" "ground-$light.exr" "$white" beside
     echo "$light: mean p95 largest pixels median: $output"
     awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[4] > 100000 && n[5] <= 0.1) }'
+    # With the shadow of the mesh, but without the light that the mesh sends to the ground; the control has neither.
+    awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[1] <= 0.7 && n[2] <= 2) }'
+    shaded=${output%% *}
+    run /usr/bin/python3 "$code/compare.py" "candy_red-$light-shadeless.f32" "ground-$light.exr" "$white" beside
+    echo "$light without shadow: $output"
+    awk -v shaded="$shaded" -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[1] > 1.5 * shaded && n[2] > 4) }'
     # The control: the environment far away, as it is without the ground.
     run /usr/bin/python3 "$code/compare.py" "candy_red-$light-groundless.f32" "ground-$light.exr" "$white" beside
     echo "$light without ground: $output"
@@ -223,6 +229,78 @@ needs_browser() {
 @test "the stage, the picture and the design stay" {
   needs_browser
   run node "$code/stay.js" page.html .
+  echo "$output"
+  [ "$status" -eq 0 ]
+}
+
+# The control of the readings: another paint's are not the same.
+@test "files of every kind are opened as the tools read them" {
+  needs_browser
+  python3 - <<'PY'
+import math, struct, zipfile
+rows = ["Name|Geometry|L*|a*|b*", "rot|45as15|41.5|-1.25|3", "rot|45as45|30|-1|2", "rot|45as110|22|-1|1"]
+cells = "".join('<row r="%d">%s</row>' % (r + 1, "".join('<c r="%s%d" t="inlineStr"><is><t>%s</t></is></c>' % (chr(65 + c), r + 1, text) for c, text in enumerate(row.split("|")))) for r, row in enumerate(rows))
+main, office = "http://schemas.openxmlformats.org/spreadsheetml/2006/main", "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
+with zipfile.ZipFile("book.xlsx", "w", zipfile.ZIP_DEFLATED) as archive:
+    archive.writestr("xl/workbook.xml", '<workbook xmlns="%s" xmlns:r="%s"><sheets><sheet name="D65/10" sheetId="1" r:id="rId1"/></sheets></workbook>' % (main, office))
+    archive.writestr("xl/_rels/workbook.xml.rels", '<Relationships><Relationship Id="rId1" Target="worksheets/sheet1.xml"/></Relationships>')
+    archive.writestr("xl/worksheets/sheet1.xml", '<worksheet xmlns="%s"><sheetData>%s</sheetData></worksheet>' % (main, cells))
+def rgbe(r, g, b):
+    exponent = math.frexp(max(r, g, b))[1]
+    return bytes(int(x * 2.0 ** (8 - exponent)) for x in (r, g, b)) + bytes([exponent + 128])
+with open("probe.hdr", "wb") as file:
+    file.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 128\n")
+    for y in range(64):
+        for x in range(128):
+            lit = 12 if abs(x - 40) < 6 and abs(y - 20) < 6 else 0.2 + 0.3 * (y < 30)
+            file.write(rgbe(lit, lit * (0.8 + 0.2 * x / 128), lit * 0.9))
+PY
+  cat >instrument.qtx <<'QTX'
+[STANDARD_DATA 0]
+STD_NAME=gray
+STD_REFLPOINTS=31
+STD_REFLINTERVAL=10
+STD_REFLLOW=400
+STD_VIEWING=45as45
+QTX
+  echo "STD_R=$(python3 -c 'print(",".join(str(20 + i / 10) for i in range(31)))')" >>instrument.qtx
+  paint-convert -q "$TESTDATA/paints.paints.xml#candy_red,silver_fine" --to cxf -o two.cxf
+  paint-convert -q "$TESTDATA/paints.paints.xml#candy_red,silver_fine" --to cgats -o two.txt
+  files=("$TESTDATA/paints.csv" book.xlsx two.cxf two.txt instrument.qtx "$TESTDATA/paints-wide.csv" "$TESTDATA/paints.paints.xml")
+  prefilter-envmap -q probe.hdr --basis "$TESTDATA/b5.basis.xml" -o probe.env.exr
+  paint-studio -q --mesh "$TESTDATA/speed-shape.obj" --env studio.env.exr --env probe.env.exr --basis "$TESTDATA/b5.basis.xml" \
+    "$TESTDATA/paints.paints.xml" -o open.html
+  run node "$code/open.js" open.html . "${files[@]}"
+  echo "$output"
+  [ "$status" -eq 0 ]
+  for file in "${files[@]}"; do
+    paint-convert -q "$file" --to csv -o theirs.csv
+    same_readings <(cut -d, -f1-7 theirs.csv) <(head -"$(wc -l <theirs.csv)" "$(basename "$file").opened.csv" | cut -d, -f1-7)
+  done
+  paint-convert -q book.xlsx --to csv -o theirs.csv
+  run same_readings theirs.csv instrument.qtx.opened.csv
+  [ "$status" -ne 0 ]
+  for file in wrong.paints.xml between.paints.xml wrong.csv; do
+    run paint-convert "$file" --to csv -o none.csv
+    [ "$status" -eq 3 ]
+    [[ "$output" == *"$(jq -r ".[\"$file\"]" told.json)"* ]]
+  done
+}
+
+@test "the page speaks two languages, and gives away a card and a film" {
+  needs_browser
+  run node "$code/share.js" page.html . "$code/../page/page.html"
+  echo "$output"
+  [ "$status" -eq 0 ]
+}
+
+# Nothing but the file itself: no file of the tools, no network.
+@test "the page of --empty is the whole studio" {
+  needs_browser
+  paint-studio --empty -o empty.html --report empty.json
+  [ "$(jq .results.bytes empty.json)" -le 12000000 ]
+  [ "$(jq .results.code_bytes empty.json)" -le 4000000 ]
+  run node "$code/empty.js" empty.html .
   echo "$output"
   [ "$status" -eq 0 ]
 }

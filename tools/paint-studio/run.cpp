@@ -4,12 +4,16 @@
 #include "base/file.h"
 #include "base/paths.h"
 #include "base/text.h"
+#include "compressed.h"
 #include "formats/default_basis.h"
 #include "formats/reference.h"
+#include "ground.h"
 #include "pack.h"
 #include "paint_stream.h"
 #include "render/page_stage.h"
+#include "starter.h"
 #include "studio/display_program.h"
+#include "studio/packed_scene.h"
 #include "tool.h"
 #include "views.h"
 
@@ -56,6 +60,10 @@ std::string script_text(std::string_view json) {
 
 Result<PackedLibrary> packed_paints(const Options& options, cli::Session& session) {
   PackedLibrary list;
+  if (options.empty && options.paints.empty()) {
+    for (const paint::Paint& paint : starter_paints()) list.add("starter.paints.xml", paint);
+    return Result(std::move(list));
+  }
   std::size_t mapped = 0;
   for (const std::string& path : options.paints.empty() ? std::vector<std::string>{"-"} : options.paints) {
     GONIO_ASSIGN(const std::vector<paint::Paint> paints, all_paints(path, session));
@@ -86,60 +94,77 @@ std::string plan_text(const Options& options) {
       "environments: {}, each lobe of the basis as half floats\n"
       "traced views: {}\n"
       "left out: {}color maps\n",
-      options.mesh, joined(options.environments, ", "),
+      options.mesh.empty() ? "of the page itself" : options.mesh,
+      options.environments.empty() ? "of the page itself" : joined(options.environments, ", "),
       options.transports.empty() ? "none"
                                  : joined(options.transports, ", ") +
                                        ", the light of each lobe at every point in as few bits as change a paint by no "
                                        "more than 0.02 dE00",
-      options.transports.empty() ? "shadows, light from one part to another, and "
-                                 : "shadows and light from one part to another beside the traced views, and ");
+      options.transports.empty()
+          ? "shadows on the mesh, light from one part to another, and "
+          : "shadows on the mesh and light from one part to another beside the traced views, and ");
 }
 
 }  // namespace
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
+  for (const auto& [name, is_missing] :
+       {std::pair("mesh", options.mesh.empty()), {"env", options.environments.empty()}})
+    if (is_missing && !options.empty) return usage_error("--{} FILE is missing: name one, or say --empty", name);
   GONIO_ASSIGN(std::string page, page_part("studio.html"));
   GONIO_ASSIGN(const std::string module, page_part("studio.wasm"));
   session.explain(plan_text(options));
   GONIO_ASSIGN(const formats::Basis basis, formats::basis_or_default(options.basis));
-  GONIO_ASSIGN(const mesh::Mesh mesh, mesh::read_mesh(options.mesh));
+  GONIO_ASSIGN(const mesh::Mesh mesh,
+               options.mesh.empty() ? Result<mesh::Mesh>(starter_mesh()) : mesh::read_mesh(options.mesh));
   for (const std::string& remark : mesh.remarks) session.warn(remark);
   GONIO_ASSIGN(const PackedLibrary paints, packed_paints(options, session));
   GONIO_ASSIGN(const std::string index, paints.index());
-  PackedNumbers numbers;
-  PackedMesh packed = packed_mesh(mesh, basis.mirror, numbers);
+  studio::PackedNumbers numbers;
+  GONIO_ASSIGN(const rays::RayScene scene, rays::RayScene::create(mesh));
   const render::PagePrograms programs = render::page_programs();
-  const std::string title = options.title.empty() ? name_of(options.mesh) : plain_utf8(options.title);
+  const std::string title = !options.title.empty() ? plain_utf8(options.title)
+                            : options.mesh.empty() ? "Goniochrome"
+                                                   : name_of(options.mesh);
 
   Json data = {{"version", cli::Session::version()},
                {"command", plain_utf8(session.command_line())},
                {"title", title},
                {"basis", {{"name", basis.name}, {"exponents", basis.exponents}, {"mirror", basis.mirror}}},
                {"basis_file", plain_utf8(options.basis)},
-               {"mesh", std::move(packed.json)},
-               {"finishes", packed_finishes(packed.finishes, basis, numbers)},
-               {"lamp", packed_lamp(basis, numbers)},
-               {"layers", packed_layers(basis)},
+               {"mesh", studio::packed_mesh(mesh, numbers)},
+               {"finishes", studio::packed_finishes(basis, numbers)},
+               {"lamp", studio::packed_lamp(basis, numbers)},
+               {"layers", studio::packed_layers(basis)},
                {"programs",
                 {{"gbuffer_vertex", programs.gbuffer_vertex},
                  {"gbuffer_fragment", programs.gbuffer_fragment},
                  {"shading_vertex", programs.shading_vertex},
                  {"display_fragment", studio::display_program()},
                  {"overlay_fragment", studio::overlay_program()}}},
+               {"screens", {{"srgb", studio::to_srgb_screen()}, {"display-p3", studio::to_p3_screen()}}},
                {"layouts", paints.layouts()},
                {"environments", Json::array()},
                {"views", Json::array()}};
   Json& results = session.results();
-  for (const std::string& path : options.environments) {
-    session.progress(fmt::format("packing {}", path));
-    GONIO_ASSIGN(const envmap::PrefilteredEnvironment env, envmap::read_env(path));
+  const auto add_light = [&](const std::string& path,
+                             const Result<envmap::PrefilteredEnvironment>& env) -> Result<void> {
+    if (!env.ok()) return env.error();
     const std::size_t before = numbers.bytes().size();
-    auto environment = packed_environment(name_of(path), env, basis, numbers);
+    auto environment = studio::packed_environment(name_of(path), *env, basis, numbers);
     if (!environment.ok()) return input_error("{}: {}", path, environment.error().message);
+    if (Json ground = packed_ground(scene, mesh, *env, numbers); !ground.is_null())
+      (*environment)["ground_light"] = std::move(ground);
     results["environments"].push_back(
         {{"name", name_of(path)}, {"bytes", environment->dump().size() + numbers.bytes().size() - before}});
     data["environments"].push_back(std::move(*environment));
+    return {};
+  };
+  for (const std::string& path : options.environments) {
+    session.progress(fmt::format("packing {}", path));
+    GONIO_TRY(add_light(path, envmap::read_env(path)));
   }
+  if (options.environments.empty()) GONIO_TRY(add_light("studio", starter_light(basis)));
 
   for (const std::string& path : options.transports) {
     session.progress(fmt::format("packing {}", path));
@@ -168,7 +193,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   results["triangles"] = mesh.triangles.size();
   session.say(fmt::format("page: {:.1f} MB, of which {:.1f} MB are data; {} paints, {} environments, {} triangles",
                           static_cast<double>(page.size()) / 1e6, static_cast<double>(page.size() - code) / 1e6,
-                          paints.size(), options.environments.size(), mesh.triangles.size()));
+                          paints.size(), data["environments"].size(), mesh.triangles.size()));
   return cli::Verdict::kDone;
 }
 

@@ -13,6 +13,7 @@ struct Options {
   std::vector<std::string> paints;
   std::string mesh, basis, output = "-", title;
   std::vector<std::string> environments, transports;
+  bool empty = false;
 };
 
 cli::ToolSpec tool_spec(Options& options);

@@ -7,13 +7,14 @@
 #include "base/angles.h"
 #include "base/text.h"
 #include "brdf/lobe_model.h"
+#include "compressed.h"
 #include "fit/paint_fit.h"
 #include "image/aov_file.h"
-#include "numbers.h"
 #include "rays/ray_scene.h"
 #include "render/aov.h"
 #include "render/light_transport.h"
 #include "render/trim.h"
+#include "studio/packed_numbers.h"
 
 namespace goniochrome::tool {
 
@@ -115,7 +116,7 @@ image::Image beside_of(const image::AovFile& file) {
 
 Result<PackedTracedView> packed_traced_view(const std::string& path, const std::string& name, const mesh::Mesh& mesh,
                                             const formats::Basis& basis, const std::vector<paint::Paint>& paints,
-                                            PackedNumbers& numbers) {
+                                            studio::PackedNumbers& numbers) {
   GONIO_ASSIGN(const image::AovFile file,
                image::read_aov_file(path, {"R", "G", "B", "A", "normal.X", "normal.Y", "normal.Z", "part"}));
   GONIO_ASSIGN(const auto read, render::transport_of(file));
@@ -145,19 +146,22 @@ Result<PackedTracedView> packed_traced_view(const std::string& path, const std::
   const std::vector<std::uint8_t> bytes(packed->bytes.begin(), packed->bytes.end());
   PackedTracedView view;
   view.error_de00 = error.p95_de00;
-  view.json = {
-      {"name", name},
-      {"width", light.width},
-      {"height", light.height},
-      {"white", std::exp2(-file.automatic_stops)},
-      {"camera", {{"eye", vector_json(*file.eye)}, {"target", vector_json(*file.eye + middle)}, {"fov", fov_deg}}},
-      {"brightest",
-       {{"direction", vector_json(file.light)}, {"extent", file.lights.empty() ? 0 : file.lights.front().extent_deg}}},
-      {"floor", light.worn.has_floor},
-      {"mirrors", with_mirrors},
-      {"operator", std::move(reflection)},
-      {"parts", std::move(parts)},
-      {"light", numbers.add(bytes)}};
+  view.json = {{"name", name},
+               {"width", light.width},
+               {"height", light.height},
+               {"white", std::exp2(-file.automatic_stops)},
+               {"camera",
+                {{"eye", studio::vector_json(*file.eye)},
+                 {"target", studio::vector_json(*file.eye + middle)},
+                 {"fov", fov_deg}}},
+               {"brightest",
+                {{"direction", studio::vector_json(file.light)},
+                 {"extent", file.lights.empty() ? 0 : file.lights.front().extent_deg}}},
+               {"floor", light.worn.has_floor},
+               {"mirrors", with_mirrors},
+               {"operator", std::move(reflection)},
+               {"parts", std::move(parts)},
+               {"light", numbers.add(bytes)}};
   view.figures = {{"name", name},
                   {"points", light.places.size()},
                   {"columns", light.columns.count()},

@@ -8,8 +8,8 @@
 #include "base/result.h"
 #include "formats/basis.h"
 #include "mesh/mesh.h"
-#include "numbers.h"
 #include "paint/paint.h"
+#include "studio/packed_numbers.h"
 
 namespace goniochrome::tool {
 
@@ -23,6 +23,6 @@ struct PackedTracedView {
 // a file that has no transport or is damaged, one that shows another mesh, a basis whose lobes it lacks.
 Result<PackedTracedView> packed_traced_view(const std::string& path, const std::string& name, const mesh::Mesh& mesh,
                                             const formats::Basis& basis, const std::vector<paint::Paint>& paints,
-                                            PackedNumbers& numbers);
+                                            studio::PackedNumbers& numbers);
 
 }  // namespace goniochrome::tool

@@ -51,7 +51,7 @@ std::string plain_heading(std::string_view heading) {
   const bool angle_first = text.size() > 1 && (text[0] == '-' || (text[0] >= '0' && text[0] <= '9'));
   if (angle_first && std::string_view("lab").find(text.back()) != std::string_view::npos)
     std::rotate(text.begin(), text.end() - 1, text.end());
-  const auto* other = std::ranges::find(kOtherNames, text, &std::pair<std::string_view, std::string_view>::first);
+  const auto other = std::ranges::find(kOtherNames, text, &std::pair<std::string_view, std::string_view>::first);
   return other != kOtherNames.end() ? std::string(other->second) : text;
 }
 

@@ -1,7 +1,5 @@
 #include "formats/internal/spreadsheet.h"
 
-#include <zip.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,6 +8,7 @@
 
 #include "base/text.h"
 #include "formats/internal/xml_stream.h"
+#include "formats/internal/zip_archive.h"
 
 namespace goniochrome::formats {
 
@@ -314,42 +313,34 @@ std::string date_text(double days, bool since_1904) {
 }
 
 struct Spreadsheet::State {
-  std::string name, bytes;
-  zip_t* archive = nullptr;
+  std::string name;
+  std::optional<ZipArchive> archive;
   std::vector<SheetPart> sheets;
   std::vector<std::string> strings;
   std::vector<CellStyle> styles;
   bool since_1904 = false;
 
-  ~State() {
-    if (archive) zip_discard(archive);
-  }
-
-  bool has(const std::string& part) const { return zip_name_locate(archive, part.c_str(), 0) >= 0; }
+  bool has(const std::string& part) const { return archive->part(part).has_value(); }
 
   // Unpacks a part and tells `handler`. `called` is what errors name.
   Result<void> read(const std::string& part, const std::string& called, PartHandler& handler) const {
-    zip_stat_t about;
-    if (zip_stat(archive, part.c_str(), 0, &about) != 0)
+    const auto about = archive->part(part);
+    if (!about)
       return input_error("{}: the workbook has no part {}: it is damaged, save it again", called, shown(part));
-    if ((about.valid & ZIP_STAT_ENCRYPTION_METHOD) && about.encryption_method != ZIP_EM_NONE)
-      return input_error("{}: the workbook is encrypted: save it without a password", called);
-    const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(zip_fopen(archive, part.c_str(), 0), zip_fclose);
-    if (!file)
+    if (about->is_encrypted) return input_error("{}: the workbook is encrypted: save it without a password", called);
+    const auto unpacking = archive->unpacking(part);
+    if (!unpacking.ok())
       return input_error("{}: {} cannot be unpacked ({}): save the workbook again", called, shown(part),
-                         zip_strerror(archive));
-    const std::size_t most = std::max<std::size_t>(kAnySize, kMostGrowth * about.comp_size);
+                         unpacking.error().message);
+    const std::size_t most = std::max<std::size_t>(kAnySize, kMostGrowth * about->packed_bytes);
     std::size_t unpacked = 0;
     const XmlBytes bytes_of = [&](std::string& buffer, std::size_t wanted) -> Result<std::size_t> {
-      const std::size_t before = buffer.size();
-      buffer.resize(before + wanted);
-      const zip_int64_t got = zip_fread(file.get(), buffer.data() + before, wanted);
-      buffer.resize(before + static_cast<std::size_t>(std::max<zip_int64_t>(got, 0)));
-      if (got < 0) return input_error("{}: {} is damaged or cut off: save the workbook again", called, shown(part));
-      if ((unpacked += static_cast<std::size_t>(got)) > most)
+      const auto got = (*unpacking)(buffer, wanted);
+      if (!got.ok()) return input_error("{}: {} is damaged or cut off: save the workbook again", called, shown(part));
+      if ((unpacked += *got) > most)
         return input_error("{}: {} unpacks to more than {} times its size: that is no table of measurements", called,
                            shown(part), kMostGrowth);
-      return static_cast<std::size_t>(got);
+      return *got;
     };
     XmlStream stream(called, bytes_of, handler);
     const auto result = stream.finish();
@@ -389,19 +380,12 @@ Spreadsheet::~Spreadsheet() = default;
 Result<Spreadsheet> Spreadsheet::open(InputFile input) {
   auto state = std::make_unique<State>();
   state->name = input.name();
-  GONIO_ASSIGN(state->bytes, input.rest(kLargestBook));
-  if (state->bytes.starts_with("\xd0\xcf\x11\xe0"))
+  GONIO_ASSIGN(std::string bytes, input.rest(kLargestBook));
+  if (bytes.starts_with("\xd0\xcf\x11\xe0"))
     return input_error(
         "{}: is an old workbook (XLS), or one that is encrypted: save it as XLSX (Office Open XML), without a password",
         state->name);
-  zip_error_t problem;
-  zip_error_init(&problem);
-  zip_source_t* source = zip_source_buffer_create(state->bytes.data(), state->bytes.size(), 0, &problem);
-  if (source) {
-    state->archive = zip_open_from_source(source, ZIP_RDONLY, &problem);
-    if (!state->archive) zip_source_free(source);
-  }
-  zip_error_fini(&problem);
+  state->archive = ZipArchive::open(state->name, std::move(bytes));
   if (!state->archive) return input_error("{}: the workbook is damaged or cut off: save it again", state->name);
   GONIO_TRY(state->read_frame());
   return Spreadsheet(std::move(state));

@@ -105,7 +105,7 @@ std::string gathering_fragment_shader(const Effects& effects, const color::Refle
   if (lamps) text += disc_functions(effects.lobes.size()) + "float index2;  // of the coat, squared\n";
   if (effects.environment) text += map_light_function(effects);
   if (lamps && !effects.lobes.empty()) text += lamp_light_function(effects);
-  if (projected_ground) text += kProjectedGround;
+  if (projected_ground) text += ground_functions(effects);
   std::string beside, sums, written;
   for (int o = 0; o < kLayersAtOnce; ++o) {
     beside += fmt::format("    layers[{0}] = slots[{0}] == {1} ? vec4(shown.rgb / scales[{0}], shown.a) : vec4(0.0);\n",
@@ -115,7 +115,7 @@ std::string gathering_fragment_shader(const Effects& effects, const color::Refle
   }
   text += start_of_main(
       effects, "",
-      fmt::format("    vec4 shown = {};\n", background_color(effects.background, product, projected_ground)) + beside);
+      fmt::format("    vec4 shown = {};\n", background_color(effects, product, projected_ground)) + beside);
   text += tilt_frame(effects) + fmt::format("  vec4 sums[{0}] = vec4[{0}]({1});\n", kLayersAtOnce, sums);
   if (effects.environment) {
     // A brushed surface has lobes about each of its normals; its diffuse part and its mirror have their own.

@@ -188,10 +188,10 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   if (!effects.lobes.empty()) text += lobe_functions(effects, product);
   text += tilt_function(effects, tilted, product);
   projected_ground = projected_ground && effects.background == Background::kEnvironment;
-  if (projected_ground) text += kProjectedGround;
+  if (projected_ground) text += ground_functions(effects);
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
-  text += start_of_main(
-      effects, "", fmt::format("    color = {};\n", background_color(effects.background, product, projected_ground)));
+  text += start_of_main(effects, "",
+                        fmt::format("    color = {};\n", background_color(effects, product, projected_ground)));
   text += "  vec3 radiance = vec3(0.0);\n";
   // 3. The sum of what the environment and the lights show.
   text += tilt_frame(effects);

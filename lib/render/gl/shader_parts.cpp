@@ -144,12 +144,17 @@ std::string over_tilts(const Effects& effects, const std::string& sum, const std
                      sum, function, more);
 }
 
-std::string background_color(Background background, Product product, bool projected_ground) {
-  switch (background) {
+std::string ground_functions(const Effects& effects) {
+  return std::string(kProjectedGround) + (effects.lobes.size() <= kMostLobesOverShade ? kKeptLight : "");
+}
+
+std::string background_color(const Effects& effects, Product product, bool projected_ground) {
+  switch (effects.background) {
     case Background::kEnvironment: {
       const std::string seen = fmt::format("textureLod(mirror, {}, 0.0)", projected_ground ? "projected(-wo)" : "-wo");
-      return product == Product::kForms ? fmt::format("vec4(unreflected({}), 1.0)", seen)
-                                        : fmt::format("vec4({}.rgb, 1.0)", seen);
+      const char* kept = projected_ground && effects.lobes.size() <= kMostLobesOverShade ? "kept_light(-wo) * " : "";
+      return product == Product::kForms ? fmt::format("vec4({}unreflected({}), 1.0)", kept, seen)
+                                        : fmt::format("vec4({}{}.rgb, 1.0)", kept, seen);
     }
     case Background::kColor:
       return "vec4(background, 1.0)";

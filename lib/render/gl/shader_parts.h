@@ -52,6 +52,22 @@ vec3 projected(vec3 ray) {
 }
 )";
 
+// The part of its light that the ground keeps beside the mesh, where a ray meets it. WebGL 2 promises 16 textures, so
+// that there is no room for it beside more lobes.
+inline constexpr std::size_t kMostLobesOverShade = 8;
+inline constexpr const char* kKeptLight = R"(uniform sampler2D ground_light;
+uniform vec3 ground_place;  // where its square begins, in x and z, and squares to a unit of length; 0 for none
+uniform vec2 ground_turn;  // cosine and sine by which the environment was turned
+vec3 kept_light(vec3 ray) {
+  vec3 at = projected(ray);
+  if (ground_place.z == 0.0 || at == ray) return vec3(1.0);
+  vec2 place = ground_place.z * (vec2(dot(ground_turn, at.xz), ground_turn.x * at.z - ground_turn.y * at.x) - ground_place.xy);
+  return place == clamp(place, 0.0, 1.0) ? texture(ground_light, place).rgb : vec3(1.0);
+}
+)";
+// The functions of a ground on which the environment may lie.
+std::string ground_functions(const Effects& effects);
+
 // The samplers and uniforms of the G-buffer, the weights, the maps and the lights.
 std::string uniforms(const Effects& effects);
 
@@ -103,6 +119,6 @@ std::string over_tilts(const Effects& effects, const std::string& sum, const std
                        const std::string& more);
 
 // The color of a ray that meets nothing.
-std::string background_color(Background background, Product product, bool projected_ground);
+std::string background_color(const Effects& effects, Product product, bool projected_ground);
 
 }  // namespace goniochrome::render

@@ -17,7 +17,7 @@ drive("the droppers take what they are on", { width: 1700, height: 1000 }, async
     return x < 160 ? [210 + grain, 140 + (y >> 3), 60] : [30, 40 + grain, 90 + (y >> 3)];
   }));
   await quiet();
-  await give("#add-pictures", [picture]);
+  await give("#open-files", [picture]);
   await browser.until("studio.pictures.current !== null && studio.pictures.place.querySelector('canvas')?.clientWidth > 0");
   await value("document.getElementById('picture-panel').scrollIntoView()");
   const at = (x, y) => value(`(() => { const { canvas } = studio.pictures.current, box = canvas.getBoundingClientRect();
@@ -61,14 +61,14 @@ drive("the droppers take what they are on", { width: 1700, height: 1000 }, async
   check("the picture moves below the mouse", (await value("studio.pictures.place.scrollLeft")) === 80);
   const wrong = path.join(path.resolve(folder), "wrong.png");
   fs.writeFileSync(wrong, "no picture");
-  await give("#add-pictures", [wrong]);
+  await give("#open-files", [wrong]);
   await browser.until("document.getElementById('status').textContent.includes('wrong.png is no picture')", 10);
   check("nothing was added", (await value("studio.pictures.all.length")) === 1);
 
   // A second picture stands beside the first, and droppers on both make one paint; another board has its own.
   const second = path.join(path.resolve(folder), "third color.png");
   fs.writeFileSync(second, png(200, 120, (x, y) => [40, 120 + (x >> 3), 90 + (y >> 3)]));
-  await give("#add-pictures", [second]);
+  await give("#open-files", [second]);
   await browser.until("studio.pictures.all.length === 2");
   await value("studio.pictures.zoomTo(1)");
   await value("document.getElementById('picture-panel').scrollIntoView()");
@@ -92,7 +92,7 @@ drive("the droppers take what they are on", { width: 1700, height: 1000 }, async
   check("the browser keeps them", (await value("JSON.parse(studio.kept()[0].session).pictures.boards[0].pictures.length")) === 2);
   await browser.click("#new-board");
   check("the new board is empty", (await value("document.querySelectorAll('#picture canvas').length")) === 0);
-  await give("#add-pictures", [second]);
+  await give("#open-files", [second]);
   await browser.until("studio.pictures.all.length === 3");
   await value("document.querySelector('#picture-tabs [aria-selected=true]').focus()");
   await browser.key("ArrowLeft");

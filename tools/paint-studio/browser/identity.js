@@ -86,7 +86,7 @@ class Tally {
 
 async function main() {
   const [module, basisFile, count = "160", seed = "1"] = process.argv.slice(2);
-  const engine = await makeEngine(fs.readFileSync(module), Number(count)), random = randomNumbers(Number(seed));
+  const engine = await makeEngine(new WebAssembly.Module(fs.readFileSync(module))), random = randomNumbers(Number(seed));
   const text = fs.readFileSync(basisFile, "utf8");
   const basis = { name: text.match(/<basis [^>]*name="([^"]*)"/)[1], mirror: text.includes("<mirror/>"),
                   exponents: [...text.matchAll(/<exponent>([^<]*)</g)].map((match) => Number(match[1])) };

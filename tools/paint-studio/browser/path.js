@@ -110,7 +110,28 @@ drive("the path was walked", { width: 1000, height: 1000 }, async ({ browser, fo
   await new Promise((resolve) => setTimeout(resolve, 500));
   await browser.until("window.studio !== undefined && document.readyState === 'complete'");
   check("the session is kept", (await paint()) === edited);
+  const nearest = await value("document.querySelector('#nearest .tile span').textContent");
   await browser.click("#nearest .tile");
+  check("a near paint is on the car by one click", (await value("studio.compared.name")) === nearest && (await value("!document.getElementById('border').hidden")));
+  check("its way is in the wheel", (await value("document.getElementById('match-way').getAttribute('points')")).split(" ").length > 5);
+  const cars = async (count) => {
+    await choose("car-count", count);
+    await browser.until("document.querySelectorAll('#cars span').length > 1");
+    await quiet();
+    return value(`(() => { studio.stageView.drawCars(false); const { gl } = studio.stage, { width, height } = studio.stage.canvas, pixels = new Uint8Array(4 * width * height);
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      const { columns, rows } = studio.stageView.grid, mean = (column, row) => { let sum = 0; for (let y = row * height / rows | 0; y < ((row + 1) * height / rows | 0); y += 3) for (let x = column * width / columns | 0; x < ((column + 1) * width / columns | 0); x += 3) sum += pixels[4 * (y * width + x)] - pixels[4 * (y * width + x) + 2]; return sum; };
+      return { names: [...document.querySelectorAll("#cars span")].map((one) => one.textContent), sums: [...Array(columns * rows).keys()].map((i) => mean(i % columns, Math.floor(i / columns))) }; })()`);
+  };
+  const two = await cars("two cars");
+  await shot("7-two-cars");
+  check(`two cars wear two paints: ${JSON.stringify(two)}`, two.names[1] === nearest && Math.abs(two.sums[0] - two.sums[1]) > 1e-3 * Math.abs(two.sums[0]));
+  const four = await cars("four cars");
+  await shot("7-four-cars");
+  check(`four cars wear four paints: ${JSON.stringify(four)}`, new Set(four.names).size === 4 && new Set(four.sums).size === 4);
+  await choose("car-count", "one car with a border");
+  await choose("compare", "nothing");
+  await browser.click("#nearest .corner");
   check("a near paint starts anew", (await value("studio.history.now.steps.length")) === 0);
   // Narrow and dark.
   await browser.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: "dark" }] });

@@ -39,7 +39,7 @@ async function main() {
       layers.push({ paint, environment: environments[number], ...(await browser.evaluate("gatheredApart")) });
       fs.writeFileSync(path.join(folder, `${paint}-${environments[number]}.f32`), Buffer.from(base64, "base64"));
     }
-  // The first paint with the lamp of the page, in each environment turned by a right angle, and without its ground.
+  // The first paint with the lamp of the page, in each environment turned by a right angle, without its ground, and without a shadow there.
   const variant = async (name, before, after) => {
     for (let number = 0; number < environments.length; ++number) {
       const base64 = await browser.evaluate(`(() => {
@@ -61,6 +61,8 @@ async function main() {
   await variant("lamp", "app.stageView.setLamp({ on: true, azimuth: -25, elevation: 40, stops: -1 });", "app.stageView.setLamp({ on: false });");
   await variant("turned", "app.stageView.turnTo(90);", "app.stageView.turnTo(0);");
   await variant("groundless", "app.stage.ground = false;", "app.stage.ground = true;");
+  await variant("shadeless", "window.shade = app.data.environments[app.stageView.environment].ground_light; delete app.data.environments[app.stageView.environment].ground_light;",
+                "app.data.environments[app.stageView.environment].ground_light = window.shade;");
   // Layers that were drawn for one paint show another one: that whose wide lobes look elsewhere most, of all that little gloss makes
   // of paints of the library; and with the lamp. The control takes layers as they are.
   // Half of the width and of the height is enough for these.

@@ -5,6 +5,8 @@ function made(tag, attributes = {}, children = []) {
   for (const [name, value] of Object.entries(attributes)) {
     if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
     else if (name === "text") element.textContent = value;
+    else if (name === "words") element.textContent = words(value);
+    else if (name === "aria-label" || name === "title") element.setAttribute(name, words(value));
     else element.setAttribute(name, value);
   }
   element.append(...children);
@@ -51,7 +53,7 @@ class NumberControls {
     const grid = made("div", { class: "fields" });
     for (const end of ["face", "flop"]) {
       this.fields[end + "-swatch"] = made("span", { class: "swatch", "aria-hidden": "true" });
-      grid.append(made("span", {}, [this.fields[end + "-swatch"], " " + end]));
+      grid.append(made("span", {}, [this.fields[end + "-swatch"], " " + words(end)]));
       ["L", "a", "b"].forEach((channel) => {
         const field = made("input", { type: "number", step: "0.5", min: lowest[channel], max: highest[channel],
                                       "aria-label": `${channel}* of the ${end}`,
@@ -65,7 +67,7 @@ class NumberControls {
     this.fields.keep = keep;
     document.getElementById("numbers").append(
       grid, this.loss, this.slider("travel", 15.5, 180, 0.5, "°"), this.slider("gloss", 0, 100, 0.5, "GU"),
-      made("label", {}, [keep, "keep what the readings have beside the curve"]), this.brushed());
+      made("label", {}, [keep, words("keep what the readings have beside the curve")]), this.brushed());
     const averages = document.getElementById("averages");
     averages.append(this.slider("lightness", 0, 120, 0.5, ""), this.slider("chroma", 0, 140, 0.5, ""),
                     this.slider("hue", 0, 360, 1, "°"));
@@ -79,7 +81,7 @@ class NumberControls {
                                   onchange: () => this.commitNumber(name, low, high) });
     this.fields[name + "-range"] = range;
     this.fields[name] = field;
-    return made("div", { class: "slider" }, [made("span", { text: name }), range, field, made("span", { text: unit })]);
+    return made("div", { class: "slider" }, [name in notes ? noted(name) : made("span", { words: name }), range, field, unit in notes ? noted(unit) : made("span", { text: unit })]);
   }
 
   // The widths of a brushed surface, as slopes.
@@ -90,7 +92,7 @@ class NumberControls {
       this.fields["brushed-" + axis] = field;
     });
     return made("div", { class: "row", role: "group", "aria-label": "Brushed surface" },
-                [made("span", { text: "brushed" }), made("label", {}, ["sideways", this.fields["brushed-x"]]), made("label", {}, ["upward", this.fields["brushed-y"]]), made("span", { text: "0 for none" })]);
+                [made("span", { words: "brushed" }), made("label", {}, [words("sideways"), this.fields["brushed-x"]]), made("label", {}, [words("upward"), this.fields["brushed-y"]]), made("span", { words: "0 for none" })]);
   }
   // A surface has both widths or none: where the other field has 0, it takes the same width.
   commitBrushed(changed) {
@@ -130,7 +132,7 @@ class NumberControls {
   lossOf(end, { de00, nearest }) {
     const [, a, b] = nearest.map((value) => value.toFixed(1));
     const take = () => this.app.commit({ [end]: nearest.map((value) => rounded(value)), ...this.residual() });
-    return made("p", { class: "loss" }, [`The screen shows the ${end} ${de00.toFixed(1)} (CIEDE2000) off. `, made("button", { type: "button", text: `take a* ${a}, b* ${b}`, onclick: take })]);
+    return made("p", { class: "loss" }, [told`The screen shows the ${words(end)} ${de00.toFixed(1)} (CIEDE2000) off.`, " ", made("button", { type: "button", text: told`take a* ${a}, b* ${b}`, onclick: take })]);
   }
 
   show(description) {

@@ -24,25 +24,37 @@ function wasiImports(memoryOf) {
   };
 }
 
-const lists = ["weights", "filtered", "cloud", "cloudColors", "cloudPaints", "tilts", "picture"];
-const ofFloats = ["weights", "cloud", "tilts", "picture"];
+const lists = ["weights", "filtered", "cloud", "cloudColors", "cloudPaints", "tilts", "picture", "numbers"];
+const kindOfList = { weights: Float32Array, cloud: Float32Array, tilts: Float32Array, picture: Float32Array, numbers: Uint8Array };  // others: Uint32Array
 
 // The engine of a compiled module. ask() sends a request and returns the answer; it throws what the answer calls an
-// error.
-async function makeEngine(bytes) {
-  let memory = null;
-  const { instance } = await WebAssembly.instantiate(bytes, {
-    wasi_snapshot_preview1: wasiImports(() => memory),
-  });
-  const library = instance.exports;
+// error. `progress` hears the part of a long request that is done.
+async function makeEngine(module, progress = () => {}) {
+  let memory = null, library = null;
+  const encoder = new TextEncoder(), decoder = new TextDecoder();
+  // XML is parsed by the browser; a text that is no UTF-8 is told as an event.
+  const xml_events = (at, length) => {
+    let events;
+    try {
+      const bytes = new Uint8Array(memory.buffer, at, length), kind = bytes[0] === 0xff ? "utf-16le" : bytes[0] === 0xfe ? "utf-16be" : "utf-8";
+      events = xmlEvents(new TextDecoder(kind, { fatal: true }).decode(bytes));
+    } catch (error) {
+      events = ["!", "1", error instanceof RangeError ? "elements are nested too deep: flatten them" : "a character is not valid UTF-8: save the file as UTF-8, without control characters"];
+    }
+    const text = encoder.encode(events.join("\0") + "\0"), place = library.studio_events(text.length);
+    new Uint8Array(memory.buffer, place, text.length).set(text);
+  };
+  const instance = await WebAssembly.instantiate(module, { wasi_snapshot_preview1: wasiImports(() => memory), page: { xml_events, progress } });
+  library = instance.exports;
   memory = library.memory;
   library._initialize();
-  const encoder = new TextEncoder(), decoder = new TextDecoder();
+  const request = (words) => {
+    const text = encoder.encode(words), at = library.studio_request(text.length);
+    new Uint8Array(memory.buffer, at, text.length).set(text);
+  };
   return {
-    ask(request) {
-      const text = encoder.encode(JSON.stringify(request));
-      const at = library.studio_request(text.length);
-      new Uint8Array(memory.buffer, at, text.length).set(text);
+    ask(asked) {
+      request(JSON.stringify(asked));
       const length = library.studio_call();
       const answer = JSON.parse(decoder.decode(new Uint8Array(memory.buffer, library.studio_answer(), length)));
       if (answer.error !== undefined) throw new Error(answer.error);
@@ -53,11 +65,17 @@ async function makeEngine(bytes) {
       const at = library.studio_attach(length);  // before its memory is looked at, which may move
       return new Uint8Array(memory.buffer, at, length);
     },
+    // Makes bytes a file, which requests can read by its name; without a name all files go.
+    give(name, bytes = new Uint8Array(0)) {
+      this.attach(bytes.length).set(bytes);
+      request(name);
+      library.studio_give();
+    },
     // A list that an answer filled, copied: weights or tilts of the paint that was fitted last, filtered, cloud,
-    // cloudColors, cloudPaints, or the picture of a view.
+    // cloudColors, cloudPaints, the picture of a view, or the bytes of numbers.
     list(name) {
-      const number = lists.indexOf(name), Kind = ofFloats.includes(name) ? Float32Array : Uint32Array;
-      return new Kind(memory.buffer, library.studio_list(number), library.studio_list_bytes(number) / 4).slice();
+      const number = lists.indexOf(name), Kind = kindOfList[name] ?? Uint32Array;
+      return new Kind(memory.buffer, library.studio_list(number), library.studio_list_bytes(number) / Kind.BYTES_PER_ELEMENT).slice();
     },
     bytes: () => memory.buffer.byteLength,
   };

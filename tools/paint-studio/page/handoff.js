@@ -67,40 +67,6 @@ async function unpackedText(packed) {
 // A name that every file system takes.
 const fileName = (name) => name.replace(/[^A-Za-z0-9_.-]+/g, "_") || "paint";
 
-// The paints of a text of paint XML, as requests take them. Throws a sentence where it is none.
-function paintsOf(text, name) {
-  const space = "urn:goniochrome:paint:1", root = new DOMParser().parseFromString(text, "application/xml").documentElement;
-  if (root.namespaceURI !== space || root.localName !== "paints") throw new Error(`${name} is no paint XML.`);
-  const children = (element, tag) => [...element.children].filter((one) => one.namespaceURI === space && one.localName === tag);
-  const words = (element, ...names) => Object.fromEntries(names.filter((one) => element.hasAttribute(one)).map((one) => [one, element.getAttribute(one)]));
-  const number = (element, attribute) => {
-    const value = Number(element.getAttribute(attribute) || NaN);
-    if (!Number.isFinite(value)) throw new Error(`${name}: ${attribute} of ${element.localName} is "${element.getAttribute(attribute) ?? ""}": a number is wanted.`);
-    return value;
-  };
-  const lab = (element) => ["L", "a", "b"].map((one) => number(element, one)), numbers = (element) => element.textContent.trim().split(/\s+/).map(Number);
-  const measurement = (element) => ({
-    ...words(element, "illuminant", "instrument"), ...(element.hasAttribute("observer") && { observer: number(element, "observer") }),
-    rows: children(element, "lab").map((row) => ({ geometry: row.getAttribute("geometry"), lab: lab(row) })),
-    spectra: children(element, "spectrum").map((one) => ({ geometry: one.getAttribute("geometry"), from: number(one, "from"), step: number(one, "step"), factors: numbers(one) })),
-    textures: children(element, "texture").map((one) => ({ ...words(one, "quantity", "geometry", "version"), value: number(one, "value") })),
-  });
-  const appearance = (element) => ({ face: lab(children(element, "face")[0]), flop: lab(children(element, "flop")[0]), travel: number(element, "travel") });
-  const paints = children(root, "paint").map((element) => {
-    const one = (tag) => children(element, tag)[0], paint = { name: element.getAttribute("name") ?? "", ...words(element, "code", "class") };
-    if (one("measurement")) paint.measurement = measurement(one("measurement"));
-    const gloss = children(element, "gloss").map((reading) => [number(reading, "angle"), numbers(reading)[0]]);
-    if (gloss.length > 0) paint.gloss = gloss;
-    if (one("appearance")) paint.appearance = appearance(one("appearance"));
-    if (one("anisotropy")) paint.anisotropy = [number(one("anisotropy"), "alphaX"), number(one("anisotropy"), "alphaY")];
-    if (one("colorMap")) paint.color_map = { href: one("colorMap").getAttribute("href") ?? "", index: number(one("colorMap"), "index") };
-    if (one("coat")) paint.coat = number(one("coat"), "index");
-    return paint;
-  });
-  if (paints.length === 0) throw new Error(`${name} has no paint.`);
-  return paints;
-}
-
 class Handoff {
   constructor(app) {
     this.app = app;
@@ -112,18 +78,6 @@ class Handoff {
     press("save-session", () => save(fileName(app.paint.name) + ".session.json", app.savedSession(), "application/json"));
     press("copy", () => this.copy(document.getElementById("command").textContent, "The commands"));
     press("copy-link", () => packedText(app.linked()).then((text) => this.copy(`${location.href.split("#")[0]}#p=${text}`, "The link")));
-    const open = document.getElementById("open-session");
-    open.addEventListener("change", () => {
-      const file = open.files[0];
-      open.value = "";
-      if (file) file.text().then((text) => app.attempt(() => app.openSession(text)));
-    });
-    const paints = document.getElementById("open-paints");
-    paints.addEventListener("change", () => {
-      const file = paints.files[0];
-      paints.value = "";
-      if (file) file.text().then((text) => app.attempt(() => app.openPaints(file.name, paintsOf(text, file.name))));
-    });
   }
 
   // The design as CxF, under the code of the nearest paint of the library.

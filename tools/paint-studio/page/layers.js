@@ -67,7 +67,7 @@ class GatheredLight {
   // True if layers of this view in this light are kept that show a paint, but for a few that are drawn in its place.
   serves(key, weights, environment) {
     const { held } = this;
-    if (!held || held.key !== key || held.own !== this.ownOf(weights) || !held.drawn.has(this.layers.beside)) return false;
+    if (this.stage.hasSecond || !held || held.key !== key || held.own !== this.ownOf(weights) || !held.drawn.has(this.layers.beside)) return false;
     return this.waiting(weights, environment, false).length <= this.layers.at_once;
   }
   // Layers that are still to be drawn: those that the paint needs, and then all others for which there is room.
@@ -85,6 +85,7 @@ class GatheredLight {
   // Draws some of the layers that wait, and returns whether more wait then. Where the view or the light is another one, those
   // before are dropped.
   gather(key, gbuffer, weights, environment, others = true) {
+    if (this.stage.hasSecond) return false;
     const own = this.ownOf(weights);
     if (!this.held || this.held.key !== key || this.held.own !== own) this.begin(gbuffer, key, own);
     const { held } = this, { at_once, beside } = this.layers, program = this.stage.shading(environment, weights.tilts !== null, "gathering");

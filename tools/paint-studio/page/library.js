@@ -38,10 +38,10 @@ class LibraryPanel {
     const form = document.getElementById("filters");
     for (const [name, text] of Object.entries(metricNames)) {
       const field = (side) => made("input", { type: "number", step: "any", "data-metric": name, "data-side": side, "aria-label": `${side === "low" ? "lowest" : "highest"} ${text}` });
-      form.append(made("div", { class: "range" }, [made("span", { text }), field("low"), made("span", { text: "to" }), field("high")]));
+      form.append(made("div", { class: "range" }, [made("span", { words: text }), field("low"), made("span", { words: "to" }), field("high")]));
     }
     const order = document.getElementById("order");
-    order.append(made("option", { value: "", text: "the library's order" }), ...Object.entries(metricNames).map(([value, text]) => made("option", { value, text })));
+    order.append(made("option", { value: "", words: "the library's order" }), ...Object.entries(metricNames).map(([value, text]) => made("option", { value, words: text })));
     document.getElementById("search").addEventListener("input", () => this.filter());
     for (const element of [order, document.getElementById("paint-class")]) element.addEventListener("change", () => this.filter());
     form.addEventListener("input", () => this.filter());
@@ -63,7 +63,7 @@ class LibraryPanel {
     this.current = 0;
     this.list.scrollTop = 0;
     this.space.style.height = `${rowHeight * this.places.length}px`;
-    document.getElementById("paint-count").textContent = `${this.places.length} of ${this.app.library.count} paints`;
+    document.getElementById("paint-count").textContent = told`${this.places.length} of ${this.app.library.count} paints`;
     this.showRows();
     this.filter_ms = performance.now() - begin;
   }
@@ -94,8 +94,8 @@ class LibraryPanel {
     if (place === undefined) return;
     const { paint } = this.app.library.at(place);
     chosen.replaceChildren(made("span", { text: paint.name + (paint.code ? `, ${paint.code}` : "") }),
-                           made("button", { type: "button", text: "Start from this paint", onclick: () => this.app.start(place) }),
-                           made("button", { type: "button", text: "Compare with it", onclick: () => this.app.compareWith(place) }));
+                           made("button", { type: "button", words: "Start from this paint", onclick: () => this.app.start(place) }),
+                           made("button", { type: "button", words: "Compare with it", onclick: () => this.app.compareWith(place) }));
   }
   key(event) {
     const page = Math.max(1, Math.floor(this.list.clientHeight / rowHeight) - 1), step = { ArrowUp: -1, ArrowDown: 1, PageUp: -page, PageDown: page, Home: -Infinity, End: Infinity }[event.key];
@@ -158,7 +158,7 @@ class Cloud {
     const angle = Number(document.getElementById("cloud-angle").selectedOptions[0].dataset.angle);
     const found = this.app.attempt(() => this.app.engine.ask({ do: "at", paint: this.app.paint, angle }));
     this.design = found ? found : null;
-    if (found) document.getElementById("cloud-text").textContent = `The design, with the cross, has L* ${found.lab[0].toFixed(1)}, a* ${found.lab[1].toFixed(1)}, b* ${found.lab[2].toFixed(1)} there, among ${this.paints.length} paints.`;
+    if (found) document.getElementById("cloud-text").textContent = told`The design, with the cross, has L* ${found.lab[0].toFixed(1)}, a* ${found.lab[1].toFixed(1)}, b* ${found.lab[2].toFixed(1)} there, among ${this.paints.length} paints.`;
     this.draw();
   }
   look(turn, tilt) {

@@ -4,7 +4,7 @@ const mostKept = 4e6;    // letters of pictures that a browser is asked to keep;
 const mostListed = 500;  // paints in a list that the browser unfolds
 
 class App {
-  constructor(engine, data, library) {
+  constructor(engine, data, library, module, code) {
     this.engine = engine;
     this.data = data;
     this.library = library;
@@ -23,6 +23,11 @@ class App {
     this.handoff = new Handoff(this);
     this.surface = new Surface(this);
     this.pictures = new Pictures(this);
+    this.parts = new Parts(this);
+    this.card = new Card(this);
+    this.tour = new Tour(this);
+    document.getElementById("geometry-note").append(noted("45as15"));
+    this.opening = new Opening(this, module, code);
     this.panel = new LibraryPanel(this);
     this.cloud = new Cloud(this);
     this.makeHeader();
@@ -77,7 +82,6 @@ class App {
     for (const state of states) this.engine.ask({ do: "describe", paint: state.paint });
     if (states.length > 1) this.palette.push(...states);
     this.restore(states[0]);
-    this.say(states.length > 1 ? `${states.length} paints of ${file} are in the palette.` : "");
   }
   glossAngle() { return this.paint.gloss && this.paint.gloss.length > 0 ? this.paint.gloss[0][0] : 60; }
 
@@ -129,7 +133,15 @@ class App {
     this.traced.tileTexture = null;
     this.compare(this.compared.choice);
     this.show();
-    this.say("The graphics are back.");
+  }
+  // After parts or the second paint changed.
+  partsChanged() {
+    const { second } = this.parts;
+    if (second) this.engine.ask({ do: "fit", paint: second.paint });
+    this.stage.partsChanged(second ? this.engine.list("weights") : null);
+    this.stageView.cells = [];
+    this.compare(this.compared.choice);
+    this.show();
   }
 
   // The paint that an edit would make, shown while it is being made.
@@ -161,13 +173,13 @@ class App {
     const made = this.attempt(() => {
       const done = this.edited(edit), now = this.history.now;
       if (done.skipped.length > 0) {
-        this.say("This cannot be done: " + done.skipped.join("; "));
+        this.say(words("This cannot be done:") + " " + done.skipped.join("; "));
         return false;
       }
       if (JSON.stringify(done.paint) !== JSON.stringify(now.paint)) {
         const name = now.name ?? this.copyName(now.paint.name);
         this.history.push({ start: now.start, own: now.own, steps: [...now.steps, edit], ...labeled(done.paint, name, now.code), goesOn: true, by_key: what });
-        this.say(done.clipped.length > 0 ? "Clipped: " + done.clipped.join("; ") : "");
+        this.say(done.clipped.length > 0 ? words("Clipped:") + " " + done.clipped.join("; ") : "");
       }
       return true;
     });
@@ -239,7 +251,7 @@ class App {
   // the page follows.
   display(paint, moving) {
     const begin = performance.now();
-    const fit = this.engine.ask({ do: "fit", paint, extent: Math.max(0.1, this.stageView.light.extent) });
+    const fit = this.fit = this.engine.ask({ do: "fit", paint, extent: Math.max(0.1, this.stageView.light.extent) });
     const fitted = performance.now();
     this.paint = paint;
     this.highlight = fit.highlight;
@@ -285,6 +297,15 @@ class App {
     this.stageView.showBorder();
     this.stageView.redraw();
   }
+  // So many paints that stand beside the design: the one that it is compared with, or the one it began with, and the nearest
+  // of the library.
+  beside(count) {
+    const first = this.comparedState()?.paint ?? this.origin(this.history.now).paint;
+    const others = [...(this.near ?? []).map((number) => this.library.paint(number)), ...this.palette.map((state) => state.paint), first].filter((paint) => paint.name !== first.name);
+    const key = JSON.stringify([first, others.map(({ name }) => name), count]);
+    if (this.besideKey !== key) [this.besideKey, this.besideList] = [key, [first, ...others, first, first].slice(0, count)];
+    return this.besideList;
+  }
   // Paints between the design and the one that it is compared with, into the palette.
   gradient() {
     const field = document.getElementById("gradient-steps"), count = clamped(Math.round(field.valueAsNumber || 3), 1, 24), to = this.comparedState();
@@ -295,7 +316,7 @@ class App {
     this.tiles.palette();
     this.showChoices();
     this.store();
-    return this.say(`${count} paints between ${from.paint.name} and ${to.paint.name} are in the palette.`);
+    return this.say(told`${count} paints between ${from.paint.name} and ${to.paint.name} are in the palette.`);
   }
   // The state of the paint that the design is compared with; null for none.
   comparedState() {
@@ -313,7 +334,7 @@ class App {
   showChoices() {
     const list = document.getElementById("compare"), group = (label, options) => options.length > 0 && list.append(made("optgroup", { label }, options));
     const option = (value, text) => made("option", { value, text });
-    list.replaceChildren(option("none", "nothing"), option("start", "the paint it began with"));
+    list.replaceChildren(option("none", words("nothing")), option("start", words("the paint it began with")));
     const { states, at } = this.history, first = Math.max(0, states.length - 40);
     group("History", states.slice(first).map((state, i) => [first + i, state]).filter(([i]) => i !== at).map(([i, state]) =>
       option(`step ${i}`, `step ${i}: ${state.paint.name}${state.steps.length > 0 ? ", " + Object.keys(state.steps.at(-1)).join(" ") : ""}`)));
@@ -326,15 +347,15 @@ class App {
   }
 
   showFigures(fit) {
-    const number = (value, digits = 1) => (value === null ? "does not apply" : value.toFixed(digits));
+    const number = (value, digits = 1) => (value === null ? words("does not apply") : value.toFixed(digits));
     const { metrics } = this.description;
-    const rows = [["Name", this.paint.name], ["Flop index", number(metrics.flop_index)],
-                  ["Chroma index", number(metrics.chroma_index)], ["Hue shift index", number(metrics.hue_shift_index)],
-                  ["Lobes miss the readings by", `${number(fit.de00_mean, 2)} on average, ${number(fit.de00_max, 2)} at most (CIEDE2000)`]];
-    if (fit.gamut_de00 > 0.05) rows.push(["Lost outside the working space", number(fit.gamut_de00, 2) + " (CIEDE2000)"]);
+    const rows = [[words("Name"), this.paint.name], [words("flop index"), number(metrics.flop_index)],
+                  [words("chroma index"), number(metrics.chroma_index)], [words("hue shift index"), number(metrics.hue_shift_index)],
+                  [[noted("Lobes"), " ", words("miss the readings by")], told`${number(fit.de00_mean, 2)} on average, ${number(fit.de00_max, 2)} at most (CIEDE2000)`]];
+    if (fit.gamut_de00 > 0.05) rows.push([words("Lost outside the working space"), number(fit.gamut_de00, 2) + " (CIEDE2000)"]);
     if (metrics.flags.length > 0) rows.push(["Flags", metrics.flags.join(", ")]);
     document.getElementById("figures").replaceChildren(
-      ...rows.flatMap(([name, value]) => [made("dt", { text: name }), made("dd", { text: value })]));
+      ...rows.flatMap(([name, value]) => [made("dt", {}, [name].flat()), made("dd", { text: value })]));
   }
 
   // The contents of a link: the design, by the library's paint and the edits, and how it is seen.
@@ -354,7 +375,7 @@ class App {
   // droppers. Paints are made again when it is opened.
   savedSession(withPictures = true) {
     return JSON.stringify({ kind: "paint-studio session", version: 1, title: this.data.title,
-                            history: this.history.saved(), palette: this.palette.map(saidState),
+                            history: this.history.saved(), palette: this.palette.map(saidState), parts: this.parts.saved(), notes: this.card.notes.value || undefined,
                             ...(withPictures && this.pictures.boards.length > 0 ? { pictures: this.pictures.saved() } : {}) });
   }
   // The state that these edits of a library paint lead to. Throws what a request refuses.
@@ -380,7 +401,8 @@ class App {
     const palette = (session.palette ?? []).map((one) => this.replayed(one));
     this.history = new EditHistory(states, at);
     this.palette = palette;
-    this.show();
+    this.parts.restore(session.parts);
+    this.card.notes.value = session.notes ?? "";
     if (session.pictures) this.pictures.restore(session.pictures).catch((error) => this.say(error.message));
   }
   // Each tab keeps a session of its own, and a new tab begins with the last one. The newest eight stay. Browsers may refuse
@@ -421,13 +443,14 @@ class App {
   }
 }
 
-async function begin() {
+async function begin(code) {
+  translatePage();
   try {
     if (typeof DecompressionStream === "undefined") throw new Error("This browser cannot decompress the data of the page: it takes a newer one.");
-    const data = JSON.parse(taken("data")), engine = await makeEngine(await inflated("compiled"));
+    const data = JSON.parse(taken("data")), module = await WebAssembly.compile(await inflated("compiled")), engine = await makeEngine(module);
     await inflated("index", (size) => engine.attach(size));
     pageNumbers = await inflated("binary");
-    const app = new App(engine, data, new PaintStore(taken("paints"), data.layouts));
+    const app = new App(engine, data, new PaintStore(taken("paints"), data.layouts), module, code);
     window.studio = app;
     window.studioOpened_ms = performance.now();
     app.stageView.turnAround();
@@ -437,4 +460,6 @@ async function begin() {
   }
 }
 
-if (typeof document !== "undefined") begin();
+// A worker, which has no document, runs this script too.
+if (typeof document !== "undefined") begin(document.currentScript.textContent);
+else if (typeof self !== "undefined") serveLight();

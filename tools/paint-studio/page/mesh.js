@@ -31,13 +31,13 @@ async function inflated(id, bytesFor = (size) => new Uint8Array(size)) {
 
 let pageNumbers = null;  // the bytes of all of them
 
-// Numbers at a place, [first byte, count].
-const numbersOf = ([at, count], Kind) => new Kind(pageNumbers.buffer, at, count);
+// Numbers at a place, [first byte, count], of the page or, as the third of the place, of what was opened.
+const numbersOf = ([at, count, bytes = pageNumbers], Kind) => new Kind(bytes.buffer, at, count);
 
 // The texels of a smooth map of 16 bits: each is told by its difference from that of the texel before, and the low bytes
 // of all stand before the high bytes.
-function smoothNumbersOf([at, count], channels) {
-  const bytes = numbersOf([at, 2 * count], Uint8Array), values = new Uint16Array(count);
+function smoothNumbersOf([at, count, of], channels) {
+  const bytes = numbersOf([at, 2 * count, of], Uint8Array), values = new Uint16Array(count);
   for (let i = 0; i < count; ++i) values[i] = (i >= channels ? values[i - channels] : 0) + bytes[i] + (bytes[count + i] << 8);
   return values;
 }

@@ -21,24 +21,6 @@ class Pictures {
     this.place = document.getElementById("picture");
     this.tabs = document.getElementById("picture-tabs");
     this.kind = "face";
-    const input = document.getElementById("add-pictures");
-    input.addEventListener("change", () => {
-      this.add([...input.files]);
-      input.value = "";
-    });
-    document.addEventListener("dragover", (event) => {
-      if ([...event.dataTransfer.types].includes("Files")) event.preventDefault();
-    });
-    document.addEventListener("drop", (event) => {
-      const files = [...event.dataTransfer.files];
-      if (files.length === 0) return;
-      event.preventDefault();
-      this.add(files);
-    });
-    document.addEventListener("paste", (event) => {
-      const files = [...event.clipboardData.files];
-      if (files.length > 0) this.add(files);
-    });
     document.querySelectorAll("input[name=dropper]").forEach((radio) => radio.addEventListener("change", () => {
       this.kind = radio.value;
       this.showMarks();
@@ -251,7 +233,7 @@ class Pictures {
     this.sheets = new Map();
     if (!this.board) return;
     for (const picture of this.board.pictures) this.sheets.set(picture, made("div", { class: "sheet" }, [picture.canvas]));
-    const hint = made("p", { class: "hint", text: "This board is empty: add pictures, or drop or paste them." });
+    const hint = made("p", { class: "hint", words: "This board is empty: add pictures, or drop or paste them." });
     this.place.replaceChildren(...(this.sheets.size > 0 ? this.sheets.values() : [hint]));
     this.showZoom();
   }

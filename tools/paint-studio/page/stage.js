@@ -10,6 +10,8 @@ class Stage {
       throw new Error("The graphics of this computer cannot draw float pictures, which the page needs.");
     this.gl = gl;
     this.canvas = canvas;
+    this.screen = matchMedia("(color-gamut: p3)").matches && "drawingBufferColorSpace" in gl ? "display-p3" : "srgb";
+    if ("drawingBufferColorSpace" in gl) gl.drawingBufferColorSpace = this.screen;
     this.data = data;
     this.floatLinear = gl.getExtension("OES_texture_float_linear") !== null;
     this.sumKind = gl.getExtension("EXT_float_blend") !== null ? gl.RGBA32F : gl.RGBA16F;
@@ -17,7 +19,7 @@ class Stage {
     this.columns = data.finishes.columns;
     if (this.columns > gl.getParameter(gl.MAX_TEXTURE_SIZE))
       throw new Error("The graphics of this computer cannot hold the weights of this basis.");
-    this.finishes = numbersOf(data.finishes.texels, Float32Array);
+    this.finishes = numbersOf(data.finishes.texels, Float32Array).slice();  // the first row is that of the second paint
     this.rows = 1 + data.finishes.rows;
     this.gbufferProgram = this.program(data.programs.gbuffer_vertex, data.programs.gbuffer_fragment);
     this.displayProgram = this.program(data.programs.shading_vertex, data.programs.display_fragment);
@@ -29,6 +31,7 @@ class Stage {
     this.versions = 0;
     this.turn = 0;     // of the environment about +Y, in degrees, as the camera's azimuth counts
     this.lamp = null;  // {direction, white}: where it stands beside the mesh, and what a white surface facing it shows
+    this.partsVersion = 0;  // of what the parts wear
     this.gathered = new GatheredLight(this);
     this.uploadMesh();
     gl.frontFace(gl.CW);  // counter-clockwise, seen with y down
@@ -105,6 +108,7 @@ class Stage {
     }
     gl.bindTexture(gl.TEXTURE_2D, made.texture);
     gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, this.columns, 1, gl.RGBA, gl.FLOAT, values);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 1, this.columns, 1, gl.RGBA, gl.FLOAT, this.finishes.subarray(0, 4 * this.columns));
     if (made.tilts) gl.deleteTexture(made.tilts);
     const brushed = tilts.length > 4;
     made.tilts = brushed ? this.tiltTexture(tilts) : null;
@@ -138,6 +142,19 @@ class Stage {
     return { sampler: packed.sampler, texture };
   }
 
+  // The part of its light that the ground keeps beside the mesh, between the two turns of the environment for which it is known.
+  groundLight(number, { size, turns, texels }) {
+    const gl = this.gl, made = this.environment(number), at = ((((this.turn % 360) + 360) % 360) / 360) * turns, first = Math.floor(at) % turns, share = at - Math.floor(at);
+    if (made.groundTurn === this.turn) return made.ground;
+    const all = numbersOf(texels, Uint8Array), length = 4 * size * size, one = all.subarray(first * length, (first + 1) * length), next = ((first + 1) % turns) * length;
+    const mixed = share === 0 ? one : one.map((value, i) => Math.round((1 - share) * value + share * all[next + i]));
+    made.ground ??= gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, made.ground);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, size, size, 0, gl.RGBA, gl.UNSIGNED_BYTE, mixed);
+    for (const [what, how] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_MAG_FILTER, gl.LINEAR], [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]]) gl.texParameteri(gl.TEXTURE_2D, what, how);
+    made.groundTurn = this.turn;
+    return made.ground;
+  }
   // The program and the textures of an environment, made when it is first shown.
   environment(number) {
     if (this.environments[number]) return this.environments[number];
@@ -200,7 +217,7 @@ class Stage {
   // The visible points of every pixel at one sample. They are drawn again only where the view changed.
   gbuffer(name, camera, width, height, shift) {
     const gl = this.gl, target = this.target("gbuffer " + name, width, height, gl.RGBA32F, true);
-    const key = JSON.stringify([camera, shift, this.turn]);
+    const key = JSON.stringify([camera, shift, this.turn, this.partsVersion]);
     if (target.key === key) return target;
     const view = projected(camera, width, height, this.mesh, shift), program = this.gbufferProgram;
     for (const name of ["corner", "right", "down"]) view[name] = turnedAgainst(view[name], this.turn);
@@ -214,7 +231,7 @@ class Stage {
     gl.uniformMatrix4fv(program.at("clip"), false, view.clip);
     for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), view[name]);
     gl.bindVertexArray(this.meshVertices);
-    for (const part of this.mesh.parts) {
+    for (const part of this.mesh.parts.filter(({ row }) => row !== hiddenRow)) {
       gl.uniform1i(program.at("part"), part.row);
       gl.drawElements(gl.TRIANGLES, 3 * part.count, gl.UNSIGNED_INT, 12 * part.first);
     }
@@ -269,6 +286,10 @@ class Stage {
     const { seen_from, drop } = this.data.mesh.ground;
     gl.uniform3fv(program.at("ground_eye"), turnedAgainst(added(gbuffer.view.eye, seen_from, -1), this.turn));
     gl.uniform1f(program.at("ground_drop"), this.ground ? drop : 0);
+    const shade = this.data.environments[environment].ground_light;
+    bind("ground_light", gl.TEXTURE_2D, shade ? this.groundLight(environment, shade) : gbuffer.texture);
+    gl.uniform3fv(program.at("ground_place"), shade ? [shade.low[0] - seen_from[0], shade.low[1] - seen_from[2], 1 / shade.side] : [0, 0, 0]);
+    gl.uniform2fv(program.at("ground_turn"), [Math.cos((this.turn * Math.PI) / 180), Math.sin((this.turn * Math.PI) / 180)]);
     for (const [uniform, member] of [["light_direction", "direction"], ["light_white", "white"], ["light_disc", "disc"]])
       if (program.lamps.length > 0) gl.uniform3fv(program.at(uniform + "[0]"), program.lamps.flatMap((lamp) => lamp[member]));
   }
@@ -290,12 +311,28 @@ class Stage {
 
   // Brings a sum of samples to the screen, or into a framebuffer.
   show(sum, samples, environment, stops, framebuffer = null) {
-    this.display(sum, samples, this.environment(environment).white, stops, framebuffer);
+    this.display(sum, samples, this.environment(environment).white, stops, framebuffer, this.screen);
   }
-  // `white` is the luminance that exposure 0 brings to 1.
-  display(picture, samples, white, stops, framebuffer) {
+  // The mesh in several paints, in cells that stand in so many columns, with so many samples a pixel.
+  showCells(camera, width, height, columns, weights, environment, stops, samples) {
+    const gl = this.gl, rows = weights.length / columns, target = this.target("cell screen", width, height, gl.RGBA8, false);
+    this.resize(columns * width, rows * height);
+    weights.forEach((own, i) => {
+      let sum = null;
+      for (let k = 0; k < samples; ++k) sum = this.shade("cell", this.gbuffer(`cell ${k}`, camera, width, height, samples > 1 ? sampleShifts(samples)[k] : [0, 0]), own, environment, k > 0);
+      this.show(sum, samples, environment, stops, target.framebuffer);
+      const left = (i % columns) * width, bottom = (rows - 1 - Math.floor(i / columns)) * height;
+      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, target.framebuffer);
+      gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+      gl.blitFramebuffer(0, 0, width, height, left, bottom, left + width, bottom + height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    });
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+  // `white` is the luminance that exposure 0 brings to 1, and `screen` is "srgb" or "display-p3".
+  display(picture, samples, white, stops, framebuffer, screen) {
     this.cover(framebuffer, this.displayProgram, "picture", picture, (program) => {
       this.gl.uniform1f(program.at("share"), 1 / samples);
+      this.gl.uniformMatrix3fv(program.at("to_screen"), false, this.data.screens[screen]);
       this.gl.uniform1f(program.at("gain"), 2 ** stops / (white || 1));
     });
   }
@@ -306,7 +343,7 @@ class Stage {
     for (const [picture, begin, end] of [[pictures[0], 0, border], [pictures[1], border, width]]) {
       if (end === begin) continue;
       gl.scissor(begin, 0, end - begin, height);
-      this.display(picture, 1, white, stops, null);
+      this.display(picture, 1, white, stops, null, this.screen);
     }
     gl.disable(gl.SCISSOR_TEST);
   }
@@ -402,19 +439,31 @@ class Stage {
     return { normal: [...values.subarray(at, at + 3)], wo: scaled(unit(ray), -1), painted: Math.abs(values[at + 3]) === 1 };
   }
 
-  // The point of the mesh that is seen at a place of the picture, as surfaceAt() has it; null beside the mesh.
+  // The parts wear other rows than before. `second` has the weights of the second paint, where there is one.
+  partsChanged(second) {
+    if (second) this.finishes.set(second);
+    ++this.partsVersion;
+    this.gathered.drop();
+  }
+  // Where another paint is worn beside the design, layers of light that suit the one need not suit the other.
+  get hasSecond() { return this.mesh.parts.some(({ row }) => row === 1); }
+
+  // {point, part} of the mesh that is seen at a place of the picture, as surfaceAt() has it; null beside the mesh.
   pointUnder(camera, aspect, x, y) {
     const height = 720, width = Math.round(height * aspect), { corner, right, down } = projected(camera, width, height, this.mesh, [0, 0]);
     const { positions, corners } = this.mesh, ray = added(added(corner, right, x * width), down, y * height), at = (i) => positions.subarray(3 * corners[i], 3 * corners[i] + 3);
-    let nearest = Infinity;
-    for (let i = 0; i < corners.length; i += 3) {  // u and v are barycentric
-      const a = at(i), ab = added([...at(i + 1)], a, -1), ac = added([...at(i + 2)], a, -1), p = crossed(ray, ac), determinant = dotted(ab, p);
-      const from = added(camera.eye, a, -1), u = dotted(from, p) / determinant, q = crossed(from, ab), v = dotted(ray, q) / determinant;
-      if (!(u >= 0 && v >= 0 && u + v <= 1)) continue;
-      const distance = dotted(ac, q) / determinant;
-      if (distance > 0 && distance < nearest) nearest = distance;
-    }
-    return nearest < Infinity ? added(camera.eye, ray, nearest) : null;
+    let nearest = Infinity, met = 0;
+    const shown = this.mesh.parts.filter(({ row }) => row !== hiddenRow);
+    for (const { first, count } of shown)
+      for (let i = 3 * first; i < 3 * (first + count); i += 3) {  // u and v are barycentric
+        const a = at(i), ab = added([...at(i + 1)], a, -1), ac = added([...at(i + 2)], a, -1), p = crossed(ray, ac), determinant = dotted(ab, p);
+        const from = added(camera.eye, a, -1), u = dotted(from, p) / determinant, q = crossed(from, ab), v = dotted(ray, q) / determinant;
+        if (!(u >= 0 && v >= 0 && u + v <= 1)) continue;
+        const distance = dotted(ac, q) / determinant;
+        if (distance > 0 && distance < nearest) [nearest, met] = [distance, i];
+      }
+    if (nearest === Infinity) return null;
+    return { point: added(camera.eye, ray, nearest), part: shown.find(({ first, count }) => met >= 3 * first && met < 3 * (first + count)) };
   }
 
   // Shows nothing.
@@ -437,10 +486,10 @@ class Stage {
     const gbuffer = this.gbuffer("tile", camera, width, height, [0, 0]);
     return this.pixels(this.shade("tile", gbuffer, weights, environment, false), this.environment(environment).white, stops);
   }
-  // The pixels of a picture on a screen, as those of a canvas.
+  // The pixels of a canvas by which a screen of sRGB shows a picture.
   pixels(radiance, white, stops) {
     const gl = this.gl, { width, height } = radiance, target = this.target("tile screen", width, height, gl.RGBA8, false);
-    this.display(radiance, 1, white, stops, target.framebuffer);
+    this.display(radiance, 1, white, stops, target.framebuffer, "srgb");
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
     const pixels = new Uint8ClampedArray(4 * width * height), picture = new ImageData(width, height);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);

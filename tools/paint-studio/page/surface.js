@@ -2,7 +2,7 @@
 // there, and a cross with buttons that move that color. [Shimizu2009] 3.6
 
 const dragKinds = {
-  view: "Dragging goes around the mesh; arrow keys do so too.",
+  view: "Dragging goes around the mesh; arrow keys do so too. A click on a part lets you choose what it wears.",
   light: "Dragging turns the light around the mesh; arrow keys do so too.",
   lamp: "The highlight of the lamp goes where you drag it; arrow keys move the lamp.",
   color: "Drag the cross over the picture, or move it by arrow keys; its buttons change the color there.",
@@ -30,7 +30,7 @@ class Surface {
 
   setKind(kind) {
     this.kind = kind;
-    document.getElementById("drag-hint").textContent = this.fixed ? "The camera and the light of a traced view stay as they are." : dragKinds[kind];
+    document.getElementById("drag-hint").textContent = words(this.fixed ? "The camera and the light of a traced view stay as they are." : dragKinds[kind]);
     if (kind === "lamp" && !this.fixed && !this.app.stageView.lamp.on) this.app.stageView.setLamp({ on: true });
     if (kind === "color") this.placeCross(this.cross ?? [0.5, 0.5]);
     else this.placeCross(null);
@@ -42,12 +42,16 @@ class Surface {
     this.makeFingers(() => { last = null; });
     draggable(this.canvas, {
       begin: (event) => {
-        from = { x: event.clientX, y: event.clientY, view: { ...view.view }, turn: view.stage.turn };
+        from = { x: event.clientX, y: event.clientY, view: { ...view.view }, turn: view.stage.turn, moved: false };
         last = null;
         if (this.kind !== "view" && this.kind !== "light") last = this.dragged(event, from) ?? last;
       },
-      move: (event) => { last = this.dragged(event, from) ?? last; },
+      move: (event) => {
+        from.moved ||= Math.hypot(event.clientX - from.x, event.clientY - from.y) > 4;
+        last = this.dragged(event, from) ?? last;
+      },
       end: () => {
+        if (this.kind === "view" && !this.fixed && !from.moved) this.app.parts.choose(view.hit(from.x, from.y)?.part ?? null);
         if (this.kind === "travel" || this.kind === "gloss") {
           if (last) this.app.commit(last);
         } else if (this.kind !== "color" && !this.fixed) {
@@ -180,7 +184,7 @@ class Surface {
                    ["darker", () => ({ "lightness-shift": -step() })]];
     for (const kind of kinds) {
       if (kind === null) place.append(made("span", { id: "tweak-angle" }));
-      else place.append(made("button", { type: "button", "data-kind": kind[0], text: kind[0], onclick: () => this.tweak(kind[1]()) }));
+      else place.append(made("button", { type: "button", "data-kind": kind[0], words: kind[0], onclick: () => this.tweak(kind[1]()) }));
     }
   }
   tweak(move) {
@@ -215,21 +219,21 @@ class Surface {
   show(seen) {
     this.seen = seen && seen.lit ? seen : null;
     this.seenColor = this.seen ? this.app.attempt(() => this.app.engine.ask({ do: "at", paint: this.app.paint, angle: seen.angle })) : null;
-    const view = this.app.stageView, lightName = view.traced === null && view.lamp.on ? "the lamp" : "the brightest light";
+    const view = this.app.stageView, lightName = view.traced === null && view.lamp.on ? words("the lamp") : words("the brightest light");
     document.querySelectorAll("#tweaks button").forEach((button) => {
       const chroma = button.dataset.kind.includes("chroma") || button.dataset.kind.includes("hue");
       button.disabled = !this.seenColor || (chroma && this.seenColor.chroma < 0.5);
     });
     if (!this.seenColor) {
-      this.text.textContent = !seen ? "Point at the mesh to read its color." : seen.painted ? `This place is turned away from ${lightName}.` : "This part does not wear the paint.";
+      this.text.textContent = !seen ? words("Point at the mesh to read its color.") : seen.painted ? told`This place is turned away from ${lightName}.` : words("This part does not wear the paint.");
       this.swatch.style.background = "none";
       document.getElementById("tweak-angle").textContent = "-";
       this.app.curves.point(null);
       return;
     }
     const { lab, chroma, hue, css } = this.seenColor, [L, a, b] = lab.map((value) => value.toFixed(1));
-    const turned = chroma < 0.5 ? "gray" : `chroma ${chroma.toFixed(1)}, hue ${hue.toFixed(0)}°`;
-    this.text.textContent = `${seen.angle.toFixed(1)}° from the mirror direction of ${lightName}: L* ${L}, a* ${a}, b* ${b} (${turned})`;
+    const turned = chroma < 0.5 ? words("gray") : told`chroma ${chroma.toFixed(1)}, hue ${hue.toFixed(0)}°`;
+    this.text.textContent = told`${seen.angle.toFixed(1)}° from the mirror direction of ${lightName}: L* ${L}, a* ${a}, b* ${b} (${turned})`;
     this.swatch.style.background = css;
     document.getElementById("tweak-angle").textContent = seen.angle.toFixed(1) + "°";
     this.app.curves.point({ angle: seen.angle, lab });

@@ -38,7 +38,7 @@ class Tiles {
     if (!(step > 0)) return;
     const list = app.engine.ask({ do: "variations", paint: app.paint, of, step }).list;
     const tiles = list.map((one) => this.tile(one.paint, one.name, "", () => app.commit(one.edit)));
-    tiles.splice(Math.ceil(tiles.length / 2), 0, this.tile(app.paint, "as it is", "", () => {}, true));
+    tiles.splice(Math.ceil(tiles.length / 2), 0, this.tile(app.paint, words("as it is"), "", () => {}, true));
     this.put(place, tiles);
   }
 
@@ -53,13 +53,18 @@ class Tiles {
       return;
     }
     const verdicts = [];
-    if (answer.outside) verdicts.push("The design lies outside the library: its nearest paint differs by more than 10 on average.");
-    if (answer.off_radial) verdicts.push("Its hue turns in another way than that of its nearest paint (off-radial).");
+    if (answer.outside) verdicts.push(words("The design lies outside the library: its nearest paint differs by more than 10 on average."));
+    if (answer.off_radial) verdicts.push(words("Its hue turns in another way than that of its nearest paint (off-radial)."));
+    if (answer.hue_travel !== null && answer.matched_hue_travel !== null)
+      verdicts.push(told`From face to flop its hue turns by ${answer.hue_travel.toFixed(0)}°, and that of the nearest paint, whose way is dashed in the wheel, by ${answer.matched_hue_travel.toFixed(0)}°.`);
+    app.near = answer.list.map(({ place: number }) => number);
+    app.wheel.showMatch(app.near.length > 0 ? app.attempt(() => app.engine.ask({ do: "describe", paint: app.library.paint(app.near[0]) }).curve) ?? [] : []);
     document.getElementById("verdict").textContent = verdicts.join(" ");
     this.put(place, answer.list.map((match) => {
       const differences = Object.entries(match.de_by_geometry).map(([geometry, de]) => `${geometry} ${de.toFixed(1)}`);
       const note = `${match.code ? match.code + ", " : ""}sum ${match.distance.toFixed(2)}: ${differences.join(", ")}`;
-      return this.tile(app.library.paint(match.place), match.name, note, () => app.start(match.place));
+      const start = made("button", { type: "button", class: "corner", "aria-label": `Start from ${match.name}`, title: "Start from this paint", words: "start", onclick: () => app.start(match.place) });
+      return made("div", { class: "kept" }, [this.tile(app.library.paint(match.place), match.name, note, () => app.compareWith(match.place)), start]);
     }));
   }
 
@@ -67,7 +72,7 @@ class Tiles {
     const app = this.app, place = document.getElementById("palette");
     this.put(place, app.palette.map((state, number) => {
       const { name } = state.paint, tile = this.tile(state.paint, `${number + 1}: ${name}`, "", () => app.restore(state));
-      const remove = made("button", { type: "button", class: "remove", "aria-label": `Remove ${name} from the palette`, title: "Remove", text: "×", onclick: () => app.arrange(number, -1) });
+      const remove = made("button", { type: "button", class: "remove corner", "aria-label": `Remove ${name} from the palette`, title: "Remove", text: "×", onclick: () => app.arrange(number, -1) });
       return made("div", { class: "kept", draggable: "true", ondragstart: (event) => event.dataTransfer.setData("application/x-kept", String(number)),
                            ondragover: (event) => { if (event.dataTransfer.types.includes("application/x-kept")) event.preventDefault(); },
                            ondrop: (event) => {

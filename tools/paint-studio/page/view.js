@@ -21,6 +21,8 @@ class StageView {
     this.stops = 0;
     this.lamp = { on: false, azimuth: 20, elevation: 45, stops: 0 };
     this.border = 0.5;
+    this.cars = 1;  // beside each other
+    this.cells = [];  // weights of each
     this.level = 0;  // of `scales`, while something moves
     this.slow = this.fast = 0;  // frames in a row
     this.full_ms = 0;  // what a picture of all pixels took, once that is known
@@ -28,14 +30,42 @@ class StageView {
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
   }
 
-  get camera() { return this.traced !== null ? this.app.data.views[this.traced].camera : widened(cameraOf(this.view), this.canvas.clientWidth / this.canvas.clientHeight); }
+  // How cars stand beside each other: two below each other where the picture is not wide.
+  get grid() {
+    const columns = this.cars === 2 && this.canvas.clientWidth < 1.3 * this.canvas.clientHeight ? 1 : Math.min(2, this.cars);
+    return { columns, rows: this.cars / columns };
+  }
+  get camera() {
+    const { columns, rows } = this.grid, { clientWidth, clientHeight } = this.canvas;
+    return this.traced !== null ? this.app.data.views[this.traced].camera : widened(cameraOf(this.view), (clientWidth * rows) / (clientHeight * columns));
+  }
   // Draws by graphics that are new, after they were lost.
   begin() {
-    const { turn, lamp, ground } = this.stage;
-    this.stage = Object.assign(new Stage(this.canvas, this.app.data), { lamp, ground });
+    const { turn, lamp, ground, finishes } = this.stage;
+    this.stage = Object.assign(new Stage(this.canvas, this.app.data), { lamp, ground, finishes });
     this.stage.turnTo(turn);
     this.lost = false;
+    this.cells = [];
     this.app.graphicsCame();
+  }
+  // Shows another mesh, whose numbers are those bytes.
+  takeMesh(mesh, bytes) {
+    for (const name of ["positions", "normals", "corners"]) mesh[name].push(bytes);
+    this.app.data.mesh = mesh;
+    for (const light of this.app.data.environments) delete light.ground_light;  // the shadow of the mesh before
+    this.view = { ...mesh.view };
+    if (this.traced !== null) this.choose(document.getElementById("environment").value = "0");
+    this.begin();
+    this.app.parts.forMesh();
+  }
+  // Shows the mesh in another light.
+  takeLight(light, bytes) {
+    for (const { texels } of [...light.cubes, ...(light.discs ? [light.discs] : [])]) texels.push(bytes);
+    const list = document.getElementById("environment"), number = this.app.data.environments.push(light) - 1;
+    this.stage.environments.push(null);
+    list.insertBefore(made("option", { value: number, text: light.name }), list.querySelector("optgroup"));
+    list.value = String(number);
+    this.choose(list.value);
   }
   get weights() {
     const own = this.app.weights, other = this.app.compared.weights;
@@ -94,6 +124,7 @@ class StageView {
       if (event.ctrlKey || document.activeElement === this.canvas) this.closer(event.deltaY > 0 ? 1.08 : 1 / 1.08);
       else byId("controls").scrollBy(0, event.deltaY);
     }, { passive: false });
+    byId("car-count").addEventListener("change", () => this.setCars(Number(byId("car-count").value)));
     byId("save-picture").addEventListener("click", () => this.savePicture());
     byId("full-screen").addEventListener("click", () => {
       if (document.fullscreenElement) document.exitFullscreen();
@@ -105,7 +136,10 @@ class StageView {
       this.rest(null);
       this.app.say("The graphics of this computer were reset: the picture comes back when they do. Nothing is lost.");
     });
-    this.canvas.addEventListener("webglcontextrestored", () => this.app.attempt(() => this.begin()));
+    this.canvas.addEventListener("webglcontextrestored", () => this.app.attempt(() => {
+      this.begin();
+      this.app.say("The graphics are back.");
+    }));
     this.showLamp();
   }
 
@@ -114,7 +148,8 @@ class StageView {
     this.traced = value.startsWith("view ") ? Number(value.slice(5)) : null;
     const fixed = this.traced !== null, view = this.app.data.views[this.traced];
     this.takeBack();
-    for (const one of document.querySelectorAll("#turn, #turn-range, #lamp, #lamp-azimuth, #lamp-elevation, #lamp-stops, #reset-view, #ground, #drag-kinds .around"))
+    if (fixed && this.cars > 1) this.setCars(Number((document.getElementById("car-count").value = "1")));
+    for (const one of document.querySelectorAll("#car-count, #turn, #turn-range, #lamp, #lamp-azimuth, #lamp-elevation, #lamp-stops, #reset-view, #ground, #drag-kinds .around"))
       one.disabled = fixed;
     const box = document.getElementById("stage-box");
     box.classList.toggle("shaped", fixed);
@@ -158,7 +193,7 @@ class StageView {
     });
   }
   showBorder() {
-    const handle = document.getElementById("border"), shown = this.app.compared.weights !== null;
+    const handle = document.getElementById("border"), shown = this.app.compared.weights !== null && this.cars === 1;
     handle.hidden = !shown;
     handle.style.left = `${100 * this.border}%`;
     handle.setAttribute("aria-valuenow", Math.round(100 * this.border));
@@ -211,9 +246,13 @@ class StageView {
   // From now on the camera goes around the point of the mesh under a place of the window.
   retarget(clientX, clientY) {
     if (this.traced !== null) return;
-    const box = this.canvas.getBoundingClientRect(), { camera } = this;
-    const point = this.stage.pointUnder(camera, box.width / box.height, (clientX - box.left) / box.width, (clientY - box.top) / box.height);
-    if (point) this.look({ ...this.view, target: point });
+    const hit = this.hit(clientX, clientY);
+    if (hit) this.look({ ...this.view, target: hit.point });
+  }
+  // The point and the part of the mesh under a place of the window, as pointUnder() has them.
+  hit(clientX, clientY) {
+    const { x, y, aspect } = this.partsOf(clientX, clientY);
+    return this.stage.pointUnder(this.camera, aspect, x, y);
   }
   // Shows what a link holds.
   see({ view, environment, stops, lamp, turn }) {
@@ -279,11 +318,38 @@ class StageView {
       this.stage.gathered.drop();
       return this.drawTraced(moving);
     }
+    if (this.cars > 1) return this.drawCars(moving);
     if (this.drawGathered(moving)) return;
     const first = scales.find((scale) => scale * scale * this.full_ms <= firstBudget_ms) ?? scales.at(-1);
     const scale = moving ? Math.min(scales[this.level], first) : first, [width, height] = this.size(scale);
     this.stage.draw(scale < 1 ? "first" : "centers", this.camera, width, height, this.weights, this.environment, this.stops, this.overlay);
     if (!moving) this.rest(() => this.sharpen(scale));
+  }
+  // Whole cars beside each other in the same view and light: the design, and the paints of app.beside().
+  drawCars(moving, samples = 1) {
+    const [width, height] = this.size(moving ? scales[this.level] : 1), { columns, rows } = this.grid, paints = [this.app.paint, ...this.app.beside(this.cars - 1)];
+    paints.forEach((paint, i) => {
+      if (this.cells[i]?.paint === paint) return;
+      this.app.engine.ask({ do: "fit", paint });
+      this.cells[i] = Object.assign(this.stage.weights(this.app.engine, this.cells[i] ?? null), { paint });
+    });
+    this.stage.showCells(this.camera, Math.floor(width / columns), Math.floor(height / rows), columns, paints.map((_, i) => this.cells[i]), this.environment, this.stops, samples);
+    document.getElementById("cars").style.gridTemplateColumns = `repeat(${columns}, 1fr)`;
+    document.getElementById("cars").replaceChildren(...paints.map(({ name }) => made("span", { text: name })));
+    if (!moving && samples === 1) this.rest(() => this.drawCars(false, 4));
+  }
+  setCars(count) {
+    this.cars = count;
+    this.cells = [];
+    document.getElementById("cars").hidden = count === 1;
+    this.showBorder();
+    this.redraw();
+  }
+  // A place of the window as parts of the picture, or of its car where there are several.
+  partsOf(clientX, clientY) {
+    const box = this.canvas.getBoundingClientRect(), { columns, rows } = this.grid;
+    const x = (columns * (clientX - box.left)) / box.width, y = (rows * (clientY - box.top)) / box.height;
+    return { x: x - clamped(Math.floor(x), 0, columns - 1), y: y - clamped(Math.floor(y), 0, rows - 1), aspect: (box.width * rows) / (box.height * columns) };
   }
   // Draws an edit of a view at rest; returns whether it did.
   drawGathered(moving) {
@@ -370,9 +436,7 @@ class StageView {
   // The surface under a place of the window: null beside the mesh. `angle` is the aspecular angle to the light, and what is `lit` wears the
   // paint.
   pointAt(clientX, clientY) {
-    const box = this.canvas.getBoundingClientRect();
-    const seen = this.stage.surfaceAt(this.camera, box.width / box.height, (clientX - box.left) / box.width,
-                                      (clientY - box.top) / box.height);
+    const { x, y, aspect } = this.partsOf(clientX, clientY), seen = this.stage.surfaceAt(this.camera, aspect, x, y);
     if (!seen) return null;
     const mirror = mirrored(seen), { toward } = this.light;
     return { ...seen, mirror, angle: angleBetween(mirror, toward), lit: seen.painted && dotted(seen.normal, toward) > 0 };

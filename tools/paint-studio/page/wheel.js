@@ -12,9 +12,10 @@ class Wheel {
       this.svg.append(drawn("line", { x1: -105 * x, y1: -105 * y, x2: 105 * x, y2: 105 * y, class: "grid" }));
     [["+a*", 90, -3], ["-a*", -108, -3], ["+b*", 3, -101], ["-b*", 3, 108]].forEach(([text, x, y]) =>
       this.svg.append(drawn("text", { x, y }, text)));
+    this.match = drawn("polyline", { class: "seen", id: "match-way" });  // of the nearest paint
     this.way = drawn("polyline", { class: "way" });
     this.arrow = drawn("path", { class: "arrow" });
-    this.svg.append(this.way, this.arrow);
+    this.svg.append(this.match, this.way, this.arrow);
     for (let L = 0; L <= 150; L += 25) {
       this.column.append(drawn("line", { x1: 18, x2: 44, y1: this.heightOf(L), y2: this.heightOf(L), class: "grid" }));
       this.column.append(drawn("text", { x: 0, y: this.heightOf(L) + 3 }, String(L)));
@@ -78,12 +79,14 @@ class Wheel {
     });
   }
 
+  place(lab) { return [clamped(lab[1], -108, 108), clamped(-lab[2], -108, 108)]; }
+  pathOf(curve) { return curve.map((point) => this.place(point.lab).join(",")).join(" "); }
+  showMatch(curve) { this.match.setAttribute("points", this.pathOf(curve)); }
   show(description) {
     const { face, flop, face_css, flop_css } = description.appearance;
     this.showBorder(description.screen.border);
-    const place = (lab) => [clamped(lab[1], -108, 108), clamped(-lab[2], -108, 108)];
-    const from = place(face), to = place(flop);
-    this.way.setAttribute("points", description.curve.map((point) => place(point.lab).join(",")).join(" "));
+    const from = this.place(face), to = this.place(flop);
+    this.way.setAttribute("points", this.pathOf(description.curve));
     const dx = to[0] - from[0], dy = to[1] - from[1], length = Math.hypot(dx, dy);
     let path = "";
     if (length > 14) {

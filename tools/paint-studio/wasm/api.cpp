@@ -3,16 +3,24 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "platform.h"
 #include "studio/studio.h"
+
+// Hears which part of a long request is done.
+extern "C" __attribute__((import_module("page"), import_name("progress"))) void page_progress(double part);
 
 namespace {
 
 std::string request_text, answer_text;
 
 goniochrome::studio::Studio& session() {
-  static auto& only = *new goniochrome::studio::Studio;
+  static auto& only = []() -> auto& {
+    auto& made = *new goniochrome::studio::Studio;
+    made.progress() = page_progress;
+    return made;
+  }();
   return only;
 }
 
@@ -41,11 +49,25 @@ STUDIO_EXPORT(studio_answer) const char* studio_answer() {
   return answer_text.data();
 }
 
-// Memory for that many bytes, which the request "load" then takes.
+// Memory for that many bytes, which the request "load" or "view" or studio_give() then takes.
 STUDIO_EXPORT(studio_attach) char* studio_attach(std::uint32_t bytes) {
   std::string& attached = session().attached();
   attached.resize(bytes);
   return attached.data();
+}
+
+// Makes the attached bytes a file, whose name is what was written as a request; takes all files away where it is empty.
+STUDIO_EXPORT(studio_give) void studio_give() {
+  auto& files = goniochrome::studio::given_files();
+  if (request_text.empty()) return files.clear();
+  files[request_text] = std::exchange(session().attached(), {});
+}
+
+// Memory for the events of an XML text, see platform_xml.cpp.
+STUDIO_EXPORT(studio_events) char* studio_events(std::uint32_t bytes) {
+  std::string& text = goniochrome::studio::event_text();
+  text.resize(bytes);
+  return text.data();
 }
 
 // A list that an answer filled, by its number in Studio::List, and its size in bytes.

@@ -1,5 +1,4 @@
-// The numbers of a page: all in one binary text, which stands in the page compressed. JSON names each list by its
-// place.
+// The numbers of a page: all in one binary text. JSON names each list by its place.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +9,11 @@
 #include "base/json.h"
 #include "base/vec3.h"
 
-namespace goniochrome::tool {
+namespace goniochrome::studio {
 
 inline Json vector_json(const Vec3& v) {
   return Json::array({v.x, v.y, v.z});
 }
-
-// The text as browsers decompress it: a gzip member, in base64.
-std::string compressed_text(std::string_view bytes);
 
 class PackedNumbers {
  public:
@@ -39,4 +35,4 @@ class PackedNumbers {
   std::string bytes_;
 };
 
-}  // namespace goniochrome::tool
+}  // namespace goniochrome::studio

@@ -1,0 +1,61 @@
+// The forms in which a design is shown away from the page: a card of one sheet, and a film of the turning mesh.
+
+const chipAngles = [15, 25, 45, 75, 110];  // degrees, at which designs are stated
+const filmFrames = 90, filmRate = 15;      // of one turn; a second
+
+class Card {
+  constructor(app) {
+    this.app = app;
+    this.notes = document.getElementById("notes");
+    this.notes.addEventListener("change", () => app.store());
+    document.getElementById("print-card").addEventListener("click", () => {
+      this.fill();
+      window.print();
+    });
+    document.getElementById("film").addEventListener("click", () => this.film().catch((error) => app.say(error.message)));
+  }
+
+  chip(name, lab, css) {
+    const swatch = made("span", { class: "chip" });
+    swatch.style.background = css;
+    return made("div", {}, [swatch, made("b", { text: name }), made("span", { text: `L* ${lab[0].toFixed(1)}  a* ${lab[1].toFixed(1)}  b* ${lab[2].toFixed(1)}` })]);
+  }
+  // The card of the design as it is shown. Chips are those of the wheel and of the curve at the angles of export.
+  fill() {
+    const { app } = this, { paint, description, stageView } = app, { face, flop, face_css, flop_css, travel } = description.appearance;
+    const curve = chipAngles.map((angle) => [angle, app.engine.ask({ do: "at", paint, angle })]), light = document.getElementById("environment").selectedOptions[0].textContent;
+    const figures = document.getElementById("figures").cloneNode(true), curves = document.getElementById("curves").cloneNode(true);
+    for (const one of [figures, curves]) one.removeAttribute("id");
+    for (const handle of curves.querySelectorAll(".handle, .sight")) handle.remove();
+    document.getElementById("card").replaceChildren(
+      made("h1", { text: paint.name + (paint.code ? `, ${paint.code}` : "") }),
+      made("img", { src: stageView.canvas.toDataURL("image/png"), alt: `The mesh in ${paint.name}` }),
+      made("p", { text: `Light: ${light}. Travel ${travel.toFixed(0)}°.${paint.gloss?.length > 0 ? ` Gloss ${paint.gloss.map(([angle, units]) => `${units.toFixed(0)} GU at ${angle}°`).join(", ")}.` : ""}` }),
+      made("div", { class: "chips" }, [this.chip("face", face, face_css), ...curve.map(([angle, { lab, css }]) => this.chip(`${angle}°`, lab, css)), this.chip("flop", flop, flop_css)]),
+      made("div", { class: "row" }, [curves, figures]),
+      ...(this.notes.value ? [made("p", { text: this.notes.value })] : []),
+      made("pre", { text: document.getElementById("command").textContent }));
+  }
+
+  // One turn of the camera as WebM.
+  async film() {
+    const { app } = this, { stageView } = app, { canvas } = stageView, first = stageView.view, kind = "video/webm";
+    if (!window.MediaRecorder?.isTypeSupported(kind)) throw new Error("This browser makes no WebM films.");
+    if (stageView.traced !== null) throw new Error("The camera of a traced view stays as it is: choose a light.");
+    const stream = canvas.captureStream(filmRate), recorder = new MediaRecorder(stream, { mimeType: kind, videoBitsPerSecond: 12e6 }), pieces = [];
+    recorder.ondataavailable = ({ data }) => pieces.push(data);
+    const ended = new Promise((resolve) => { recorder.onstop = resolve; });
+    recorder.start();
+    for (let i = 0; i < filmFrames; ++i) {
+      app.say(told`The film: ${Math.round((100 * i) / filmFrames)} %`);
+      stageView.view = { ...first, azimuth: first.azimuth + (360 * i) / filmFrames };
+      stageView.drawNow(true);
+      await new Promise((resolve) => setTimeout(resolve, 1000 / filmRate));
+    }
+    recorder.stop();
+    await ended;
+    stageView.look(first);
+    save(`${fileName(app.paint.name)}.webm`, new Blob(pieces, { type: kind }), kind);
+    app.say(words("The film is saved."));
+  }
+}
