@@ -47,6 +47,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "needs at each start. Keeping them pays from the third start on where there are twelve spots, and from "
           "about the tenth on where there are three; one run that draws many paints is one start. Pictures are "
           "the same within the rounding of half floats.");
+  spec.flag("sparkle", &o.sparkle, "add the root mean square of the light in each lobe, for the grain of flakes")
+      .more(
+          "render-osmesa draws the effect sparkle without these maps as well, but then lamps and bright spots alone "
+          "make flakes sparkle. They are small, and the layout env alone has them. See goniochrome-flakes(7).");
   spec.option("layout,l", "WHAT", "latlong", &o.layout, "how the maps lie")
       .one_of({"env", "latlong", "openexr", "mip", "ktx2", "dds"})
       .more(
@@ -137,6 +141,7 @@ void add_report(cli::ToolSpec& spec) {
       {"filter_s", "time of filtering"},
       {"verify_s", "time of verifying"},
       {"open_maps_s", "time of the maps that follow from the others: under a coat, and without the bright spots"},
+      {"sparkle_s", "time of the maps of --sparkle"},
       {"write_s", "time of writing"},
       {"warnings[]", "what was replaced or is outside the tolerance"}};
   spec.see_also = {"fit-basis(1)", "render-osmesa(1)", "goniochrome-paint(5)", "goniochrome-theory(7)"};
