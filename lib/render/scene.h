@@ -88,6 +88,8 @@ struct Scene {
   // Whether each part is a pane of clear glass that is seen through, and wears pane_finish(); none where there are
   // fewer. Light passes panes on its way to other surfaces as if they were not there. See panes.h.
   std::vector<bool> panes = {};
+  // The flakes of each part's paint; none where there are fewer. They are seen one by one with the effect sparkle.
+  std::vector<std::optional<paint::KnownFlakes>> flakes = {};
 };
 
 // Whether the scene has what only engines that trace rays can draw: a floor, or parts that shine by themselves.
