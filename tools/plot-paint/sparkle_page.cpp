@@ -32,8 +32,8 @@ double variance_m2(const paint::LobeFit& fit, const paint::Flakes& flakes, doubl
   for (std::size_t j = 0; j < shares.size(); ++j) {
     if (shares[j] == 0) continue;
     const brdf::DiscGrain grain =
-        brdf::disc_grain(seen.lobes[j].exponent, normal, mirrored, to_light, 0.5 * brdf::kSunExtent_deg * kDegree,
-                         flakes.spread_deg, seen.coat_index);
+        brdf::disc_grain({seen.lobes[j].exponent, 0.5 * brdf::kSunExtent_deg * kDegree, flakes.spread_deg}, normal,
+                         mirrored, to_light, seen.coat_index);
     const double light = grain.mean * brdf::coat_transmission(to_viewer.z, seen.coat_index) *
                          luminance(seen.lobes[j].directional_diffuse);
     variance += light * light * grain.relative_variance / (shares[j] * flakes.per_m2());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <set>
 
@@ -26,6 +27,9 @@ namespace {
 
 // Deviations of less than this part of a pixel's luminance are not drawn.
 constexpr double kLeast = 0.004;
+// So many lamps and lobes stay single, and so do all that no more flakes show than these.
+constexpr int kSingle = 2;
+constexpr double kManyShown = 16;
 // Maps of the root mean square and of the mean differ by rounding and filtering alone up to this relative variance.
 constexpr double kMapVariance = 6e-3;
 // A surface that is seen at a smaller cosine has no footprint.
@@ -63,7 +67,8 @@ struct Sparkle::Source {
 
 struct Sparkle::Lobe {
   double exponent = 1, per_m2 = 0;
-  std::vector<Source> lamps;
+  std::vector<brdf::FlakeLamp> shown;    // each lamp, which has one radius: those at a place are points
+  std::vector<Source> lamps;             // of the same
   envmap::MapPointer mean;               // without the bright spots; null where no deviation from it is known
   const envmap::CubeMap* rms = nullptr;  // the root of the mean square of the same
 };
@@ -83,6 +88,8 @@ struct Sparkle::Grain {
   color::Rgb mean;
   double variance = 0;        // relative
   double flake_variance = 0;  // relative, of the light that one flake shows; of the rest
+
+  double deviation() const { return std::sqrt(variance) * seen_luminance(mean); }
 };
 
 namespace {
@@ -127,10 +134,10 @@ Sparkle::Sparkle(const Scene& scene, const Effects& effects)
     const std::vector<double> shares = brdf::flake_shares(part->paint);
     for (std::size_t j = 0; j < shares.size(); ++j) {
       if (shares[j] == 0) continue;
-      Lobe lobe{part->paint.lobes[j].exponent, shares[j] * part->flakes.per_m2(), {}, nullptr, nullptr};
+      Lobe lobe{part->paint.lobes[j].exponent, shares[j] * part->flakes.per_m2(), {}, {}, nullptr, nullptr};
       for (std::size_t k = 0; k < lamps_.size(); ++k) {
-        const double radius = brdf::shown_radius(lamps_[k].radius_rad, part->flakes.spread_deg);
-        const double tilts = std::max(1e-6, brdf::part_that_shows(lobe.exponent, radius, 0));
+        lobe.shown.emplace_back(lobe.exponent, lamps_[k].place ? 0 : lamps_[k].radius_rad, part->flakes.spread_deg);
+        const double tilts = std::max(1e-6, lobe.shown.back().part_that_shows(0));
         lobe.lamps.push_back({trees_of(lobe.per_m2, lobe.exponent, k, tilts)});
       }
       const envmap::PrefilteredLobe* filtered = scene.env != nullptr ? scene.env->lobe(lobe.exponent) : nullptr;
@@ -196,8 +203,10 @@ std::optional<Sparkle::Footprint> Sparkle::footprint(const Gbuffer& g, int x, in
   return at;
 }
 
-// Lists the light that varies enough to be seen. The light of all flakes is no more than what the pixel shows.
-std::vector<Sparkle::Grain> Sparkle::grains(const Part& part, const Footprint& at, const color::Rgb& shown) const {
+// Lists the light that varies enough to be seen. The light of all flakes is no more than what the pixel shows. The
+// lamps that vary most stay single; others that many flakes show are near normal, and vary with the rest of the light.
+std::vector<Sparkle::Grain> Sparkle::grains(const Part& part, const Footprint& at, const color::Rgb& shown,
+                                            const Lit& lit) const {
   const double cos_o = std::clamp(dot(at.normal, at.to_viewer), 0.0, 1.0), least = kLeast * seen_luminance(shown);
   const paint::LobeFit paint =
       part.paint.views.empty() ? part.paint : brdf::at_view(part.paint, std::acos(cos_o) / kDegree);
@@ -208,10 +217,6 @@ std::vector<Sparkle::Grain> Sparkle::grains(const Part& part, const Footprint& a
   std::vector<Grain> grains;
   Grain rest;
   color::Rgb sum;
-  const auto keep = [&](Grain grain) {
-    sum += grain.mean;
-    if (std::sqrt(grain.variance) * seen_luminance(grain.mean) > least) grains.push_back(std::move(grain));
-  };
   double rest_variance = 0;
   for (const Lobe& lobe : part.lobes) {
     const paint::Lobe* worn = find_lobe(paint, lobe.exponent);
@@ -219,12 +224,15 @@ std::vector<Sparkle::Grain> Sparkle::grains(const Part& part, const Footprint& a
     const color::Rgb weight = let_out * worn->directional_diffuse;
     for (std::size_t k = 0; k < lamps_.size(); ++k) {
       Grain grain{&lobe, k, light_at(lamps_[k], at.position), {}, 0, 0};
-      const brdf::DiscGrain disc = brdf::disc_grain(lobe.exponent, at.normal, at.mirrored, grain.light.direction,
-                                                    grain.light.radius_rad, part.flakes.spread_deg, paint.coat_index);
+      const brdf::DiscGrain disc =
+          brdf::disc_grain(lobe.shown[k], at.normal, at.mirrored, grain.light.direction, paint.coat_index);
       if (!(disc.mean > 0)) continue;
       grain.mean = disc.mean * met(weight, grain.light.white);
       grain.variance = disc.relative_variance / (lobe.per_m2 * at.area_m2);
-      keep(std::move(grain));
+      const bool varies = grain.deviation() > least;
+      if (varies && !lit(k, grain.light)) continue;
+      sum += grain.mean;
+      if (varies) grains.push_back(std::move(grain));
     }
     if (lobe.rms == nullptr) continue;
     const LobeIntegrals whole = lobe_integrals(lobe.exponent, cos_o, false, paint.coat_index);
@@ -232,15 +240,21 @@ std::vector<Sparkle::Grain> Sparkle::grains(const Part& part, const Footprint& a
     const color::Rgb light = whole.cosine * met(weight, {mean.x, mean.y, mean.z});
     const double of_mean = seen_luminance({mean.x, mean.y, mean.z}), of_rms = seen_luminance({rms.x, rms.y, rms.z});
     const double variance = of_mean > 0 ? of_rms * of_rms / (of_mean * of_mean) - 1 : 0;
-    rest.mean += light;
-    rest_variance +=
-        variance > kMapVariance ? variance * seen_luminance(light) * seen_luminance(light) / lobe.per_m2 : 0;
+    rest.mean += light, sum += light;
+    rest_variance += variance > kMapVariance ? variance * std::pow(seen_luminance(light), 2) / lobe.per_m2 : 0;
   }
+  std::ranges::stable_sort(grains, std::greater<>(), &Grain::deviation);
+  std::erase_if(grains, [&, number = 0](const Grain& grain) mutable {
+    if (++number <= kSingle || grain.variance * kManyShown > 1) return false;
+    rest.mean += grain.mean;
+    rest_variance += std::pow(grain.deviation(), 2) * at.area_m2;
+    return true;
+  });
   // Lobes share out the flakes, and their variances add.
   if (const double light = seen_luminance(rest.mean); light > 0 && rest_variance > 0) {
     rest.variance = rest_variance / (light * light * at.area_m2);
     rest.flake_variance = rest.variance * part.flakes.per_m2() * at.area_m2;
-    keep(std::move(rest));
+    if (rest.deviation() > least) grains.push_back(std::move(rest));
   }
   for (Grain& grain : grains)
     for (int c = 0; c < 3; ++c)
@@ -255,26 +269,23 @@ color::Rgb Sparkle::deviation(const Gbuffer& gbuffer, int x, int y, const color:
   const std::optional<Footprint> at = footprint(gbuffer, x, y);
   if (!at) return {};
   color::Rgb variance;
-  for (const Grain& grain : grains(*part, *at, shown)) variance += grain.variance * (grain.mean * grain.mean);
+  const auto open = [](std::size_t, const Light&) { return true; };
+  for (const Grain& grain : grains(*part, *at, shown, open)) variance += grain.variance * (grain.mean * grain.mean);
   return {std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)};
 }
 
 // Flakes that show a lamp are Poisson with a mean of `expected`. Of the rest, the flakes in one part of all tilts,
 // about the brightest, show more than the mean and the others less: half of all flakes, or fewer where the others are
 // black.
-color::Rgb Sparkle::change(const Part& part, const Footprint& at, const std::vector<Grain>& grains,
-                           const std::vector<bool>& lit) const {
+color::Rgb Sparkle::change(const Part& part, const Footprint& at, const std::vector<Grain>& grains) const {
   const auto axis = static_cast<std::size_t>(at.axis);
   const double projected = 1 / (std::numbers::sqrt3 * at.steep);
   color::Rgb change;
-  for (std::size_t i = 0; i < grains.size(); ++i) {
-    const Grain& grain = grains[i];
-    if (!lit[i]) continue;
+  for (const Grain& grain : grains) {
     brdf::FlakeBox box = at.box;
     if (grain.lobe != nullptr) {
       const brdf::FlakeBox tilts =
-          brdf::tilts_that_show(grain.lobe->exponent, at.mirrored, at.across, grain.light.direction,
-                                brdf::shown_radius(grain.light.radius_rad, part.flakes.spread_deg));
+          brdf::tilts_that_show(grain.lobe->shown[grain.lamp], at.mirrored, at.across, grain.light.direction);
       box.tilt = tilts.tilt, box.tilts = tilts.tilts;
       box.shown = projected * std::min(1.0, dot(at.normal, grain.light.direction));
       const double expected = std::numbers::sqrt3 * grain.lobe->per_m2 * box.area() * box.part();
@@ -305,21 +316,21 @@ void Sparkle::add(const Gbuffer& g, const rays::RayScene* blockers, image::Image
         const Part* part = parts_[static_cast<std::size_t>(number)].get();
         const std::optional<Footprint> at = part != nullptr ? footprint(g, x, y) : std::nullopt;
         if (!at) continue;
+        std::optional<RayPoint> from;
+        std::vector<std::optional<bool>> known(lamps_.size());
+        const auto lit = [&](std::size_t lamp, const Light& light) {
+          if (blockers == nullptr) return true;
+          if (known[lamp]) return *known[lamp];
+          if (!from) from = ray_point(*blockers, *scene_.mesh, g, x, y);
+          const auto& place = lamps_[lamp].place;
+          const double reach = place ? length(place->position - at->position) * blockers->scale() : 1e30;
+          known[lamp] = !blockers->occluded(from->spot.start, rays::float3(light.direction), static_cast<float>(reach));
+          return *known[lamp];
+        };
         const std::vector<Grain> grains =
-            this->grains(*part, *at, {pixel[0] / covered, pixel[1] / covered, pixel[2] / covered});
+            this->grains(*part, *at, {pixel[0] / covered, pixel[1] / covered, pixel[2] / covered}, lit);
         if (grains.empty()) continue;
-        std::vector<bool> lit(grains.size(), true);
-        if (blockers != nullptr) {
-          const RayPoint from = ray_point(*blockers, *scene_.mesh, g, x, y);
-          for (std::size_t i = 0; i < grains.size(); ++i) {
-            if (grains[i].lobe == nullptr) continue;
-            const auto& place = lamps_[grains[i].lamp].place;
-            const double reach = place ? length(place->position - at->position) * blockers->scale() : 1e30;
-            lit[i] = !blockers->occluded(from.spot.start, rays::float3(grains[i].light.direction),
-                                         static_cast<float>(reach));
-          }
-        }
-        const color::Rgb change = this->change(*part, *at, grains, lit);
+        const color::Rgb change = this->change(*part, *at, grains);
         for (int c = 0; c < 3; ++c) pixel[c] += static_cast<float>(covered * change[c]);
       }
     }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,9 +42,10 @@ class Sparkle {
   struct Part;
   struct Grain;
   std::optional<Footprint> footprint(const Gbuffer& gbuffer, int x, int y) const;
-  std::vector<Grain> grains(const Part& part, const Footprint& at, const color::Rgb& shown) const;
-  color::Rgb change(const Part& part, const Footprint& at, const std::vector<Grain>& grains,
-                    const std::vector<bool>& lit) const;
+  // True where nothing stands between the point and the lamp of that number, which is seen there as `light`.
+  using Lit = std::function<bool(std::size_t lamp, const Light& light)>;
+  std::vector<Grain> grains(const Part& part, const Footprint& at, const color::Rgb& shown, const Lit& lit) const;
+  color::Rgb change(const Part& part, const Footprint& at, const std::vector<Grain>& grains) const;
 
   const Scene& scene_;
   bool reflection_;

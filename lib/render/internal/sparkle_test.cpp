@@ -122,6 +122,26 @@ TEST(Sparkle, PredictsItsContrast) {
     }
 }
 
+// Many lamps are drawn together, and vary as much as each by itself would.
+TEST(Sparkle, PredictsTheContrastOfManyLamps) {
+  Panel panel(20, 3000, 100);
+  panel.lit_by_sun(10);
+  const Light sun = panel.scene.lights[0];
+  for (int i = 1; i < 8; ++i) {
+    Light lamp = sun;
+    lamp.direction = normalized({0.2 * std::cos(i), 0.2 * std::sin(i), 1});
+    panel.scene.lights.push_back(lamp);
+  }
+  const image::Image mean = panel.mean();
+  const float* middle = mean.pixel(50, 50);
+  const color::Rgb shown{middle[0], middle[1], middle[2]};
+  const color::Rgb deviation = Sparkle(panel.scene, panel.effects()).deviation(panel.gbuffer, 50, 50, shown);
+  const double predicted = color::xyz_d65_from_rgb(deviation).Y / color::xyz_d65_from_rgb(shown).Y;
+  const Statistics found = statistics_of(panel.drawn());
+  EXPECT_NEAR(found.contrast / predicted, 1, 0.05);
+  EXPECT_NEAR(found.mean.y / statistics_of(mean).mean.y, 1, 4 * predicted / 100);
+}
+
 // A view from afar shows the mean of what one from near by shows of a patch.
 TEST(Sparkle, ShowsTheSameFlakesFromNearAndFar) {
   Panel near(50, 500, 80), far(50, 1000, 40);
