@@ -164,8 +164,13 @@ FlakeCounts counted(const Node& node, const Corners& box, const Corners& inner, 
     return sum;
   }
   bool narrow = node.count > kMany;
-  for (std::size_t d = 0; d < 4 && narrow; ++d)
-    narrow = node.size[d] <= kNarrow * (box.high[d] - box.low[d]) || node.overlap(d, box) >= 1;
+  std::uint64_t window = 4;  // of tilts that are narrower than a node: the draw is another one where they move
+  for (std::size_t d = 0; d < 4 && narrow; ++d) {
+    const double wide = box.high[d] - box.low[d];
+    if (node.size[d] <= kNarrow * wide || node.overlap(d, box) >= 1) continue;
+    narrow = d > 1 && node.depth >= node.tilt_splits;
+    window = mixed(window, static_cast<std::uint64_t>(box.low[d] / wide));
+  }
   if (!narrow) {
     for (const Node& half : node.halves()) sum += counted(half, box, inner, shown);
     return sum;
@@ -175,7 +180,7 @@ FlakeCounts counted(const Node& node, const Corners& box, const Corners& inner, 
     return binomial_draw(count, part, unit(mixed(node.key, number)));
   };
   const double placed = drawn(node.count, node.overlap(0, box) * node.overlap(1, box) * shown, 6);
-  sum.all = drawn(placed, node.overlap(2, box) * turns, 4);
+  sum.all = drawn(placed, node.overlap(2, box) * turns, window);
   sum.inner = drawn(sum.all, node.overlap(3, inner) / turns, 3);
   return sum;
 }

@@ -214,7 +214,7 @@ setup() {
   run plot-paint --sparkle --paint candy_red --paint jet_black fitted.xml --report r.json -o grain.svg
   [ "$status" -eq 0 ]
   [[ "$output" =~ "paint \"jet_black\" has no flakes: paint-edit --flakes states them" ]]
-  grep -q "candy_red: 30 um, coverage 0.5, spread 0.5 deg (assumed for class metallic)" grain.svg
+  grep -q "flakes of 30 um, coverage 0.5, spread 0.5 deg (assumed for class metallic)" grain.svg
   grep -q "none under an even sky" grain.svg
   jq -e '.results.paints[0] | .name == "candy_red" and .flakes_assumed' r.json
   run plot-paint --sparkle --paint candy_red "$paints" -o grain.svg

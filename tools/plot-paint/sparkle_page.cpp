@@ -55,7 +55,7 @@ std::string readings_text(const paint::Paint& paint) {
 
 report::Drawing sparkle_page(const paint::Paint& paint, const paint::KnownFlakes& known) {
   report::Plot plot;
-  plot.title = fmt::format("{}: {}", paint.name, paint::flakes_text(paint, known));
+  plot.title = paint.name;
   plot.x = {.label = "distance (m)", .logarithmic = true, .low = kNearest_m, .high = kFarthest_m};
   plot.y = {.label = "contrast of grain in the sun", .logarithmic = true};
   for (const double aspecular_deg : {15.0, 25.0, 45.0}) {
@@ -69,10 +69,11 @@ report::Drawing sparkle_page(const paint::Paint& paint, const paint::KnownFlakes
     plot.series.push_back(std::move(series));
   }
   const std::string lines[] = {
+      "flakes of " + paint::flakes_text(paint, known),
       fmt::format("sun at {} deg, {} deg wide; patches of 1 minute of arc; none under an even sky",
                   shortest(kIncidence_deg), shortest(brdf::kSunExtent_deg)),
       readings_text(paint)};
-  report::Drawing caption{plot.width, 50, ""};
+  report::Drawing caption{plot.width, 66, ""};
   int y = 16;
   for (const std::string& line : lines) {
     if (line.empty()) continue;
