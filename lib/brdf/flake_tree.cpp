@@ -18,6 +18,8 @@ constexpr double kMostTiles = 512;
 constexpr double kFew = 8;
 // A node of more flakes than these is not split any more where it is no wider than that many times the box.
 constexpr double kMany = 32, kNarrow = 2;
+// Of a node of more flakes than these, the box may be narrower in tilts, which are not split any more.
+constexpr double kVeryMany = 1024;
 constexpr int kMostTiltSplits = 12;
 // Means up to here are drawn by summing probabilities; the others by the normal quantile with its skewness.
 constexpr double kSummed = 24;
@@ -168,7 +170,7 @@ FlakeCounts counted(const Node& node, const Corners& box, const Corners& inner, 
   for (std::size_t d = 0; d < 4 && narrow; ++d) {
     const double wide = box.high[d] - box.low[d];
     if (node.size[d] <= kNarrow * wide || node.overlap(d, box) >= 1) continue;
-    narrow = d > 1 && node.depth >= node.tilt_splits;
+    narrow = d > 1 && node.depth >= node.tilt_splits && node.count > kVeryMany;
     window = mixed(window, static_cast<std::uint64_t>(box.low[d] / wide));
   }
   if (!narrow) {
