@@ -144,11 +144,15 @@ Spot spot_of(const Cluster& cluster) {
 
 }  // namespace
 
+double bright_level(const Environment& environment) {
+  return kBright * whole_light(environment) / (4 * kPi);
+}
+
 std::vector<Spot> bright_spots(const Environment& environment, int most) {
   const double whole = whole_light(environment);
   if (most <= 0 || !(whole > 0) || !std::isfinite(whole)) return {};
   std::vector<Spot> spots;
-  const double level = kBright * whole / (4 * kPi);
+  const double level = bright_level(environment);
   for (const Cluster& cluster : clusters(environment, level, whole, static_cast<std::size_t>(most))) {
     if (cluster.light < kLeastShare * whole || cluster.radius_rad() > kWidest_rad) continue;
     const Spot spot = spot_of(cluster);

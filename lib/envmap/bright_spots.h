@@ -28,6 +28,9 @@ struct Spot {
 constexpr int kMostSpots = 32, kUsualSpots = 12;
 std::vector<Spot> bright_spots(const Environment& environment, int most = kUsualSpots);
 
+// The radiance, as the mean of the channels, beyond which light is in a spot.
+double bright_level(const Environment& environment);
+
 // An environment with a sun: most of what is very bright lies within a few degrees, above the horizon.
 struct SunlitSky {
   Spot sun;

@@ -32,6 +32,7 @@ constexpr const char* kSpots = "goniochrome:brightSpots";
 constexpr const char* kVersion = "goniochrome:version";
 constexpr int kKnownVersion = 1;
 constexpr const char* kOpen = "open-";  // before the name of the part that the spots are taken out of
+constexpr const char* kRms = "rms-";    // before the name of the lobe
 constexpr const char* kCoat = "coat-diffuse";
 
 double mean_value(const CubeMap& map) {
@@ -171,6 +172,11 @@ Result<MapPointer> other_map(const OtherMaps& maps, const std::string& name, con
 Result<void> join(const OtherMaps& maps, const std::map<double, std::string>& names, const std::string& path,
                   PrefilteredEnvironment& env) {
   GONIO_ASSIGN(env.coat_diffuse, other_map(maps, kCoat, env.diffuse, path));
+  for (PrefilteredLobe& lobe : env.lobes) {
+    const auto name = names.find(lobe.exponent);
+    const auto found = name != names.end() ? maps.find(kRms + name->second) : maps.end();
+    if (found != maps.end()) lobe.rms = found->second;
+  }
   if (env.spots.empty()) return {};
   GONIO_ASSIGN(env.open_coat_diffuse, other_map(maps, std::string(kOpen) + kCoat, env.diffuse, path));
   GONIO_ASSIGN(env.diffuse.open, other_map(maps, std::string(kOpen) + "diffuse", env.diffuse, path));
@@ -243,7 +249,8 @@ Result<PrefilteredEnvironment> env_of_content(const std::string& content, const 
   if (is_wanted) {
     wanted.part = [&](const std::string& name, const image::Attributes& attributes) {
       if (name == "mirror") return is_wanted(paint::kMirrorExponent);
-      const bool of_lobe = name.starts_with("lobe-") || name.starts_with(std::string(kOpen) + "lobe-");
+      const bool of_lobe = name.starts_with("lobe-") || name.starts_with(std::string(kOpen) + "lobe-") ||
+                           name.starts_with(std::string(kRms) + "lobe-");
       return !of_lobe || is_wanted(number_attribute(attributes, kExponent));
     };
   }
@@ -255,7 +262,7 @@ Result<PrefilteredEnvironment> env_of_content(const std::string& content, const 
   std::map<double, std::string> names;
   for (image::ImagePart& part : parts) {
     const std::string name = part.name;
-    const bool is_other = name == kCoat || name.starts_with(kOpen);
+    const bool is_other = name == kCoat || name.starts_with(kOpen) || name.starts_with(kRms);
     if (name != "diffuse" && name != "mirror" && !name.starts_with("lobe-") && !is_other) continue;
     if (part.image.data.empty()) continue;  // not wanted
     if (is_other) {
@@ -307,6 +314,8 @@ Result<std::string> env_content(const std::string& path, const PrefilteredEnviro
   add_map(std::string(kOpen) + "diffuse", env.diffuse.open, env.diffuse);
   for (std::size_t i = 0; i < env.lobes.size(); ++i)
     add_map(fmt::format("{}lobe-{:03}", kOpen, i), env.lobes[i].open, env.lobes[i]);
+  for (std::size_t i = 0; i < env.lobes.size(); ++i)
+    add_map(fmt::format("{}lobe-{:03}", kRms, i), env.lobes[i].rms, env.lobes[i]);
   std::vector<image::ImagePart> parts(made.size());  // each a copy of a map
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) parts[i] = made[i]();

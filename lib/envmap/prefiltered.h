@@ -29,6 +29,10 @@ struct PrefilteredLobe {
   std::string method;                        // how it was computed
   std::shared_ptr<const CubeMap> open = {};  // the map without the bright spots; null where it was not made
 
+  // The root of what the lobe gathers of the squared radiance that the bright spots leave, in texels of its own; null
+  // where it was not made. goniochrome-flakes(7)
+  std::shared_ptr<const CubeMap> rms = {};
+
   bool is_mirror() const { return paint::is_mirror(exponent); }
 };
 

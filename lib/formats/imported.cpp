@@ -101,6 +101,7 @@ Result<void> check_writable(const paint::Paint& paint) {
   for (const paint::GlossReading& gloss : paint.gloss) finite.numbers({gloss.angle_deg, gloss.gloss_units});
   if (paint.appearance) finite.numbers({paint.appearance->travel_deg, paint.appearance->residual_de00.value_or(0)});
   if (paint.anisotropy) finite.numbers({paint.anisotropy->alpha_x, paint.anisotropy->alpha_y});
+  if (paint.flakes) finite.numbers({paint.flakes->diameter_um, paint.flakes->coverage, paint.flakes->spread_deg});
   finite.numbers({paint.color_map ? paint.color_map->index : 0, paint.coat_index.value_or(0)});
   if (paint.lobes) finite.fit(*paint.lobes);
   if (!finite.all()) return refused("a number of it is not finite: only finite numbers are written");

@@ -57,6 +57,7 @@ class PaintHandler : public XmlHandler {
   Result<void> begin_gloss(const XmlValues& values);
   Result<void> begin_appearance(const XmlValues& values);
   Result<void> begin_coat(const XmlValues& values);
+  Result<void> begin_flakes(const XmlValues& values);
   Result<void> begin_lobes(const XmlValues& values);
   Result<void> begin_lobe(const XmlValues& values, std::vector<paint::Lobe>& lobes);
   Result<void> begin_view(const XmlValues& values);
@@ -211,6 +212,8 @@ Result<void> PaintHandler::begin(Node node, const XmlValues& values) {
                                  : Result<void>();
     case Node::kCoat:
       return begin_coat(values);
+    case Node::kFlakes:
+      return begin_flakes(values);
     case Node::kLobes:
       return begin_lobes(values);
     case Node::kDiffuse:
@@ -369,6 +372,21 @@ Result<void> PaintHandler::begin_coat(const XmlValues& values) {
   if (index != paint::kNoCoat && !(index >= paint::kLeastCoatIndex && index <= paint::kMostCoatIndex))
     return values.error("index", fmt::format("a coat has {} to {}, and {} says that there is none",
                                              paint::kLeastCoatIndex, paint::kMostCoatIndex, paint::kNoCoat));
+  return {};
+}
+
+Result<void> PaintHandler::begin_flakes(const XmlValues& values) {
+  GONIO_TRY(once(paint_.flakes.has_value(), values));
+  paint::Flakes& flakes = paint_.flakes.emplace();
+  GONIO_TRY(values.number("diameter_um", flakes.diameter_um, Domain::kPositive));
+  GONIO_TRY(values.number("coverage", flakes.coverage, Domain::kPositive));
+  GONIO_TRY(values.number("spread_deg", flakes.spread_deg, Domain::kNotNegative));
+  if (flakes.diameter_um > paint::kMostFlake_um)
+    return values.error("diameter_um", fmt::format("flakes have up to {} micrometers", paint::kMostFlake_um));
+  if (flakes.coverage > 1) return values.error("coverage", "it is a part of the surface: write up to 1");
+  if (flakes.spread_deg > paint::kMostFlakeSpread_deg)
+    return values.error("spread_deg",
+                        fmt::format("one flake spreads light by up to {} deg", paint::kMostFlakeSpread_deg));
   return {};
 }
 

@@ -95,6 +95,7 @@ paint::Paint full_paint() {
   paint.gloss = {{20, 81.7}, {60, 0}, {85, 1999.5}};
   paint.appearance = paint::Appearance{{95, 1, 2}, {0.1 + 0.2, -5e-324, 2}, std::nextafter(15.0, 16.0), 0.41};
   paint.anisotropy = paint::Anisotropy{0.05, 0.3};
+  paint.flakes = paint::Flakes{22.5, 0.4, 0.7};
   paint.color_map = paint::ColorMapReference{"maps/x y.exr", 1.5};
   paint.lobes = paint::LobeFit{"b7", "l1", 1.25, 0.5, 1.5375, {0.1, 0.2, 0.3}, {}};
   paint.coat_index = 1.5375;
@@ -147,6 +148,7 @@ TEST(PaintXml, EveryPartSurvivesToTheLastBit) {
   expect_same(back, paint);
   EXPECT_EQ(back.anisotropy->alpha_x, 0.05);
   EXPECT_EQ(back.anisotropy->alpha_y, 0.3);
+  EXPECT_EQ(back.flakes, (paint::Flakes{22.5, 0.4, 0.7}));
   EXPECT_EQ(back.color_map->href, "maps/x y.exr");
   EXPECT_EQ(back.lobes->diffuse, paint.lobes->diffuse);
   ASSERT_EQ(back.lobes->lobes.size(), 2u);
@@ -278,6 +280,7 @@ TEST(PaintXml, WhatIsNoColorOrNotFiniteIsNotWritten) {
     EXPECT_NE(refused([&](paint::Paint& p) { p.lobes->lobes[0].gloss.x = wrong; }), "") << wrong;
     EXPECT_NE(refused([&](paint::Paint& p) { p.appearance->residual_de00 = wrong; }), "") << wrong;
     EXPECT_NE(refused([&](paint::Paint& p) { p.anisotropy->alpha_y = wrong; }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.flakes->coverage = wrong; }), "") << wrong;
     EXPECT_NE(refused([&](paint::Paint& p) { p.color_map->index = wrong; }), "") << wrong;
     EXPECT_NE(refused([&](paint::Paint& p) { p.coat_index = wrong; }), "") << wrong;
     EXPECT_NE(refused([&](paint::Paint& p) { p.lobes->coat_index = wrong; }), "") << wrong;
@@ -324,13 +327,21 @@ TEST(PaintXml, WrongValuesAreNamedWithLineAndRemedy) {
             "p.xml:4: observer is \"4\": write 2 or 10 (degrees)");
   EXPECT_EQ(paint("<colour/>"),
             "p.xml:4: <colour> is not known inside <paint>: it holds <measurement>, <gloss>, <appearance>, "
-            "<anisotropy>, <colorMap>, <coat>, <lobes>");
+            "<anisotropy>, <colorMap>, <coat>, <flakes>, <lobes>");
   EXPECT_EQ(paint("<anisotropy alphaX=\"0\" alphaY=\"1\"/>"), "p.xml:4: alphaX is 0: write a number above 0");
   EXPECT_EQ(paint("<colorMap href=\"x.exr\" index=\"0.9\"/>"), "p.xml:4: index is 0.9: write 1 or more");
   for (const char* index : {"1.2", "1.8", "1.4999"})
     EXPECT_EQ(paint(std::string("<coat index=\"") + index + "\"/>"),
               std::string("p.xml:4: index is \"") + index + "\": a coat has 1.5 to 1.7, and 1 says that there is none");
   EXPECT_EQ(paint("<coat index=\"1.5\"/><coat index=\"1.5\"/>"), "p.xml:4: a second <coat> in paint \"p\": keep one");
+  EXPECT_EQ(paint("<flakes diameter_um=\"30\" coverage=\"1.5\" spread_deg=\"0.5\"/>"),
+            "p.xml:4: coverage is \"1.5\": it is a part of the surface: write up to 1");
+  EXPECT_EQ(paint("<flakes diameter_um=\"3000\" coverage=\"1\" spread_deg=\"0.5\"/>"),
+            "p.xml:4: diameter_um is \"3000\": flakes have up to 1000 micrometers");
+  EXPECT_EQ(paint("<flakes diameter_um=\"30\" coverage=\"1\" spread_deg=\"31\"/>"),
+            "p.xml:4: spread_deg is \"31\": one flake spreads light by up to 30 deg");
+  EXPECT_EQ(paint("<flakes diameter_um=\"0\" coverage=\"1\" spread_deg=\"0\"/>"),
+            "p.xml:4: diameter_um is 0: write a number above 0");
   EXPECT_EQ(paint("some words"), "p.xml:4: text \"some words\" stands between elements: remove it");
   EXPECT_EQ(paint("<anisotropy alphaX=\"1\" alphaY=\"1\"/><anisotropy alphaX=\"1\" alphaY=\"1\"/>"),
             "p.xml:4: a second <anisotropy> in paint \"p\": keep one");
@@ -441,6 +452,7 @@ TEST(PaintXml, WhatTheSchemaRefusesIsRefused) {
       "<texture quantity=\"q\" geometry=\"g\" version=\"v\" value=\"1\"/></measurement><gloss angle=\"60\">90</gloss>"
       "<appearance travel=\"60\" residual_de00=\"1\"><face L=\"50\" a=\"0\" b=\"0\"/><flop L=\"20\" a=\"0\" b=\"0\"/>"
       "</appearance><anisotropy alphaX=\".1\" alphaY=\".2\"/><colorMap href=\"h\" index=\"1.5\"/><coat index=\"1.5\"/>"
+      "<flakes diameter_um=\"30\" coverage=\"0.5\" spread_deg=\"0.5\"/>"
       "<lobes space=\"lin_rec2020_scene\" basis=\"b\" method=\"m\" max_de00=\"1\" mean_de00=\"1\">"
       "<diffuse r=\"1\" g=\"1\" b=\"1\"/><lobe " +
       lobe + "<view angle=\"45\"><diffuse r=\"1\" g=\"1\" b=\"1\"/><lobe " + lobe +

@@ -95,6 +95,9 @@ std::string paint_element(const paint::Paint& paint) {
   std::optional<double> coat_index = paint.coat_index;
   if (paint.lobes && (coat_index || paint.lobes->coat_index != paint::kNoCoat)) coat_index = paint.lobes->coat_index;
   if (coat_index) text += "    <coat" + attribute("index", *coat_index) + "/>\n";
+  if (paint.flakes)
+    text += "    <flakes" + attribute("diameter_um", paint.flakes->diameter_um) +
+            attribute("coverage", paint.flakes->coverage) + attribute("spread_deg", paint.flakes->spread_deg) + "/>\n";
   if (paint.lobes) text += lobes_element(*paint.lobes) + tilts_element(paint.lobes->tilts);
   for (const std::string& element : paint.foreign) text += "    " + element + "\n";
   return text + "  </paint>\n";

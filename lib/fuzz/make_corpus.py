@@ -52,7 +52,7 @@ def paints():
 <lab geometry="45as25az90" L="120" a="100" b="-100"/></measurement>
 <gloss angle="20">82.1</gloss><gloss angle="60">0</gloss>
 <appearance travel="63.5" residual_de00="0.1"><face L="80" a="1" b="2"/><flop L="20" a="-3" b="4"/></appearance>
-<anisotropy alphaX="0.05" alphaY="0.3"/><colorMap href="x.exr" index="1.5"/>
+<anisotropy alphaX="0.05" alphaY="0.3"/><colorMap href="x.exr" index="1.5"/><flakes diameter_um="30" coverage="0.5" spread_deg="0.5"/>
 <note xmlns="urn:else"><![CDATA[<kept>]]></note><!-- said -->
 </paint></paints>
 """)

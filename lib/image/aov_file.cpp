@@ -136,6 +136,12 @@ std::string drawn_by_rays(const ImagePart& picture) {
   return file.drawn_by_rays;
 }
 
+bool is_drawn(const ImagePart& picture, const std::string& effect) {
+  AovFile file;
+  take_plan(attribute_or<std::string>(picture.attributes, "goniochrome:plan", ""), file);
+  return std::ranges::find(file.drawn, effect) != file.drawn.end();
+}
+
 std::optional<std::vector<std::string>> left_out(const ImagePart& picture) {
   const auto plan = attribute_or<std::string>(picture.attributes, "goniochrome:plan", "");
   if (plan.empty()) return std::nullopt;

@@ -59,6 +59,8 @@ struct AovFile {
 
 // AovFile::drawn_by_rays of a picture that was read without its buffers; "" where it does not tell.
 std::string drawn_by_rays(const ImagePart& picture);
+// True where the effect of that name is in AovFile::drawn of such a picture.
+bool is_drawn(const ImagePart& picture, const std::string& effect);
 // AovFile::left_out of such a picture; nothing where it does not tell.
 std::optional<std::vector<std::string>> left_out(const ImagePart& picture);
 

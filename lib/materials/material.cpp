@@ -13,10 +13,11 @@ std::span<const Target* const> targets() {
   return kTargets;
 }
 
-std::vector<std::string> left_out(const paint::Paint& paint) {
+std::vector<std::string> left_out(const paint::Paint& paint, const Target& target) {
   std::vector<std::string> parts;
   if (paint.color_map) parts.push_back("its color map");
   if (paint.anisotropy) parts.push_back("its anisotropy");
+  if (paint.flakes && !target.has_flakes) parts.push_back("its flakes");
   return parts;
 }
 

@@ -55,6 +55,7 @@ struct Target {
   Result<Material> (*material)(const paint::Paint& paint, const Naming& naming);
   const char* companion = nullptr;  // ending of a second file beside the first, behind the name without an ending
   std::size_t at_once = 16;         // files to make and hold side by side; large ones are fewer
+  bool has_flakes = false;          // the file states the flakes of the paint
 };
 extern const Target kRgl, kRglSpectral, kMaterialX, kGltf, kUsd, kStandardSurface, kOpenPbr, kOpenPbrUsd, kMdl,
     kMdlAcescg, kRadiance, kEnterprise, kOpenMaterial;
@@ -62,8 +63,8 @@ extern const Target kRgl, kRglSpectral, kMaterialX, kGltf, kUsd, kStandardSurfac
 // All targets, in the order in which help names them.
 std::span<const Target* const> targets();
 
-// Parts of a paint that no target can take along, as parts of a sentence: "its color map". Empty for most paints.
-std::vector<std::string> left_out(const paint::Paint& paint);
+// Names what the target cannot take along of a paint, as parts of a sentence: "its color map". Empty for most paints.
+std::vector<std::string> left_out(const paint::Paint& paint, const Target& target);
 
 // Makes identifiers out of names, each only once in its life and unlike all others also where a file system does not
 // tell capitals from small letters.

@@ -112,6 +112,18 @@ TEST(Material, ADiffusePaintIsExactInEveryTarget) {
   }
 }
 
+// Stated flakes are attributes of a graph; other targets say that they have none.
+TEST(Material, AGraphStatesTheFlakes) {
+  paint::Paint paint = silver_for_test();
+  const Naming naming{"a", "a", "test", {}};
+  EXPECT_EQ(kMaterialX.material(paint, naming)->bytes.find("flake_"), std::string::npos);
+  paint.flakes = paint::Flakes{25, 0.4, 0.7};
+  const std::string bytes = kMaterialX.material(paint, naming)->bytes;
+  EXPECT_NE(bytes.find("flake_diameter_um=\"25\" flake_coverage=\"0.4\" flake_spread_deg=\"0.7\">"), std::string::npos);
+  EXPECT_TRUE(left_out(paint, kMaterialX).empty());
+  EXPECT_EQ(left_out(paint, kGltf), std::vector<std::string>{"its flakes"});
+}
+
 // A graph has many lobes, of which each has its color; glTF has one roughness. The readings between face and flop need
 // several.
 TEST(Material, AGraphIsNearerThanTheParametersOfOneLobe) {

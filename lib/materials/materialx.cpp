@@ -47,9 +47,21 @@ class Document {
   void text(const char* name, const std::string& value) { this->value(name, "string", value); }
   void end() { text_ += "  </" + kind_ + ">\n"; }
 
-  std::string finish(const std::string& surface) {
+  std::string finish(const std::string& surface, const std::optional<paint::Flakes>& flakes) {
+    std::string more = " uiname=\"" + xml_escaped(naming_.display) + "\"";
+    const auto attribute = [&](const char* name, double value) {
+      text_ +=
+          fmt::format("  <attributedef name=\"{}_{}\" type=\"float\" attrname=\"{}\" elements=\"surfacematerial\" />\n",
+                      naming_.identifier, name, name);
+      more += fmt::format(" {}=\"{}\"", name, number(value));
+    };
+    if (flakes) {
+      attribute("flake_diameter_um", flakes->diameter_um);
+      attribute("flake_coverage", flakes->coverage);
+      attribute("flake_spread_deg", flakes->spread_deg);
+    }
     kind_ = "surfacematerial";
-    open(naming_.identifier, "material", " uiname=\"" + xml_escaped(naming_.display) + "\"");
+    open(naming_.identifier, "material", more);
     link("surfaceshader", "surfaceshader", surface);
     end();
     return text_ + "</materialx>\n";
@@ -190,7 +202,7 @@ std::vector<std::string> write_node(Document& document, const ViewNodes& view, c
   return tinted;
 }
 
-std::string materialx_text(const LobeGraph& graph, const Naming& naming) {
+std::string materialx_text(const LobeGraph& graph, const std::optional<paint::Flakes>& flakes, const Naming& naming) {
   Document document(naming, graph.space);
   std::string top;
   std::size_t sums = 0;
@@ -224,19 +236,23 @@ std::string materialx_text(const LobeGraph& graph, const Naming& naming) {
   const std::string surface = document.begin("surface", "surface", "surfaceshader");
   document.link("bsdf", "BSDF", top);
   document.end();
-  return document.finish(surface);
+  return document.finish(surface, flakes);
 }
 
 Result<Material> materialx_material(const paint::Paint& fitted, const Naming& naming) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
   const LobeGraph graph = nearest_graph(paint);
-  return Material{materialx_text(graph, naming), shown(paint, seen_of(graph))};
+  return Material{materialx_text(graph, paint.flakes, naming), shown(paint, seen_of(graph))};
 }
 
 }  // namespace
 
-const Target kMaterialX = {"materialx", ".mtlx",
+const Target kMaterialX = {"materialx",
+                           ".mtlx",
                            "a graph of MaterialX: a diffuse node and lobes under a coat, for programs of films and USD",
-                           materialx_material};
+                           materialx_material,
+                           nullptr,
+                           16,
+                           true};
 
 }  // namespace goniochrome::materials

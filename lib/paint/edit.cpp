@@ -349,6 +349,10 @@ Result<Edited> edited(const Paint& paint, const Edit& edit) {
     result.paint.anisotropy = edit.anisotropy;
     if (edit.anisotropy->alpha_x == 0 && edit.anisotropy->alpha_y == 0) result.paint.anisotropy.reset();
   }
+  if (edit.flakes) {
+    result.paint.flakes = edit.flakes;
+    if (edit.flakes->coverage == 0) result.paint.flakes.reset();
+  }
   return result;
 }
 
@@ -416,6 +420,10 @@ Result<Paint> between(const Paint& from, const Paint& to, double fraction) {
   if (from.anisotropy && to.anisotropy)
     paint.anisotropy = Anisotropy{std::lerp(from.anisotropy->alpha_x, to.anisotropy->alpha_x, fraction),
                                   std::lerp(from.anisotropy->alpha_y, to.anisotropy->alpha_y, fraction)};
+  if (from.flakes && to.flakes)
+    paint.flakes = Flakes{std::lerp(from.flakes->diameter_um, to.flakes->diameter_um, fraction),
+                          std::lerp(from.flakes->coverage, to.flakes->coverage, fraction),
+                          std::lerp(from.flakes->spread_deg, to.flakes->spread_deg, fraction)};
   if (from.measurement && to.measurement) locus.rows = rows_between(*from.measurement, *to.measurement, fraction);
   // Only a measurement states a condition. So a paint without rows gets those of its curve, unless its condition is the
   // default one.

@@ -51,6 +51,7 @@ struct Edit {
   bool keep_residual = false;            // where face, flop or travel is set
   std::vector<LabReading> readings;      // what these geometries shall read
   std::optional<Anisotropy> anisotropy;  // both alphas 0: none
+  std::optional<Flakes> flakes;          // diameter and coverage 0: none
   double gloss_angle_deg = 60;
   std::optional<double> gloss;  // gloss units
   double gloss_shift = 0;

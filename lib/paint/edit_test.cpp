@@ -225,6 +225,13 @@ TEST(Edit, AnisotropyIsSetAndTakenAway) {
   EXPECT_EQ(brushed.anisotropy->alpha_y, 0.3);
   edit.anisotropy = Anisotropy{};
   EXPECT_FALSE(done(brushed, edit).anisotropy);
+  edit = {};
+  edit.flakes = Flakes{40, 0.2, 0.3};
+  const Paint coarse = done(brushed, edit);
+  EXPECT_EQ(coarse.flakes, edit.flakes);
+  EXPECT_TRUE(coarse.anisotropy);
+  edit.flakes = Flakes{0, 0, 0};
+  EXPECT_FALSE(done(coarse, edit).flakes);
 }
 
 TEST(Edit, BlackHasNoColor) {

@@ -68,6 +68,17 @@ struct Anisotropy {
   double alpha_x = 0, alpha_y = 0;
 };
 
+// The flat mirrors in the base of a paint. goniochrome-flakes(7)
+struct Flakes {
+  double diameter_um = 30;
+  double coverage = 0.5;    // in (0,1]: the part of the surface that they cover
+  double spread_deg = 0.5;  // of the light that one flake reflects from a point, one standard deviation
+  bool operator==(const Flakes&) const = default;
+
+  double per_m2() const;
+};
+inline constexpr double kMostFlake_um = 1000, kMostFlakeSpread_deg = 30;
+
 struct ColorMapReference {
   std::string href;
   double index = 1.5;
@@ -161,11 +172,22 @@ struct Paint {
   std::optional<Appearance> appearance;
   std::optional<Anisotropy> anisotropy;
   std::optional<ColorMapReference> color_map;
+  std::optional<Flakes> flakes;      // that the paint states
   std::optional<double> coat_index;  // that the paint states; where it has lobes, theirs
   std::optional<LobeFit> lobes;
   // Elements of other vocabularies, kept as they came (serialized XML), in order.
   std::vector<std::string> foreign;
 };
+
+// The flakes that a paint states, or usual ones of its class; nothing for solids and unknown classes.
+struct KnownFlakes {
+  Flakes flakes;
+  bool assumed = false;  // by class
+};
+std::optional<KnownFlakes> known_flakes(const Paint& paint);
+
+// "30 um, coverage 0.5, spread 0.5 deg", with "assumed for class metallic" where the paint does not state them.
+std::string flakes_text(const Paint& paint, const KnownFlakes& known);
 
 const char* paint_class_name(PaintClass paint_class);
 

@@ -33,6 +33,7 @@ const std::vector<Word>& all_words() {
       {"texture-filter", {"texture-filter"}, "the mean in a pixel"},
       {"operator", {"operator"}, "see --operator"},
       {"lights", {"lights", "extent"}, "lamps"},
+      {"sparkle", {"sparkle"}, "flakes one by one near by"},
       {"shadow", {"shadow"}, "the mesh blocks light"},
       {"rays", {"rays"}, "shadow, the body in itself, bounced light"},
   };

@@ -61,6 +61,7 @@ struct Effects {
   std::size_t lights = 0;
   bool placed = false;   // some of them stand at a place
   bool extent = false;   // lamps as discs, which lobes and the mirror see; else as points
+  bool sparkle = false;  // flakes one by one, added to the picture of an engine with prefiltered maps by plans alone
   RayEffects rays = {};  // effects_of() leaves them out, since no engine with prefiltered maps draws them by itself
   double ray_noise_de00 = 0.35;    // error that rays may leave at 95 of 100 points
   int most_ray_samples = 1 << 16;  // of a visible point, in all samples of its pixel

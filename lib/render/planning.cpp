@@ -18,6 +18,7 @@
 #include "render/plan/highlights.h"
 #include "render/plan/prober.h"
 #include "render/plan/ray_plan.h"
+#include "render/plan/sparkle_plan.h"
 #include "render/scene_effects.h"
 #include "render/surface_layer.h"
 
@@ -137,6 +138,7 @@ Plan plan_of_everything(const Scene& scene, const Effects& all, const std::vecto
     item.decision = effect.needed ? Decision::kDrawn : Decision::kNotInScene;
     plan.items.push_back(std::move(item));
   }
+  plan.items.push_back(sparkle_left_out(scene, engine.name));
   for (const std::string& name : ray_effect_names()) {
     PlanItem item;
     const bool there = name != "floor" || scene.ground.has_value();
@@ -298,6 +300,12 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
     item.decision = Decision::kDropped;
     item.reason += "; prefiltered maps cannot show it, the engines integral and path do";
   }
+  std::vector<SparklePixel> pixels;
+  const std::vector<color::Rgb>& shown = prober.colors(choice.on);
+  for (const auto& [gbuffer, x, y] : probe_pixels(gbuffers, kProbe))
+    pixels.push_back({gbuffer, x, y, shown[pixels.size()]});
+  plan.items.push_back(engine.is_planned ? sparkle_item(scene, pixels, request, plan.effects)
+                                         : sparkle_left_out(scene, engine.name));
   plan.items.push_back(sums_item(words, rays, engine.is_planned, plan.effects));
   for (PlanItem& item : ray_items(words, rays, request, plan.effects)) plan.items.push_back(std::move(item));
   plan.time_ms = 1000 * clock.elapsed_s();

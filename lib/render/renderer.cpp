@@ -11,6 +11,7 @@
 #include "render/glints.h"
 #include "render/internal/samples.h"
 #include "render/internal/seen_through.h"
+#include "render/internal/sparkle.h"
 #include "render/path/open_residual.h"
 #include "render/path/path_engine.h"
 #include "render/path/visible_surface.h"
@@ -580,6 +581,8 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
     GONIO_TRY(s.take(1, view.samples, frame.picture));
     frame.rays = s.correct(1, view.samples, frame.picture);
   }
+  if (s.effects.sparkle && s.engine->info().is_planned && !frame.gbuffer->triangles.empty())
+    Sparkle(s.scene, s.effects).add(*frame.gbuffer, s.effects.rays.any() ? s.ray_mesh.get() : nullptr, frame.picture);
   frame.sums = s.sums_found;
   frame.noise.reset();
   if (s.engine->noise() != nullptr) frame.noise = *s.engine->noise();

@@ -88,6 +88,8 @@ struct Scene {
   // Flags of the parts that are panes of clear glass that is seen through, and wear pane_finish(); none where there are
   // fewer. Light passes panes on its way to other surfaces as if they were not there. See panes.h.
   std::vector<bool> panes = {};
+  // The flakes of each part's paint; none where there are fewer. They are seen one by one with the effect sparkle.
+  std::vector<std::optional<paint::KnownFlakes>> flakes = {};
 };
 
 // True if the scene has parts that only engines that trace rays can draw: a floor, or parts that shine by themselves.

@@ -81,6 +81,8 @@ Json paint_json(const paint::Paint& paint) {
   if (paint.anisotropy) json["anisotropy"] = Json::array({paint.anisotropy->alpha_x, paint.anisotropy->alpha_y});
   if (paint.color_map) json["color_map"] = {{"href", paint.color_map->href}, {"index", paint.color_map->index}};
   if (paint.coat_index) json["coat"] = *paint.coat_index;
+  if (const auto& flakes = paint.flakes)
+    json["flakes"] = Json::array({flakes->diameter_um, flakes->coverage, flakes->spread_deg});
   if (!paint.foreign.empty()) json["foreign"] = paint.foreign;
   return json;
 }
@@ -117,6 +119,10 @@ Result<paint::Paint> paint_of_json(const Json& json) {
     GONIO_TRY(of.status());
   }
   if (reader.has("coat")) paint.coat_index = reader.number("coat");
+  if (reader.has("flakes")) {
+    const std::vector<double> flakes = reader.numbers("flakes", 3);
+    paint.flakes = paint::Flakes{flakes[0], flakes[1], flakes[2]};
+  }
   for (const Json& element : reader.list("foreign"))
     if (element.is_string()) paint.foreign.push_back(element.get<std::string>());
   GONIO_TRY(reader.status());

@@ -60,6 +60,7 @@ TEST(PaintJson, KeepsEveryBit) {
   paint.anisotropy = paint::Anisotropy{0.05, 0.3};
   paint.color_map = paint::ColorMapReference{"x.exr", 1.6};
   paint.coat_index = 1.55;
+  paint.flakes = paint::Flakes{40, 0.2, 0.3};
   paint.measurement->condition = {"A", 2};
   paint.measurement->spectra.push_back({{.aspecular_deg = 15}, 400, 10, {0.1, 0.2, 1.0 / 7}});
   paint.measurement->textures = {{"Sparkle Grade", "15d", "2", 3.25}};

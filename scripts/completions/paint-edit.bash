@@ -25,6 +25,7 @@ _paint_edit() {
     --gloss-shift) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --gloss-angle) COMPREPLY=($(compgen -W "20 60 85" -- "$word")); return ;;
     --anisotropy) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --flakes) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --variations) COMPREPLY=($(compgen -W "face flop travel gloss" -- "$word")); return ;;
     --step) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --gradient) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -40,7 +41,7 @@ _paint_edit() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--hue --chroma --lightness --hue-shift --chroma-factor --lightness-shift --at --share --image --at-pixel --lighter --travel-to --gloss-to --face --face-shift --flop --flop-shift --travel --travel-shift --keep-residual --set --gloss --gloss-shift --gloss-angle --anisotropy --variations --step --gradient --only --suffix --rename --code --class --new --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--hue --chroma --lightness --hue-shift --chroma-factor --lightness-shift --at --share --image --at-pixel --lighter --travel-to --gloss-to --face --face-shift --flop --flop-shift --travel --travel-shift --keep-residual --set --gloss --gloss-shift --gloss-angle --anisotropy --flakes --variations --step --gradient --only --suffix --rename --code --class --new --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -23,7 +23,7 @@ _prefilter_envmap() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--rotate --ball --exposure --horizon --bad-pixels --basis --exponents --for --no-mirror --size --spots --no-open-maps --layout --tolerance --cache --verify --output --picture --explain --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--rotate --ball --exposure --horizon --bad-pixels --basis --exponents --for --no-mirror --size --spots --no-open-maps --sparkle --layout --tolerance --cache --verify --output --picture --explain --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -30,6 +30,23 @@ Result<std::optional<paint::Anisotropy>> alphas(const std::vector<double>& numbe
   return std::optional(paint::Anisotropy{numbers[0], numbers[1]});
 }
 
+Result<std::optional<paint::Flakes>> flakes_in(const std::vector<double>& numbers) {
+  if (numbers.empty()) return std::optional<paint::Flakes>();
+  if (numbers.size() != 2 && numbers.size() != 3)
+    return usage_error("--flakes is given {} numbers: give diameter and coverage, as in --flakes 30,0.5",
+                       numbers.size());
+  paint::Flakes flakes{numbers[0], numbers[1], numbers.size() == 3 ? numbers[2] : paint::Flakes().spread_deg};
+  if ((flakes.diameter_um == 0) != (flakes.coverage == 0))
+    return usage_error("--flakes is {},{}: give two numbers above 0, or 0,0 to take them away",
+                       shortest(flakes.diameter_um), shortest(flakes.coverage));
+  if (flakes.coverage > 1)
+    return usage_error("--flakes has coverage {}: it is a part of the surface, up to 1", shortest(flakes.coverage));
+  if (flakes.spread_deg > paint::kMostFlakeSpread_deg)
+    return usage_error("--flakes has spread {}: one flake spreads light by up to {} deg", shortest(flakes.spread_deg),
+                       shortest(paint::kMostFlakeSpread_deg));
+  return std::optional(flakes);
+}
+
 // Checks which options about names can stand together.
 Result<void> check_identity(const Options& o, bool many) {
   if (!o.rename.empty() && !o.suffix.empty()) return usage_error("--rename and --suffix exclude each other");
@@ -43,7 +60,8 @@ Result<void> check_identity(const Options& o, bool many) {
 }
 
 Result<void> check_contradictions(const Options& o, const paint::Edit& edit) {
-  const bool edits = paint::moves_color(edit) || paint::moves_gloss(edit) || edit.anisotropy || moves_identity(o);
+  const bool edits =
+      paint::moves_color(edit) || paint::moves_gloss(edit) || edit.anisotropy || edit.flakes || moves_identity(o);
   const bool averages = edit.average_hue_deg || edit.average_chroma || edit.average_lightness;
   if (edit.at_deg && averages)
     return usage_error("--at takes shifts: use --lightness-shift, --chroma-factor and --hue-shift with it");
@@ -90,6 +108,7 @@ Result<paint::Edit> edit_of(const Options& o) {
   GONIO_ASSIGN(edit.gloss, one("--gloss", o.gloss));
   GONIO_ASSIGN(edit.readings, stated_readings(o.readings));
   GONIO_ASSIGN(edit.anisotropy, alphas(o.anisotropy));
+  GONIO_ASSIGN(edit.flakes, flakes_in(o.flakes));
   edit.share = o.share == "source" ? paint::Share::kSource : paint::Share::kExact;
   edit.keep_residual = o.keep_residual;
   edit.tweak = {o.lightness_shift, o.chroma_factor, o.hue_shift_deg};
@@ -168,6 +187,12 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .from(0, 10)
       .in("slopes, the alpha of Ward's model")
       .more("Flake reflection and gloss are both drawn out along the wider direction.");
+  spec.option("flakes", "D,COVERAGE[,SPREAD]", "30,0.5", &o.flakes,
+              "single flakes that sparkle; 0,0 for those of the class")
+      .from(0, 1000)
+      .in("micrometers, the part of the surface that they cover, and degrees")
+      .more(
+          "The spread is 0.5 degrees where it is left out. The color stays: flakes share out the light of the lobes.");
   spec.heading = "many paints from one or two";
   spec.option("variations", "WHAT", "flop", &o.variations, "write each paint and its eight neighbors")
       .one_of({"face", "flop", "travel", "gloss"})
@@ -222,7 +247,7 @@ void add_report(cli::ToolSpec& spec) {
       {"changes[].from", "name of its origin; for a gradient, both names"},
       {"changes[].fraction", "place in a gradient, 0 to 1"},
       {"changes[].before",
-       "face, flop (L*, a*, b*), travel_deg, gloss_60_deg and so on, and anisotropy before the moves"},
+       "face, flop (L*, a*, b*), travel_deg, gloss_60_deg and so on, anisotropy and flakes before the moves"},
       {"changes[].after", "the same after them"},
       {"changes[].de00_max", "largest CIEDE2000 difference between before and after at 15, 45 and 110 degrees"},
       {"changes[].fitted_de00", "worst row of the fit, where the paint had only rows or where readings were set"},

@@ -132,6 +132,16 @@ names() { xmllint --xpath "//*[local-name()='paint']/@name" "$1" | sed -E 's/.*"
   grep -q '<lobe' out.paints.xml # the color did not move
   paint-edit out.paints.xml --quiet --anisotropy 0,0 -o round.paints.xml
   ! grep -q '<anisotropy' round.paints.xml
+  paint-edit out.paints.xml --quiet --flakes 40,0.2 --report r.json -o coarse.paints.xml
+  grep -q '<flakes diameter_um="40" coverage="0.2" spread_deg="0.5"/>' coarse.paints.xml
+  jq -e '.results.changes[0].after.flakes == [40, 0.2, 0.5]' r.json
+  # Every tool that reads and writes paints keeps them.
+  paint-convert --quiet coarse.paints.xml -o kept.paints.xml
+  fit-paint --quiet --basis "$TESTDATA/b5.basis.xml" kept.paints.xml -o fitted.paints.xml
+  paint-edit fitted.paints.xml --quiet --flop-shift 1,0,0 -o moved.paints.xml
+  grep -q '<flakes diameter_um="40" coverage="0.2" spread_deg="0.5"/>' moved.paints.xml
+  paint-edit moved.paints.xml --quiet --flakes 0,0 -o none.paints.xml
+  ! grep -q '<flakes' none.paints.xml
   run paint-edit "$library" --rename two -o all.paints.xml
   [ "$status" -eq 2 ]
   [[ $output == *"--rename is for one paint"* ]]
@@ -327,6 +337,10 @@ usage_error() { # TEXT ARGUMENTS...
   usage_error "--set has L* -1" --set 45as45=-1,2,3
   usage_error "--set names 45as45 twice" --set 45=1,2,3 --set 45as45=1,2,3
   usage_error "--anisotropy is given 1 numbers: give two" --anisotropy 0.1
+  usage_error "--flakes is given 1 numbers: give diameter and coverage" --flakes 30
+  usage_error "--flakes has coverage 2: it is a part of the surface" --flakes 30,2
+  usage_error "--flakes is 0,0.1: give two numbers above 0" --flakes 0,0.1
+  usage_error "--flakes has spread 31: one flake spreads light by up to 30 deg" --flakes 30,0.5,31
   usage_error "--anisotropy is 0,0.1: give two numbers above 0" --anisotropy 0,0.1
   usage_error "--rename and --suffix exclude each other" --rename x --suffix y
   usage_error "--class is \"mat\"" --class mat

@@ -32,6 +32,7 @@ Json state_json(const std::optional<paint::Appearance>& appearance, const paint:
   for (const paint::GlossReading& reading : paint.gloss)
     json[fmt::format("gloss_{}_deg", shortest(reading.angle_deg))] = reading.gloss_units;
   if (paint.anisotropy) json["anisotropy"] = {paint.anisotropy->alpha_x, paint.anisotropy->alpha_y};
+  if (const auto& flakes = paint.flakes) json["flakes"] = {flakes->diameter_um, flakes->coverage, flakes->spread_deg};
   return json;
 }
 

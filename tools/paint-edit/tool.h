@@ -21,7 +21,7 @@ struct Options {
   std::string gloss_angle_deg = "60", share = "exact";
   std::vector<std::string> readings;
   bool keep_residual = false;
-  std::vector<double> anisotropy;
+  std::vector<double> anisotropy, flakes;
   std::string image;
   std::vector<double> at_pixel, travel_to, gloss_to;
   double lighter = 0;

@@ -101,7 +101,7 @@ class Run {
     GONIO_TRY(write_file(file, material.bytes));
     const std::string companion = target_.companion ? companion_of(file) : std::string();
     if (target_.companion) GONIO_TRY(write_file(companion, material.companion));
-    std::vector<std::string> left_out = materials::left_out(paint);
+    std::vector<std::string> left_out = materials::left_out(paint, target_);
     left_out.insert(left_out.end(), material.left_out.begin(), material.left_out.end());
     for (const std::string& what : left_out)
       session_.warn(fmt::format("{}: {} is left out: {} has no place for it", paint.name, what, target_.name));

@@ -77,6 +77,9 @@ void tell_paint(const sketch::PickedPaint& picked, cli::Session& session) {
 
 // A dropper takes what shadows and bounced light do to a surface for its paint, unless the light is known.
 void tell_rays(const std::string& path, const image::ImagePart& image, cli::Session& session) {
+  if (image::is_drawn(image, "sparkle"))
+    session.warn(fmt::format("{} shows single flakes, and a paint is their mean: render it with --effects auto,-sparkle",
+                             path));
   if (const std::string rays = image::drawn_by_rays(image); !rays.empty())
     session.warn(
         fmt::format("{} shows {}, which a dropper takes for the color of the paint: give --buffers, made by "

@@ -36,6 +36,12 @@ cli::ToolSpec tool_spec(Options& o) {
           "10 degrees of specular or more than 75 degrees from the normal, those beyond the critical angle of the "
           "coat, where isolines do not reach, and those more than 10 degrees from the nearest reading. Paints "
           "without a color map are left out, and a warning says so.");
+  spec.flag("sparkle", &o.sparkle, "draw the contrast of the grain of each paint against distance instead")
+      .more(
+          "The contrast is the standard deviation over the mean of patches one minute of arc wide, in the sun at 45 "
+          "degrees, for viewers 15, 25 and 45 degrees from specular; see goniochrome-flakes(7). What an instrument "
+          "tells of sparkle stands beside it as it is. Paints without flakes or without lobes are left out, and a "
+          "warning says so.");
   spec.option("hud", "VIEW", "view.exr", &o.hud, "draw the rings of each paint on this view instead")
       .more(
           "VIEW is a picture of render-osmesa --aov aspecular. The lines are where the aspecular angle to the first "
@@ -62,8 +68,9 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"paints[].file", "file that it was drawn to"},
                  {"paints[].lobes", "number of lobes drawn; 0 where the paint was not fitted"},
                  {"paints[].model", "with --color-map: isolines or aspecular"},
+                 {"paints[].flakes_assumed", "with --sparkle: whether the flakes are usual ones of the class"},
                  {"paints[].target", "what the squares compare with: measured BRDF, curve or none"}};
-  spec.see_also = {"fit-paint(1)", "paint-convert(1)", "goniochrome-lobes(7)"};
+  spec.see_also = {"fit-paint(1)", "paint-convert(1)", "goniochrome-flakes(7)", "goniochrome-lobes(7)"};
   return spec;
 }
 

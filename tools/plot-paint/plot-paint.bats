@@ -209,3 +209,17 @@ setup() {
   plot-paint -q --paint candy_red --hud ball.exr "$paints" -o ball.svg
   /usr/bin/python3 "$BATS_TEST_DIRNAME/hud_test.py" ball.exr ball.svg --closed
 }
+
+@test "the contrast of grain is drawn against distance" {
+  run plot-paint --sparkle --paint candy_red --paint jet_black fitted.xml --report r.json -o grain.svg
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ "paint \"jet_black\" has no flakes: paint-edit --flakes states them" ]]
+  grep -q "flakes of 30 um, coverage 0.5, spread 0.5 deg (assumed for class metallic)" grain.svg
+  grep -q "none under an even sky" grain.svg
+  jq -e '.results.paints[0] | .name == "candy_red" and .flakes_assumed' r.json
+  run plot-paint --sparkle --paint candy_red "$paints" -o grain.svg
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "has no lobes: fit-paint makes them" ]]
+  run plot-paint --sparkle --color-map fitted.xml -o grain.svg
+  [ "$status" -eq 2 ]
+}

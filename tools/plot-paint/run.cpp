@@ -8,6 +8,7 @@
 #include "base/file_names.h"
 #include "base/paths.h"
 #include "base/text.h"
+#include "brdf/flakes.h"
 #include "hud.h"
 #include "image/surface_file.h"
 #include "map_page.h"
@@ -15,6 +16,7 @@
 #include "page.h"
 #include "paint_stream.h"
 #include "png.h"
+#include "sparkle_page.h"
 
 namespace goniochrome::tool {
 
@@ -120,6 +122,29 @@ Result<std::vector<report::Drawing>> map_pages(const std::vector<ChosenPaint>& p
   return Result(std::move(pages));
 }
 
+// The charts of the grain, each with its paint. A paint without flakes is told.
+Result<std::vector<report::Drawing>> sparkle_pages(const std::vector<ChosenPaint>& paints, cli::Session& session,
+                                                   std::vector<const paint::Paint*>& drawn) {
+  std::vector<report::Drawing> pages;
+  for (const ChosenPaint& chosen : paints) {
+    const paint::Paint& paint = chosen.paint;
+    const std::optional<paint::KnownFlakes> known = paint::known_flakes(paint);
+    const bool has_flakes =
+        known && paint.lobes && std::ranges::any_of(brdf::flake_shares(*paint.lobes), [](double s) { return s > 0; });
+    if (!has_flakes) {
+      session.warn(fmt::format(
+          "paint \"{}\" has no {}", paint.name,
+          known && !paint.lobes ? "lobes: fit-paint makes them" : "flakes: paint-edit --flakes states them"));
+      continue;
+    }
+    pages.push_back(sparkle_page(paint, *known));
+    drawn.push_back(&paint);
+    session.results()["paints"].push_back({{"name", paint.name}, {"flakes_assumed", known->assumed}});
+  }
+  if (pages.empty()) return input_error("none of the paints has flakes and lobes: fit-paint makes lobes");
+  return Result(std::move(pages));
+}
+
 void report(const PageInput& input, const std::string& file, cli::Session& session) {
   const paint::Paint& paint = input.paint;
   const char* target = input.brdf ? "measured BRDF" : paint.measurement || paint.appearance ? "curve" : "none";
@@ -129,15 +154,16 @@ void report(const PageInput& input, const std::string& file, cli::Session& sessi
                                          {"target", target}});
 }
 
-Result<cli::Verdict> draw_maps(const std::vector<ChosenPaint>& paints, const Options& options,
-                               std::optional<PageFiles>& files, cli::Session& session) {
+Result<cli::Verdict> draw_pages(const std::vector<ChosenPaint>& paints, const Options& options,
+                                std::optional<PageFiles>& files, cli::Session& session) {
   std::vector<const paint::Paint*> drawn;
-  GONIO_ASSIGN(const std::vector<report::Drawing> pages, map_pages(paints, options, session, drawn));
+  GONIO_ASSIGN(const std::vector<report::Drawing> pages,
+               options.sparkle ? sparkle_pages(paints, session, drawn) : map_pages(paints, options, session, drawn));
   for (std::size_t i = 0; i < pages.size() && files; ++i) {
     GONIO_ASSIGN(session.results()["paints"][i]["file"], files->write(*drawn[i], pages[i]));
   }
   if (!files) GONIO_TRY(write_drawing(options.output, report::column_of(pages)));
-  session.say(fmt::format("{}: {} color maps drawn", session.tool(), pages.size()));
+  session.say(fmt::format("{}: {} {} drawn", session.tool(), pages.size(), options.sparkle ? "charts" : "color maps"));
   return cli::Verdict::kDone;
 }
 
@@ -156,9 +182,9 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
       session.warn(fmt::format("no paint is named \"{}\" as the measured BRDF is: it is not used", name));
   session.results()["paints"] = Json::array();
 
-  if (options.color_map && !options.hud.empty())
-    return usage_error("--color-map and --hud exclude each other: each draws a page of its own");
-  if (options.color_map) return draw_maps(paints, options, files, session);
+  if (options.color_map + options.sparkle + !options.hud.empty() > 1)
+    return usage_error("--color-map, --sparkle and --hud exclude each other: each draws a page of its own");
+  if (options.color_map || options.sparkle) return draw_pages(paints, options, files, session);
   std::optional<HudView> view;
   if (!options.hud.empty()) {
     GONIO_ASSIGN(view, read_hud_view(options.hud));

@@ -16,7 +16,7 @@ struct Options {
   std::string format = "svg";
   std::vector<std::string> names;
   std::vector<std::string> brdfs;
-  bool color_map = false;
+  bool color_map = false, sparkle = false;
   std::string hud;  // a view; "" draws no rings
   std::vector<double> incidence_deg = {10, 40, 70};
 };

@@ -43,6 +43,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.flag("no-open-maps", &o.no_open_maps, "leave out the maps without bright spots, and the one under a coat")
       .more(
           "The file is then half as large, and render-osmesa makes the maps that a picture needs at each start.");
+  spec.flag("sparkle", &o.sparkle, "add the root mean square of the light in each lobe, for the grain of flakes")
+      .more(
+          "render-osmesa draws the effect sparkle without these maps as well, but then lamps and bright spots alone "
+          "make flakes sparkle. They are small, and the layout env alone has them. See goniochrome-flakes(7).");
   spec.option("layout,l", "WHAT", "latlong", &o.layout, "how the maps lie")
       .one_of({"env", "latlong", "openexr", "mip", "ktx2", "dds"})
       .more(
@@ -108,7 +112,8 @@ void add_report(cli::ToolSpec& spec) {
       {"source.width, height", "texels across and down"},
       {"source.nan, infinite, negative", "number of texels of each kind, which were set to zero"},
       {"source.out_of_gamut", "number of texels with a color beyond Rec.2020, which were clipped"},
-      {"read_s, filter_s, verify_s, open_maps_s, write_s", "time of each stage; open maps are those without spots"},
+      {"read_s, filter_s, verify_s, open_maps_s, sparkle_s, write_s",
+       "time of each stage; open maps are those without spots"},
       {"warnings[]", "what was replaced or is outside the tolerance"}};
   spec.see_also = {"fit-basis(1)", "render-osmesa(1)", "goniochrome-paint(5)",
                    "goniochrome-prefiltering(7)"};

@@ -514,3 +514,13 @@ PY
   [[ $output == *"--picture shows cubes, and --layout latlong makes none"* ]]
   [ ! -e none.exr ]
 }
+
+@test "--sparkle adds the root mean square of each lobe, which is smaller than the lobe" {
+  prefilter-envmap -q -e 6,70 "$sky" -o plain.env.exr
+  prefilter-envmap -q -e 6,70 --sparkle "$sky" -o sparkle.env.exr --report r.json
+  [ "$(exrheader sparkle.env.exr | grep -c 'rms-lobe-')" -eq 2 ]
+  [ "$(stat -c %s sparkle.env.exr)" -le $((3 * $(stat -c %s plain.env.exr) / 2)) ]
+  grep -q '"sparkle_s"' r.json
+  run prefilter-envmap -e 6 --sparkle --layout latlong "$sky" -o no.exr
+  [ "$status" -eq 2 ]
+}

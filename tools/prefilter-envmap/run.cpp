@@ -18,6 +18,7 @@
 #include "prefilter/exact_lobe.h"
 #include "prefilter/lobe_cache.h"
 #include "prefilter/prefilter.h"
+#include "prefilter/rms_maps.h"
 #include "wanted.h"
 
 namespace goniochrome::tool {
@@ -232,6 +233,8 @@ Result<void> check_picture(const Options& options) {
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   keep_freed_memory();  // grids, moments and maps of some megabytes follow each other
   GONIO_TRY(check_picture(options));
+  if (options.sparkle && options.layout != "env")
+    return usage_error("--sparkle adds maps that the layout env alone has: leave --layout {} out", options.layout);
   const bool is_engine_cube = options.layout == "ktx2" || options.layout == "dds";
   GONIO_TRY(check_output_name(options.output,
                               is_engine_cube ? "a cube texture of --layout " + options.layout : "an EXR",
@@ -283,6 +286,9 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   const Stopwatch open_maps_clock;
   if (options.layout == "env" && !options.no_open_maps) envmap::keep_open_maps(result);
   session.results()["open_maps_s"] = open_maps_clock.elapsed_s();
+  const Stopwatch sparkle_clock;
+  if (options.sparkle) prefilter::keep_rms_maps(env, request, result);
+  session.results()["sparkle_s"] = sparkle_clock.elapsed_s();
   const Stopwatch write_clock;
   GONIO_TRY(write(options, result, session));
   if (!options.picture.empty()) GONIO_TRY(image::write_png(options.picture, contact_sheet(result)));

@@ -20,6 +20,7 @@ struct Options {
   std::string bad_pixels = "error";
   bool no_mirror = false;
   bool no_open_maps = false;
+  bool sparkle = false;
   std::string paints;  // --for
   std::string layout = "env";
   std::string cache;

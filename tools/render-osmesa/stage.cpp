@@ -212,6 +212,9 @@ void wear(const DressedMesh& dress, const Options& options, Stage& stage) {
   scene.anisotropy = dress.anisotropy;
   scene.tilt_error = options.tilt_error, scene.most_tilts = options.most_tilts;
   scene.panes = dress.panes;
+  scene.flakes.clear();
+  for (const auto& worn : dress.worn)
+    scene.flakes.push_back(worn != nullptr ? paint::known_flakes(*worn) : std::nullopt);
   stage.layer = std::make_unique<render::SurfaceLayer>(
       scene, dress.surfaces, brdf::critical_angle_of(options.critical_angle).value_or(brdf::CriticalAngle::kSlide),
       stage.mip ? &*stage.mip : nullptr);

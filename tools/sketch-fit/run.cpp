@@ -307,6 +307,9 @@ sketch::SketchFit fit_in_transport(const sketch::SketchInput& input, const sketc
 
 // Tells which light a fit without traced light does not know.
 void tell_shadows(const image::AovFile& buffers, cli::Session& session) {
+  if (std::ranges::find(buffers.drawn, "sparkle") != buffers.drawn.end())
+    session.warn(fmt::format("{} shows single flakes, and a paint is their mean: render it with --effects auto,-sparkle",
+                             buffers.path));
   if (!buffers.drawn_by_rays.empty())
     session.warn(
         fmt::format("{} shows {}: no paint explains what the mesh does to light, so that the paint found is off: "

@@ -1,0 +1,78 @@
+#include "render/plan/sparkle_plan.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/text.h"
+#include "mesh/unit.h"
+#include "render/internal/seen.h"
+#include "render/internal/sparkle.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+bool has_flakes(const Scene& scene) {
+  return std::ranges::any_of(scene.flakes, [](const auto& flakes) { return flakes.has_value(); });
+}
+
+PlanItem sparkle_unmeasured(const std::string& reason) {
+  PlanItem item;
+  item.effect = kSparkleName, item.reason = reason;
+  item.de00_p95 = std::numeric_limits<double>::quiet_NaN();
+  return item;
+}
+
+// The distance at which the deviation, which is as one part in the distance, has the size of the tolerance.
+std::string seen_from(const Scene& scene, const std::vector<SparklePixel>& pixels, double part) {
+  std::vector<double> distances;
+  for (const SparklePixel& pixel : pixels)
+    distances.push_back(
+        length(mesh_point(*scene.mesh, *pixel.gbuffer, pixel.x, pixel.y).position - pixel.gbuffer->rays.eye));
+  std::ranges::nth_element(distances, distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2));
+  const double distance_m = mesh::length_unit(*scene.mesh).meters * distances[distances.size() / 2];
+  return fmt::format("seen up to some {:.2g} m away, and this is {:.2g} m", part * distance_m, distance_m);
+}
+
+}  // namespace
+
+PlanItem sparkle_left_out(const Scene& scene, const char* engine) {
+  PlanItem item = sparkle_unmeasured("no visible paint has flakes");
+  if (!has_flakes(scene)) return item;
+  item.needed = true, item.decision = Decision::kDropped;
+  item.reason =
+      fmt::format("the engine {} draws the mean of all flakes; engines with prefiltered maps draw them", engine);
+  return item;
+}
+
+PlanItem sparkle_item(const Scene& scene, const std::vector<SparklePixel>& pixels, const PlanRequest& request,
+                      Effects& effects) {
+  if (!has_flakes(scene)) return sparkle_unmeasured("no visible paint has flakes");
+  const bool places = !pixels.empty() && std::ranges::none_of(pixels, [](const SparklePixel& pixel) {
+    return pixel.gbuffer->triangles.empty();
+  });
+  if (scene.mesh == nullptr || scene.mesh->positions.empty() || !places)
+    return sparkle_unmeasured("buffers without their mesh: flakes have no places");
+  const Sparkle sparkle(scene, effects);
+  if (!sparkle.absent().empty()) return sparkle_unmeasured(sparkle.absent());
+  const double white = request.white_luminance > 0 ? request.white_luminance : 1;
+  std::vector<double> de00;
+  for (const SparklePixel& pixel : pixels)
+    de00.push_back(seen_difference(
+        pixel.shown, pixel.shown + sparkle.deviation(*pixel.gbuffer, pixel.x, pixel.y, pixel.shown), white));
+  PlanItem item;
+  item.effect = kSparkleName, item.needed = true;
+  item.de00_p95 = percentile_95(std::move(de00));
+  item.reason =
+      fmt::format("{}; {}", sparkle.reason(), seen_from(scene, pixels, item.de00_p95 / request.tolerance_de00));
+  const std::optional<bool> forced = request.effects.forced_on(kSparkleName);
+  const bool wanted = request.effects.start == Start::kAll ||
+                      (request.effects.start == Start::kAuto && item.de00_p95 > request.tolerance_de00);
+  item.on = effects.sparkle = forced.value_or(wanted);
+  item.decision = forced    ? (item.on ? Decision::kForcedOn : Decision::kForcedOff)
+                  : item.on ? Decision::kDrawn
+                            : Decision::kDropped;
+  return item;
+}
+
+}  // namespace goniochrome::render

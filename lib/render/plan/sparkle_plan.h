@@ -1,0 +1,30 @@
+// The effect sparkle of a plan. goniochrome-plan(7), "PLAN".
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "render/gbuffer.h"
+#include "render/plan.h"
+#include "render/scene.h"
+
+namespace goniochrome::render {
+
+constexpr const char* kSparkleName = "sparkle";
+
+// A pixel of which the plan knows what it shows.
+struct SparklePixel {
+  const Gbuffer* gbuffer = nullptr;
+  int x = 0, y = 0;
+  color::Rgb shown;
+};
+
+// Predicts what flakes change at the pixels: by one standard deviation, at 95 of 100 of them. Turns the effect on where
+// that is more than the tolerance.
+PlanItem sparkle_item(const Scene& scene, const std::vector<SparklePixel>& pixels, const PlanRequest& request,
+                      Effects& effects);
+
+// The item of an engine that draws no flakes.
+PlanItem sparkle_left_out(const Scene& scene, const char* engine);
+
+}  // namespace goniochrome::render
