@@ -260,6 +260,8 @@ TEST(Sparkle, IsPlannedWhereItIsSeen) {
   EXPECT_FALSE(planned(near, "none").on);
   near.scene.flakes[0]->assumed = true;
   EXPECT_THAT(planned(near, "auto").reason, HasSubstr("(assumed by class)"));
+  EXPECT_EQ(planned(near, "auto").decision, Decision::kDropped) << "nobody stated them";
+  EXPECT_EQ(planned(near, "auto,+sparkle").decision, Decision::kForcedOn);
 }
 
 TEST(Sparkle, SaysWhyItIsNotDrawn) {
