@@ -45,8 +45,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "The file is then half as large, and render-osmesa makes the maps that a picture needs at each start.");
   spec.flag("sparkle", &o.sparkle, "add the root mean square of the light in each lobe, for the grain of flakes")
       .more(
-          "render-osmesa draws the effect sparkle without these maps as well, but then lamps and bright spots alone "
-          "make flakes sparkle. They are small, and the layout env alone has them. See goniochrome-flakes(7).");
+          "Without them, lamps and bright spots alone make flakes sparkle. The layout env alone has them; see "
+          "goniochrome-flakes(7).");
   spec.option("layout,l", "WHAT", "latlong", &o.layout, "how the maps lie")
       .one_of({"env", "latlong", "openexr", "mip", "ktx2", "dds"})
       .more(

@@ -151,9 +151,8 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "rays end after 5 s, or 8 samples of each point.");
   spec.option("tilts", "N|ERROR", "16", &o.tilts, "tilted normals that draw a brushed paint, or their error")
       .more(
-          "Prefiltered lobes are round: those of a brushed paint are means over tilted normals. ERROR, below 1, is "
-          "relative to the peak of a lobe; --explain says how many normals it takes, and what N of them err. The time "
-          "of shading grows with their number.");
+          "ERROR, below 1, is relative to the peak of a lobe; --explain says how many normals it takes. The time of "
+          "shading grows with their number.");
   spec.option("bounces", "N", "8", &o.bounces, "surfaces that may pass light on to what is seen")
       .from(0, 4096)
       .more(
