@@ -41,11 +41,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "render-osmesa cuts each of them by the horizon of every point, which the maps cannot do; more of them are "
           "closer and take longer.");
   spec.flag("no-open-maps", &o.no_open_maps, "leave out the maps without bright spots, and the one under a coat")
+      .more("The file is then half as large, and render-osmesa makes the maps that a picture needs at each start.");
+  spec.flag("sparkle", &o.sparkle, "add root mean squares of light, for the grain of flakes")
       .more(
-          "The file is then half as large, and render-osmesa makes the maps that a picture needs at each start.");
-  spec.flag("sparkle", &o.sparkle, "add the root mean square of the light in each lobe, for the grain of flakes")
-      .more(
-          "Without them, lamps and bright spots alone make flakes sparkle. The layout env alone has them; see "
+          "Without them, only lamps and bright spots sparkle. The layout env alone has them; see "
           "goniochrome-flakes(7).");
   spec.option("layout,l", "WHAT", "latlong", &o.layout, "how the maps lie")
       .one_of({"env", "latlong", "openexr", "mip", "ktx2", "dds"})
@@ -68,11 +67,9 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "tolerance, the exit status is 1.");
   spec.option("output,o", "FILE", "studio.env.exr", &o.output,
               "where the prefiltered environment goes; - is standard output")
-      .more(
-          "Its maps are not compressed, so that they load faster.");
+      .more("Its maps are not compressed, so that they load faster.");
   spec.option("picture", "FILE", "studio.png", &o.picture, "PNG to write that shows all maps side by side")
-      .more(
-          "Every map is a panorama with +Z in the middle, with its exponent and its size.");
+      .more("Every map is a panorama with +Z in the middle, with its exponent and its size.");
   cli::add_common_options(spec, o.common, {.explain = true, .seed = "the texels to verify"});
 }
 
@@ -115,8 +112,7 @@ void add_report(cli::ToolSpec& spec) {
       {"read_s, filter_s, verify_s, open_maps_s, sparkle_s, write_s",
        "time of each stage; open maps are those without spots"},
       {"warnings[]", "what was replaced or is outside the tolerance"}};
-  spec.see_also = {"fit-basis(1)", "render-osmesa(1)", "goniochrome-paint(5)",
-                   "goniochrome-prefiltering(7)"};
+  spec.see_also = {"fit-basis(1)", "render-osmesa(1)", "goniochrome-paint(5)", "goniochrome-prefiltering(7)"};
 }
 
 }  // namespace
