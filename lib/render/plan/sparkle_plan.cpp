@@ -66,12 +66,11 @@ PlanItem sparkle_item(const Scene& scene, const std::vector<SparklePixel>& pixel
   item.reason =
       fmt::format("{}; {}", sparkle.reason(), seen_from(scene, pixels, item.de00_p95 / request.tolerance_de00));
   const std::optional<bool> forced = request.effects.forced_on(kSparkleName);
-  // A picture is not to change by flakes that nobody stated.
+  // Flakes that nobody stated change no picture unasked.
   const bool stated = std::ranges::any_of(scene.flakes, [](const auto& one) { return one && !one->assumed; });
-  if (!stated && !forced && request.effects.start == Start::kAuto)
-    item.reason += "; no paint states its flakes, and +sparkle draws those assumed";
-  const bool wanted = request.effects.start == Start::kAll ||
-                      (request.effects.start == Start::kAuto && stated && item.de00_p95 > request.tolerance_de00);
+  if (!stated && !forced) item.reason += "; no paint states its flakes, and +sparkle draws those assumed";
+  const bool wanted = stated && (request.effects.start == Start::kAll ||
+                                 (request.effects.start == Start::kAuto && item.de00_p95 > request.tolerance_de00));
   item.on = effects.sparkle = forced.value_or(wanted);
   item.decision = forced    ? (item.on ? Decision::kForcedOn : Decision::kForcedOff)
                   : item.on ? Decision::kDrawn
