@@ -69,7 +69,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "A material for the Enterprise PBR Shading Model 2022x of Dassault Systemes is glTF with the extensions that the "
       "model maps to its parameters: albedo, metallic, roughness, specular, specular tint, index of refraction and "
       "clearcoat. Renderers that read such a file as plain glTF show another color.",
-      "What no instrument has measured is not invented: no target gets flakes or sparkle. Color maps and anisotropy of "
+      "What no instrument has measured is not invented: no target gets sparkle, and MaterialX alone gets the flakes "
+      "that a paint states. Color maps and anisotropy of "
       "a paint are left out, with a warning. AxF is not written: the layers of paint in its container are not openly "
       "specified, and there is no reader to test a writer with.",
       "# Names\nIn the names of files and of materials, every character of a name but ASCII letters, digits and "
