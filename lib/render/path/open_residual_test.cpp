@@ -266,7 +266,7 @@ TEST(OpenResidual, IsDrawnWhereItIsSeen) {
 TEST(OpenResidual, IsDrawnWhereSharpLobesDecideThe95thPercentile) {
   World world(flakes(), blinds());
   std::vector<paint::Lobe>& lobes = world.scene.paints[0].lobes;
-  for (paint::Lobe& lobe : lobes) lobe = {lobe.exponent, 0.5 * lobe.directional_diffuse, 0.5 * lobe.gloss};
+  for (paint::Lobe& lobe : lobes) lobe = {lobe.exponent, 0.4 * lobe.directional_diffuse, 0.4 * lobe.gloss};
   lobes.back() = {paint::kMirrorExponent, {}, {1, 1, 1}};
   const Errors errors = errors_of(world);
   EXPECT_GT(errors.summed, 0.95 * errors.maps);
