@@ -51,7 +51,7 @@ Result<std::optional<RoughCoat>> rough_coat_of(const std::vector<paint::GlossRea
 
 // The range of coats of two scales that readings leave open: all coats from one to the other have the readings within
 // two standard deviations, with numbers as usual. The haze is what readings tell least, so that they are sorted by it.
-// Of three readings to a tenth, coats may have nearly the same and differ in pictures by several units of CIEDE2000.
+// Coats whose three readings agree to a tenth may differ in pictures by several units of CIEDE2000.
 struct CoatRange {
   RoughCoat least_haze, probable, most_haze;
 };

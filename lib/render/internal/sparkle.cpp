@@ -13,6 +13,7 @@
 #include "brdf/flakes.h"
 #include "brdf/lobe_model.h"
 #include "envmap/open_maps.h"
+#include "math/elementary.h"
 #include "mesh/unit.h"
 #include "render/internal/lobe_curves.h"
 #include "render/path/ray_points.h"
@@ -209,7 +210,7 @@ std::vector<Sparkle::Grain> Sparkle::grains(const Part& part, const Footprint& a
                                             const Lit& lit) const {
   const double cos_o = std::clamp(dot(at.normal, at.to_viewer), 0.0, 1.0), least = kLeast * seen_luminance(shown);
   const paint::LobeFit paint =
-      part.paint.views.empty() ? part.paint : brdf::at_view(part.paint, std::acos(cos_o) / kDegree);
+      part.paint.views.empty() ? part.paint : brdf::at_view(part.paint, math::acos(cos_o) / kDegree);
   const double let_out = brdf::coat_transmission(cos_o, paint.coat_index);
   const auto met = [&](const color::Rgb& weight, const color::Rgb& light) {
     return reflection_ ? color::reflected(scene_.reflection, weight, light) : weight * light;
@@ -298,7 +299,7 @@ color::Rgb Sparkle::change(const Part& part, const Footprint& at, const std::vec
                  low = std::max(0.0, 1 - std::sqrt(grain.flake_variance)), high = (1 - (1 - bright) * low) / bright;
     box.shown = projected;
     brdf::FlakeBox brighter = box;
-    brighter.tilts[1] = bright, brighter.tilt[1] = std::atan2(y.y, x.y) / (2 * kPi) - 0.5 * bright + 1;
+    brighter.tilts[1] = bright, brighter.tilt[1] = math::atan2(y.y, x.y) / (2 * kPi) - 0.5 * bright + 1;
     const brdf::FlakeCounts flakes = tree.counts(box, brighter);
     if (flakes.all > 0) change += (low + (high - low) * flakes.inner / flakes.all - 1) * grain.mean;
   }

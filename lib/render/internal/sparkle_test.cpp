@@ -260,7 +260,11 @@ TEST(Sparkle, IsPlannedWhereItIsSeen) {
   EXPECT_FALSE(planned(near, "none").on);
   near.scene.flakes[0]->assumed = true;
   EXPECT_THAT(planned(near, "auto").reason, HasSubstr("(assumed by class)"));
-  EXPECT_EQ(planned(near, "auto").decision, Decision::kDropped) << "nobody stated them";
+  for (const char* effects : {"auto", "all"}) {
+    const PlanItem unstated = planned(near, effects);
+    EXPECT_EQ(unstated.decision, Decision::kDropped) << "nobody stated them";
+    EXPECT_TRUE(std::isnan(unstated.de00_p95)) << "nor are they measured";
+  }
   EXPECT_EQ(planned(near, "auto,+sparkle").decision, Decision::kForcedOn);
 }
 

@@ -48,6 +48,14 @@ PlanItem sparkle_left_out(const Scene& scene, const char* engine) {
 PlanItem sparkle_item(const Scene& scene, const std::vector<SparklePixel>& pixels, const PlanRequest& request,
                       Effects& effects) {
   if (!has_flakes(scene)) return sparkle_unmeasured("no visible paint has flakes");
+  const std::optional<bool> forced = request.effects.forced_on(kSparkleName);
+  // Flakes that nobody stated change no picture unasked, and cost nothing.
+  if (!forced && std::ranges::none_of(scene.flakes, [](const auto& one) { return one && !one->assumed; })) {
+    PlanItem item =
+        sparkle_unmeasured("flakes (assumed by class): no paint states its own, and +sparkle draws those assumed");
+    item.needed = true, item.decision = Decision::kDropped;
+    return item;
+  }
   const bool places = !pixels.empty() && std::ranges::none_of(pixels, [](const SparklePixel& pixel) {
     return pixel.gbuffer->triangles.empty();
   });
@@ -65,12 +73,8 @@ PlanItem sparkle_item(const Scene& scene, const std::vector<SparklePixel>& pixel
   item.de00_p95 = percentile_95(std::move(de00));
   item.reason =
       fmt::format("{}; {}", sparkle.reason(), seen_from(scene, pixels, item.de00_p95 / request.tolerance_de00));
-  const std::optional<bool> forced = request.effects.forced_on(kSparkleName);
-  // Flakes that nobody stated change no picture unasked.
-  const bool stated = std::ranges::any_of(scene.flakes, [](const auto& one) { return one && !one->assumed; });
-  if (!stated && !forced) item.reason += "; no paint states its flakes, and +sparkle draws those assumed";
-  const bool wanted = stated && (request.effects.start == Start::kAll ||
-                                 (request.effects.start == Start::kAuto && item.de00_p95 > request.tolerance_de00));
+  const bool wanted = request.effects.start == Start::kAll ||
+                      (request.effects.start == Start::kAuto && item.de00_p95 > request.tolerance_de00);
   item.on = effects.sparkle = forced.value_or(wanted);
   item.decision = forced    ? (item.on ? Decision::kForcedOn : Decision::kForcedOff)
                   : item.on ? Decision::kDrawn
