@@ -382,7 +382,7 @@ Result<Transport> Renderer::State::traced_light(bool over_floor) const {
     GroundRequest request{.directions = ground_directions(tolerance_de00), .seed = effort_asked.seed};
     request.bounced_directions = 4 * request.directions;
     if (deadline && deadline->limit_s() > 0) request.longest_s = std::max(1e-3, deadline->left_s() / 4);
-    created.shade_ground(request, effort_asked.bounces);
+    created.shade_ground(request, effects.rays.self || effects.rays.bounce ? effort_asked.bounces : 0);
   }
   return created;
 }

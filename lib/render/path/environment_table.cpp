@@ -60,23 +60,12 @@ EnvironmentTable::EnvironmentTable(const envmap::Environment& environment)
     float* cumulative = &columns_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1)];
     for (std::size_t i = 0; i < sums.size(); ++i) cumulative[i] = sum > 0 ? static_cast<float>(sums[i] / sum) : 0.0F;
     row_sums.push_back(sum);
-    below_.push_back(environment.direction_at(0.5 * width_, row + 0.5).y < 0);
-    order_.push_back(row);
   }
-  std::ranges::stable_partition(order_, [this](int row) { return below_[static_cast<std::size_t>(row)]; });
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    const auto row = static_cast<std::size_t>(order_[i]);
-    rows_[i + 1] = rows_[i] + row_sums[row];
-    if (below_[row]) below_share_ = rows_[i + 1];
-  }
+  for (std::size_t row = 0; row < row_sums.size(); ++row) rows_[row + 1] = rows_[row] + row_sums[row];
   total_ = rows_.back();
   extent_sr_ = squares > 0 ? total_ * total_ / squares : sphere;
   if (total_ > 0)
     for (double& row : rows_) row /= total_;
-  below_share_ = total_ > 0 ? below_share_ / total_ : 0;
-  row_share_.resize(order_.size());
-  for (std::size_t i = 0; i < order_.size(); ++i)
-    row_share_[static_cast<std::size_t>(order_[i])] = rows_[i + 1] - rows_[i];
   row_cosine_.push_back(-1);
   add_guide(rows_.data(), height_, kRowGuide, row_guide_);
   for (int row = 0; row < height_; ++row)
@@ -94,24 +83,13 @@ double EnvironmentTable::cube_density(const Float3& direction, int column, int r
   return (edges_[c + 1] - edges_[c]) * (edges_[r + 1] - edges_[r]) * (along * along * along);
 }
 
-double HorizonShares::stretched(double u) const {
-  constexpr double kBelowOne = 1 - 0x1p-40;
-  if (!(chance > 0)) return u;
-  return u < chance ? u / chance * light : std::min(light + (u - chance) / (1 - chance) * (1 - light), kBelowOne);
-}
-
-HorizonShares EnvironmentTable::with_below(double least) const {
-  if (!(below_share_ > 0) || below_share_ >= least) return {};
-  return {least, below_share_, least / below_share_, (1 - least) / (1 - below_share_)};
-}
-
-std::size_t EnvironmentTable::place_of_row(double u) const {
-  return static_cast<std::size_t>(interval(rows_.data(), height_, u, row_guide_.data(), kRowGuide));
+int EnvironmentTable::row_at(double u) const {
+  return interval(rows_.data(), height_, u, row_guide_.data(), kRowGuide);
 }
 
 void EnvironmentTable::fetch(double u, double v) const {
   if (dark()) return;
-  const auto row = static_cast<std::size_t>(order_[place_of_row(u)]);
+  const auto row = static_cast<std::size_t>(row_at(u));
   __builtin_prefetch(&column_guide_[row * kColumnGuide + static_cast<std::size_t>(v * kColumnGuide)]);
 }
 
@@ -119,13 +97,12 @@ void EnvironmentTable::fetch(double u, double v) const {
 // Elsewhere they are even in column and row, for the density hardly changes over a texel.
 EnvironmentTable::Place EnvironmentTable::place(double u, double v) const {
   if (dark()) return {};
-  const std::size_t i = place_of_row(u);
-  const int row = order_[i];
+  const int row = row_at(u);
   const auto r = static_cast<std::size_t>(row);
   const float* cumulative = this->cumulative(r);
   const int column = interval(cumulative, width_, v, &column_guide_[r * kColumnGuide], kColumnGuide);
   __builtin_prefetch(environment_->radiance(column, row));
-  const double down = std::clamp((u - rows_[i]) / (rows_[i + 1] - rows_[i]), 0.0, 1.0);
+  const double down = std::clamp((u - rows_[r]) / (rows_[r + 1] - rows_[r]), 0.0, 1.0);
   const double right = std::clamp(
       (v - cumulative[column]) / (static_cast<double>(cumulative[column + 1]) - cumulative[column]), 0.0, 1.0);
   if (environment_->layout() == envmap::Environment::Layout::kLatLong) {
@@ -152,9 +129,9 @@ EnvironmentTable::Place EnvironmentTable::place(double u, double v) const {
 LightSample EnvironmentTable::light(const Float3& direction, int column, int row, double density) const {
   const auto r = static_cast<std::size_t>(row);
   const float* edge = cumulative(r) + column;
-  const double share = row_share_[r] * (static_cast<double>(edge[1]) - edge[0]);
+  const double share = (rows_[r + 1] - rows_[r]) * (static_cast<double>(edge[1]) - edge[0]);
   return {direction, density > 0 ? static_cast<float>(share / density) : 0.0F,
-          texel_radiance(*environment_, column, row), below_[r]};
+          texel_radiance(*environment_, column, row)};
 }
 
 LightSample EnvironmentTable::light(const Place& place) const {

@@ -15,18 +15,6 @@ struct LightSample {
   rays::Float3 direction;
   float pdf = 0;  // 0: nothing was drawn
   color::Rgb radiance;
-  bool below = false;  // whether the table counts it to the light from below the horizon
-};
-
-// Directions of the table, of which more or fewer come from below the horizon than there is light: a point that gathers
-// that light alone would draw most of the others in vain.
-struct HorizonShares {
-  double chance = 0, light = 0;  // of a direction from below, and the part of all light there; no chance: as the light
-  double below = 1, above = 1;   // what densities are scaled by
-
-  // The number to draw a place by.
-  double stretched(double u) const;
-  double pdf(const LightSample& sample) const { return (sample.below ? below : above) * sample.pdf; }
 };
 
 // The environment's texels with the sum over their channels times their solid angle as weight. Within a texel
@@ -53,26 +41,21 @@ class EnvironmentTable {
   LightSample at(const rays::Float3& direction) const;
 
   bool dark() const { return !(total_ > 0); }
-  // With at least this chance of a direction from below, where any light comes from there.
-  HorizonShares with_below(double least) const;
   // (integral L)^2 / integral L^2, sr, of the mean over channels: 4 pi for an even environment, a lamp's own size where
   // it outshines all else.
   double extent_sr() const { return extent_sr_; }
 
  private:
   LightSample light(const rays::Float3& direction, int column, int row, double density) const;
-  std::size_t place_of_row(double u) const;  // in order_
+  int row_at(double u) const;
   const float* cumulative(std::size_t row) const { return &columns_[row * (static_cast<std::size_t>(width_) + 1)]; }
   double cube_density(const rays::Float3& direction, int column, int row) const;
 
   const envmap::Environment* environment_;
   int width_ = 0, height_ = 0;
-  double total_ = 0, extent_sr_ = 0, below_share_ = 0;
+  double total_ = 0, extent_sr_ = 0;
   std::vector<double> row_solid_angle_, row_cosine_;  // of a lat-long map: of a texel, and of the rows' upper edges
-  std::vector<int> order_;                            // the rows, those below the horizon first
-  std::vector<bool> below_;                           // row by row
-  std::vector<double> rows_;                          // cumulative share of the rows in that order, height + 1
-  std::vector<double> row_share_;                     // row by row
+  std::vector<double> rows_;                          // cumulative share of the rows, height + 1
   std::vector<float> columns_;                        // cumulative share within each row, width + 1 each
   std::vector<double> edges_;                         // of a cube: of the cells of a face, -1..1; width + 1
   // For each of equal steps of a number the interval where a search for it begins.

@@ -15,9 +15,10 @@ using rays::Hit;
 using rays::Spot;
 
 using rays::kInversePi;
-// The least chance that a direction that is drawn from the environment comes from below the horizon, where a floor is
-// all that changes the light of most points: of an upright surface, and of any.
-constexpr double kUprightBelowChance = 0.4, kMostBelowChance = 0.6;
+// The light of an open floor is summed for lobes up to this exponent. Sharper ones gather it along directions, of which
+// each has the mean over its part of so many; there is one for each ray, and of what is not summed so many.
+constexpr float kSharpestSummed = 100, kFloorShare = 32;
+constexpr std::uint32_t kFloorDirections = 4;
 // The most and least chance that a direction is drawn from the environment where there is one.
 constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F, kLeastWindowLightChance = 0.05F;
 
@@ -30,7 +31,6 @@ struct PointTransport::Ray {
   std::optional<EnvironmentTable::Place> place;  // where the direction was drawn from the environment
   ProjectedGround::BrightSample bright;          // with a density above 0 where it was drawn from the brightest texels
   std::optional<std::uint32_t> place_triangle;   // where it was drawn toward a bright place of the surface
-  bool to_ground = false;                        // whether it goes to where the floor shows that place
   double weight = 1;                             // of the sample in the mean
 };
 
@@ -64,9 +64,6 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
   } else if (transport.environment_) {
     const float wide = 1 - painted_.narrow_share(transport.environment_->extent_sr());
     light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
-    if (over_ground_ && correction_)
-      horizon_ = transport.environment_->with_below(
-          std::min(kMostBelowChance, kUprightBelowChance * (1.0 - static_cast<double>(spot.shading.y))));
   }
   if (options.bounces > 0 && !correction_ && !over_ground_) receiver_ = transport.receiver(spot, painted_);
   open_ = !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0);
@@ -143,8 +140,7 @@ void PointTransport::aim(rays::Fan& fan, std::uint32_t ray, const Float3& direct
 // count the light once (the balance heuristic, [Veach1995] 3.1). By places alone, gloss beside a wide lamp would be
 // specks: few of them lie in a narrow lobe, and those are bright. The paint is asked for those rays alone that add
 // anything.
-color::Rgb PointTransport::lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count,
-                                        bool* any_occluded) const {
+color::Rgb PointTransport::lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const {
   constexpr std::uint32_t kSet = 60;         // that nothing else draws from
   constexpr float kLeastNarrowShare = 0.1F;  // below it, what is reflected hardly changes across the disc
   const auto lamps = static_cast<std::uint32_t>(lamps_.size());
@@ -160,7 +156,6 @@ color::Rgb PointTransport::lamp_shadows(const Sequence& sequence, std::uint32_t 
     const auto visit = [&](const rays::Fan& fan, const auto& visit_one) {
       if (fan.wanted == 0) return;
       const unsigned occluded = transport_.rays_->occluded(fan);
-      if (any_occluded != nullptr && occluded != 0) *any_occluded = true;
       for (unsigned left = fan.wanted & (lamp.hidden ? occluded : ~occluded); left != 0; left &= left - 1) {
         const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
         const Reflection reflection = painted_.at({fan.x[i], fan.y[i], fan.z[i]});
@@ -234,13 +229,9 @@ PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbe
     }
   }
   if (numbers[0] < light_chance_) {
-    ray.place = transport_.environment_->place(horizon_.stretched(numbers[1]), numbers[2]);
+    ray.place = transport_.environment_->place(numbers[1], numbers[2]);
     if (!(ray.place->density > 0)) return ray;
     ray.direction = ray.place->direction;
-    if (over_ground_ && transport_.uneven_ground_ && ray.direction.y < 0) {
-      ray.to_ground = true;
-      ray.direction = transport_.toward_ground(spot_.start, ray.direction);
-    }
   } else {
     const double choice = (numbers[0] - light_chance_) / (1 - light_chance_);
     const double places = receiver_.chance();
@@ -305,53 +296,75 @@ LightShares PointTransport::shown(const Ray& ray, bool occluded, const Sequence&
   return shares;
 }
 
-// A floor that shows the environment hides what is below the horizon, and shows the same light from elsewhere. Both are
-// drawn together: a direction that is drawn from the environment below the horizon stands for the hidden light, and the
-// way to the place of the floor that shows it stands for the visible light. Light by density is the same for both, so
-// that the brightest texels add no more noise than others.
+// Over a floor that shows the environment. In a correction the open floor is told by open_floor(), and rays tell what
+// the mesh takes from there and sends instead.
 LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, const Sequence& sequence,
                                               std::uint32_t index) const {
   LightShares shares;
-  const bool occluded = hit.any();
-  const auto light_from = [&](const Float3& direction) {
-    return ray.place ? transport_.environment_->light(*ray.place) : transport_.environment_->at(direction);
-  };
-  const auto scale = [&](double light_pdf, const Reflection& reflection) {
-    return static_cast<float>(1 / (light_chance_ * light_pdf + (1 - light_chance_) * reflection.pdf));
-  };
-  const Float3& hidden = ray.to_ground ? ray.place->direction : ray.direction;
-  if (correction_ && hidden.y < 0) {
-    const Reflection reflection = painted_.at(hidden);
-    if (reflection.pdf > 0) {
-      const LightSample light = light_from(hidden);
-      shares.from_floor = -1.0 * reflect(scale(horizon_.pdf(light), reflection) * reflection.f_cos, light.radiance);
-    }
-  }
-  if (!ray.above || (!occluded && correction_)) return shares;
+  const bool meets_floor = transport_.is_projected(hit);
+  if (!ray.above || (correction_ && (!hit.any() || meets_floor))) return shares;
   const Reflection reflection = painted_.at(ray.direction);
   if (!(reflection.pdf > 0)) return shares;
-  color::Rgb arriving, sent;
-  double light_pdf = 0;
-  if (ray.direction.y < 0 && transport_.uneven_ground_) {
-    light_pdf = transport_.ground_pdf(spot_.start, ray.direction, horizon_);
-  } else if (ray.direction.y < 0) {
-    light_pdf = horizon_.pdf(light_from(ray.direction));
-  } else {
-    const LightSample light = light_from(ray.direction);
-    light_pdf = horizon_.pdf(light);
-    if (occluded == correction_) arriving = (occluded ? -1.0 : 1.0) * light.radiance;
-  }
-  const float scaled = scale(light_pdf, reflection);
-  if (transport_.is_projected(hit)) {
+  const LightSample light =
+      ray.place ? transport_.environment_->light(*ray.place) : transport_.environment_->at(ray.direction);
+  const auto scaled = static_cast<float>(1 / (light_chance_ * light.pdf + (1 - light_chance_) * reflection.pdf));
+  const Float3 f_cos = scaled * reflection.f_cos;
+  if (meets_floor) {
     const Transport::FloorLight floor =
         transport_.off_floor(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
-    shares.from_floor += reflect(scaled * reflection.f_cos, floor.fixed), sent = floor.bounced;
-  } else if (occluded && options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse)) {
-    sent = transport_.bounced(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
+    shares.from_floor = reflect(f_cos, floor.fixed);
+    add_sent(ray.direction, floor.bounced, scaled, shares);
+    return shares;
   }
-  shares.direct = reflect(scaled * reflection.f_cos, arriving);
-  add_sent(ray.direction, sent, scaled, shares);
+  if (correction_ && ray.direction.y < 0) {
+    const Float3 taken = transport_.open_floor_->lit(spot_.start, ray.direction, 0, 0);
+    shares.from_floor = -1.0 * reflect(f_cos, rays::vec3(taken));
+  } else if (hit.any() == correction_) {
+    shares.direct = (correction_ ? -1.0 : 1.0) * reflect(f_cos, light.radiance);
+  }
+  if (hit.any() && options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse))
+    add_sent(ray.direction, transport_.bounced(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4),
+             scaled, shares);
   return shares;
+}
+
+// The light of the open floor less that of the environment below the horizon, which the maps have in its place: the sum
+// over these samples. The diffuse part and wide lobes take it from the blocks of the floor, without noise; all else
+// along directions of its own, which gather the mean about them.
+color::Rgb PointTransport::open_floor(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const {
+  constexpr std::uint32_t kSet = 40;  // that nothing else draws from
+  const OpenFloor& floor = *transport_.open_floor_;
+  color::Rgb sum;
+  std::optional<PaintedPoint> rest;
+  if (const auto lobes = painted_.wide_lobes(kSharpestSummed, GroundReceiver::kMostLobes)) {
+    GroundReceiver receiver{spot_.start, painted_.normal(), painted_.to_viewer(), painted_.mirrored(),
+                            static_cast<float>(painted_.coat_index())};
+    for (const PaintedPoint::WideLobe& lobe : *lobes) receiver.exponents[receiver.lobes++] = lobe.exponent;
+    const GroundColumns columns = floor.columns(receiver);
+    color::Rgb wide = reflect(painted_.diffuse(), rays::vec3(columns.diffuse));
+    for (std::size_t j = 0; j < lobes->size(); ++j)
+      wide += reflect((*lobes)[j].directional_diffuse, rays::vec3(columns.flakes[j])) +
+              reflect((*lobes)[j].gloss, rays::vec3(columns.gloss[j]));
+    sum = static_cast<double>(count) * wide;
+    rest = painted_.without_wide(lobes->size());
+  }
+  const PaintedPoint& point = rest ? *rest : painted_;
+  if (!(point.lobes_weight() > 0)) return sum;
+  const std::uint32_t directions = rest ? 1 : kFloorDirections;
+  for (std::uint32_t k = 0; k < directions; ++k) {
+    const Sequence::Set set = sequence.set(kSet + k);
+    for (std::uint32_t i = begin; i < begin + count; ++i) {
+      const std::array<double, 4> numbers = set.point(i);
+      const Float3 direction = point.direction(numbers[0], numbers[1], numbers[2]);
+      if (!(direction.y < 0)) continue;
+      const Reflection reflection = point.at(direction);
+      if (!(reflection.pdf > 0)) continue;
+      const float extent = 1 / (kFloorShare * reflection.pdf), number = static_cast<float>(numbers[3]);
+      const Float3 more = floor.lit(spot_.start, direction, extent, number) - floor.hidden(direction, extent, number);
+      sum += reflect((1 / (static_cast<float>(directions) * reflection.pdf)) * reflection.f_cos, rays::vec3(more));
+    }
+  }
+  return sum;
 }
 
 // Adds the light that surfaces send along a direction, times `scale`: one over the density of the direction.
@@ -393,16 +406,14 @@ LightShares PointTransport::mirrored(const Sequence& sequence, std::uint32_t beg
   return shares;
 }
 
-LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t begin, std::uint32_t count,
-                                      bool* any_occluded) const {
-  if (any_occluded != nullptr) *any_occluded = mirror_samples_ > 0 || transport_.spectral_ != nullptr;
+LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const {
   if (certain_) return {};
   LightShares sum;
   if (transport_.spectral_ != nullptr) {
     sum.direct = transport_.spectral_->shown(transport_, options_, spot_, to_viewer_, sequence, begin, count);
     return sum;
   }
-  sum.direct += lamp_shadows(sequence, begin, count, any_occluded);
+  sum.direct += lamp_shadows(sequence, begin, count);
   if (painted_.lobes_weight() > 0) {
     const Sequence::Set numbers = sequence.set(0);
     for (std::uint32_t first = begin; first < begin + count; first += kFan) {
@@ -413,7 +424,7 @@ LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t be
       std::array<double, 4> drawn[kFan];
       for (std::uint32_t i = 0; i < traced; ++i) {
         drawn[i] = numbers.point(first + i);
-        if (drawn[i][0] < light_chance_) transport_.environment_->fetch(horizon_.stretched(drawn[i][1]), drawn[i][2]);
+        if (drawn[i][0] < light_chance_) transport_.environment_->fetch(drawn[i][1], drawn[i][2]);
       }
       for (std::uint32_t i = 0; i < traced; ++i) {
         rays[i] = drawn_ray(drawn[i], i, traced);
@@ -423,14 +434,13 @@ LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t be
       if (over_ground_) {
         Hit hits[kFan];
         if (fan.wanted != 0) transport_.rays_->closest(fan, hits);
+        if (correction_) sum.from_floor += open_floor(sequence, first, traced);
         for (std::uint32_t i = 0; i < traced; ++i) {
-          if (any_occluded != nullptr && hits[i].any()) *any_occluded = true;
           sum += shown_over_ground(rays[i], hits[i], sequence, first + i);
         }
         continue;
       }
       const unsigned occluded = fan.wanted != 0 ? transport_.rays_->occluded(fan) : 0;
-      if (any_occluded != nullptr && occluded != 0) *any_occluded = true;
       for (std::uint32_t i = 0; i < traced; ++i) {
         const bool is_occluded = (occluded >> i & 1U) != 0;
         if (!rays[i].above || (!is_occluded && (correction_ || !transport_.environment_))) continue;

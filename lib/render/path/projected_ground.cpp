@@ -97,16 +97,10 @@ Result<ProjectedGround> ProjectedGround::create(const Ground& ground, const envm
   // Each texel is a constant patch.
   std::vector<BrightTexel> texels;
   result.soft_rows_.assign(static_cast<std::size_t>(environment.height()) + 1, 0.0);
-  double below = 0, below_squares = 0;
-  const envmap::SolidAngles solid_angles(environment.grid());
   const bool rows_agree = environment.layout() == envmap::Environment::Layout::kLatLong;
   for (int row = 0; row < environment.height(); ++row) {
     double weight = 0;
     for (int column = 0; column < environment.width(); ++column) {
-      if (environment.direction_at(column + 0.5, row + 0.5).y < 0) {
-        const double mean = gray_of(texel(environment, column, row)), solid_angle = solid_angles.at(column, row);
-        below += mean * solid_angle, below_squares += mean * mean * solid_angle;
-      }
       if (column == 0 || !rows_agree) weight = upward_weight(environment, column, row);
       if (!(weight > 0)) continue;
       const color::Rgb light = weight * texel(environment, column, row);
@@ -116,7 +110,6 @@ Result<ProjectedGround> ProjectedGround::create(const Ground& ground, const envm
       if (fine) result.add_light(environment.direction_at(column + 0.5, row + 0.5), gray_of(light));
     }
   }
-  if (below_squares > 0) result.ground_extent_sr_ = below * below / below_squares;
   result.soft_irradiance_ = result.irradiance_;
   for (const Light& light : lights) {
     const color::Rgb lit = (kPi * brdf::disc_irradiance(light.direction.y, light.radius_rad)) * light.white;
@@ -380,7 +373,7 @@ double ProjectedGround::density(const Window& window, const Vec3& direction) con
 color::Rgb ProjectedGround::open_radiance(const Vec3& position) const {
   const Vec3 seen = position - eye_;
   const double distance = length(seen);
-  return distance > 0 ? environment_->blended((1 / distance) * seen) : color::Rgb{};
+  return distance > 0 ? this->seen((1 / distance) * seen) : color::Rgb{};
 }
 
 color::Rgb ProjectedGround::paint(const color::Rgb& open_radiance) const {

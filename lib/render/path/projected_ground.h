@@ -24,14 +24,12 @@ class ProjectedGround {
 
   // The radiance of the floor at a point where nothing occludes it; `position` in units of the mesh.
   color::Rgb open_radiance(const Vec3& position) const;
+  // The radiance that the probe saw in a unit direction.
+  color::Rgb seen(const Vec3& direction) const { return environment_->blended(direction); }
   // The radiance as a matt paint, in 1/sr: over the irradiance of the unoccluded floor; 0 where there is no light.
   color::Rgb paint(const color::Rgb& open_radiance) const;
   // The irradiance of the unoccluded floor, from above.
   const color::Rgb& irradiance() const { return irradiance_; }
-  // (integral L)^2 / integral L^2 of the environment below the horizon, of the mean over channels: 2 pi for even
-  // ground.
-  double ground_extent_sr() const { return ground_extent_sr_; }
-
   // The directions from a point of the floor in which it can see a body within a box that stands on the floor: about
   // an azimuth and below an elevation. From under the box these are all directions.
   struct Window {
@@ -86,7 +84,6 @@ class ProjectedGround {
   const envmap::Environment* environment_ = nullptr;
   Vec3 eye_;
   color::Rgb irradiance_;
-  double ground_extent_sr_ = 2 * kPi;
   // Irradiance from the first so many columns of each row of cells, column by column; the mean of the channels.
   std::vector<float> sums_;
   std::vector<BrightTexel> bright_;

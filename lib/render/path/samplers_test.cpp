@@ -25,19 +25,18 @@ color::Rgb uneven(int x, int y) {
   return {0.2 + 0.1 * x + sun, y == 7 ? 0.0 : 0.3, 0.05 * ((x * 7 + y * 3) % 11) + sun};
 }
 
-double excess_of(const envmap::Environment& environment, double wrong_factor = 1, double below = 0) {
+double excess_of(const envmap::Environment& environment, double wrong_factor = 1) {
   const EnvironmentTable table(environment);
-  const HorizonShares horizon = table.with_below(below);
   const SphereBins bins({0, 1, 0}, 16, 32);
   return excess(
       bins, 400000,
       [&](double, double u, double v) -> std::optional<Vec3> {
-        const LightSample light = table.drawn(horizon.stretched(u), v);
+        const LightSample light = table.drawn(u, v);
         if (!(light.pdf > 0)) return std::nullopt;
         return rays::vec3(light.direction);
       },
       [&](const Vec3& d) {
-        const double pdf = horizon.pdf(table.at(float3(d)));
+        const double pdf = table.at(float3(d)).pdf;
         return d.y > 0 ? wrong_factor * pdf : pdf;
       },
       3600);
@@ -46,30 +45,13 @@ double excess_of(const envmap::Environment& environment, double wrong_factor = 1
 TEST(Samplers, TheEnvironmentIsDrawnAsItsDensitySays) {
   EXPECT_LT(excess_of(environment_of(32, 16, uneven)), 5);
   EXPECT_GT(excess_of(environment_of(32, 16, uneven), 1.05), 5);  // control
-  const envmap::CubeMap cube = cube_of(8, [](const Vec3& d) {
-    return Vec3{1.1 + d.x, d.y > 0.5 ? 5.0 : 0.2, 1 + d.z * d.z};
-  });
+  const envmap::CubeMap cube =
+      cube_of(8, [](const Vec3& d) { return Vec3{1.1 + d.x, d.y > 0.5 ? 5.0 : 0.2, 1 + d.z * d.z}; });
   EXPECT_LT(excess_of(envmap::Environment::from_cube(cube, "cube")), 5);
   image::Image disc{24, 24, 3, std::vector<float>(24 * 24 * 3, 0.5F), {}};
   for (std::size_t i = 0; i < disc.data.size(); i += 7) disc.data[i] = 2;
   EXPECT_LT(excess_of(envmap::Environment::from_angular(disc, envmap::Environment::BadPixels::kError, "disc").value()),
             5);
-}
-
-// Also of a map with a row of texels across the horizon. What has more light below than asked for is drawn as before.
-TEST(Samplers, MoreDirectionsComeFromBelowTheHorizonWhereThatIsAskedFor) {
-  for (const int height : {16, 17}) {
-    const envmap::Environment environment = environment_of(2 * height, height, uneven);
-    const EnvironmentTable table(environment);
-    EXPECT_LT(excess_of(environment, 1, 0.7), 5) << height;
-    EXPECT_GT(excess_of(environment, 1.05, 0.7), 5);  // control
-    EXPECT_EQ(table.with_below(0.01).chance, 0);
-    const HorizonShares horizon = table.with_below(0.7);
-    int below = 0;
-    constexpr int kCount = 1000;
-    for (int i = 0; i < kCount; ++i) below += table.drawn(horizon.stretched((i + 0.5) / kCount), 0.5).below ? 1 : 0;
-    EXPECT_EQ(below, 700);
-  }
 }
 
 TEST(Samplers, TheEnvironmentsDensityAgreesWithWhatIsDrawn) {

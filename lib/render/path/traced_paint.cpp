@@ -314,6 +314,24 @@ PaintedPoint::Shares PaintedPoint::shares(const Float3& to_light) const {
   return shares;
 }
 
+std::optional<std::vector<PaintedPoint::WideLobe>> PaintedPoint::wide_lobes(float sharpest, std::size_t most) const {
+  const bool textured = !texels_.empty() || mean_size(texel_diffuse_) > 0;
+  if (!axes_.empty() || coat_ != nullptr || paint_ != nullptr || textured) return std::nullopt;
+  std::vector<WideLobe> wide;
+  for (int j = 0; j < count_ && wide.size() < most && lobes_[j].exponent <= sharpest; ++j)
+    wide.push_back({lobes_[j].exponent, lobes_[j].directional_diffuse, lobes_[j].gloss});
+  return wide;
+}
+
+PaintedPoint PaintedPoint::without_wide(std::size_t lobes) const {
+  PaintedPoint rest = *this;
+  rest.diffuse_ = {}, rest.diffuse_chance_ = rest.total_ = 0;
+  rest.count_ -= static_cast<int>(lobes);
+  std::copy(lobes_ + lobes, lobes_ + count_, rest.lobes_);
+  for (int j = 0; j < rest.count_; ++j) rest.total_ += rest.lobes_[j].chance;
+  return rest;
+}
+
 Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
   const Vec3 n = rays::vec3(normal_), viewer = rays::vec3(viewer_);
   const double cosine = dot(n, light.direction), radius = light.radius_rad;

@@ -141,6 +141,17 @@ class PaintedPoint {
     return total_ > 0 ? at(direction(choice, u, v)) : Reflection{};
   }
 
+  // A lobe about mirrored(). The coat that lets its light in is left to whom asks; what it lets out is in the weight.
+  struct WideLobe {
+    float exponent;
+    rays::Float3 directional_diffuse, gloss;
+  };
+  // The first lobes of exponents up to `sharpest`, no more than `most`. None where the point shows anything but its
+  // diffuse part, its mirror and lobes about mirrored(); without_wide() is then not to be asked.
+  std::optional<std::vector<WideLobe>> wide_lobes(float sharpest, std::size_t most) const;
+  // The same point without its diffuse part and so many of the first lobes.
+  PaintedPoint without_wide(std::size_t lobes) const;
+
   const rays::Float3& normal() const { return normal_; }
   const rays::Float3& mirrored() const { return mirrored_; }  // where the mirror lobe looks
   const rays::Float3& mirror() const { return mirror_; }      // K_M F
@@ -151,6 +162,7 @@ class PaintedPoint {
   // viewer; without a coat 1, and the reflection of kCoatIndex.
   float passages(float cos_i) const { return let_out_ * let_in(cos_i); }
   float coat_mirror() const;
+  double coat_index() const { return coat_index_; }
   const rays::Float3& to_viewer() const { return viewer_; }
   // The mirror directions about the tilted normals of a brushed paint, with their shares; none: mirrored() alone.
   struct Axis {

@@ -19,9 +19,6 @@ using rays::Float3;
 using rays::Hit;
 using rays::Spot;
 
-// Ground of a smaller extent is drawn as PointTransport::shown_over_ground() has it.
-constexpr double kEvenGround_sr = 5;
-
 // The tilts that draw each part's lobes, as render/reference.h has them for the truth.
 std::vector<std::vector<brdf::Tilt>> tilts_for(const PathScene& scene) {
   Effects effects = effects_of(*scene.scene);
@@ -83,7 +80,6 @@ Result<Transport> Transport::in_channels(const PathScene& path_scene) {
     if (ground && ground->kind == Ground::Kind::kShadow) {
       GONIO_ASSIGN(transport.ground_, ProjectedGround::create(*ground, *path_scene.environment, scene.lights));
       transport.ground_eye_ = transport.rays_->local(ground->probe_eye);
-      transport.uneven_ground_ = transport.ground_->ground_extent_sr() < kEvenGround_sr;
     }
   }
   GONIO_ASSIGN(transport.emitters_, Emitters::create(*transport.rays_, path_scene.emission));
@@ -126,25 +122,16 @@ void Transport::shade_ground(GroundRequest request, int bounces) {
     const Stopwatch clock;
     shaded_ = std::make_shared<const ShadedGround>(rays_, *ground_, lights_, mesh_box_, mesh_radius_, request);
     constexpr double kTwice = 3;  // times as long take twice the directions, which divide more cells
-    if (request.directions >= most || kTwice * clock.elapsed_s() > deadline.left_s()) return;
+    if (request.directions >= most || kTwice * clock.elapsed_s() > deadline.left_s()) break;
   }
-}
-
-Float3 Transport::toward_ground(const Float3& from, const Float3& from_eye) const {
-  const Float3 place = ground_eye_ + rays_->floor_distance(ground_eye_, from_eye) * from_eye;
-  return rays::normalized(place - from);
-}
-
-// The density of the environment's table where it was seen from, by the ratio of the solid angles of a piece of the
-// floor.
-double Transport::ground_pdf(const Float3& from, const Float3& direction, const HorizonShares& horizon) const {
-  const float distance = rays_->floor_distance(from, direction);
-  const Float3 seen = from + distance * direction - ground_eye_;
-  const float eye_distance = rays::length(seen);
-  if (!(distance > 0) || !(eye_distance > 0)) return 0;
-  const Float3 from_eye = (1 / eye_distance) * seen;
-  const double ratio = static_cast<double>(distance) / eye_distance;
-  return horizon.pdf(environment_->at(from_eye)) * ratio * ratio * (from_eye.y / direction.y);
+  if (!environment_) return;
+  open_floor_ = std::make_shared<const OpenFloor>(
+      *rays_, ground_eye_, [&](const Float3& direction) { return environment_->at(direction).radiance; },
+      [&](const Float3& direction) { return ground_->seen(rays::vec3(direction)); },
+      [&](const Float3& place) {
+        const GroundLight light = shaded_->seen(place);
+        return light.left + light.bounced;
+      });
 }
 
 // Directions even by the cosine. Light from the ground counts by what the mesh leaves of it.

@@ -12,6 +12,7 @@
 #include "render/path/bright_places.h"
 #include "render/path/emitters.h"
 #include "render/path/environment_table.h"
+#include "render/path/open_floor.h"
 #include "render/path/path_product.h"
 #include "render/path/projected_ground.h"
 #include "render/path/sequence.h"
@@ -149,10 +150,6 @@ class Transport {
   };
   FloorLight off_floor(const rays::Hit& hit, const rays::Float3& origin, const rays::Float3& direction, int bounces,
                        const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
-  // The direction from a point to where the floor shows what the environment has in a direction below the horizon, and
-  // the density by which the environment's table draws a direction so.
-  rays::Float3 toward_ground(const rays::Float3& from, const rays::Float3& from_eye) const;
-  double ground_pdf(const rays::Float3& from, const rays::Float3& direction, const HorizonShares& horizon) const;
   LightShares shown_ground(const rays::Spot& spot, const GroundLight& light) const;
   // The light of the floor where a path meets it, by a number in [0,1); nothing from below.
   LightShares met_ground(const rays::Hit& hit, const rays::Float3& origin, const rays::Float3& direction,
@@ -224,14 +221,14 @@ class Transport {
   bool is_projected(const rays::Hit& hit) const { return ground_ && hit.triangle == rays::kFloor; }
   PaintedPoint painted(const rays::Spot& spot, const rays::Float3& to_viewer) const;
 
-  std::shared_ptr<const rays::RayScene> rays_;  // stays where it is when the transport is moved
-  std::shared_ptr<const rays::RayScene> eye_;   // of a scene with panes
-  std::vector<bool> panes_;                     // of its parts
-  std::vector<TracedPaint> paints_;             // of the parts, then of the floor
-  std::optional<ProjectedGround> ground_;       // of a floor that shows the environment
-  std::shared_ptr<const ShadedGround> shaded_;  // see shade_ground()
-  bool uneven_ground_ = false;
-  rays::Float3 ground_eye_;  // local: where such a floor's environment was seen from
+  std::shared_ptr<const rays::RayScene> rays_;   // stays where it is when the transport is moved
+  std::shared_ptr<const rays::RayScene> eye_;    // of a scene with panes
+  std::vector<bool> panes_;                      // of its parts
+  std::vector<TracedPaint> paints_;              // of the parts, then of the floor
+  std::optional<ProjectedGround> ground_;        // of a floor that shows the environment
+  std::shared_ptr<const ShadedGround> shaded_;   // see shade_ground()
+  std::shared_ptr<const OpenFloor> open_floor_;  // of a shaded ground
+  rays::Float3 ground_eye_;                      // local: where such a floor's environment was seen from
   mesh::Box mesh_box_;
   float mesh_radius_ = 0;  // local, of a sphere about the origin that holds the mesh
   std::shared_ptr<const EnvironmentTable> environment_;
@@ -259,15 +256,12 @@ class PointTransport {
   // True if that is all: then the shares below are 0.
   bool certain() const { return certain_; }
   // The mean by shares of the samples first, first + 1, ... of the rest, drawn from a sequence of this seed; `first`
-  // and `count` are multiples of kHalfFan. Its expectation is the rest, exactly. `any_occluded`, unless null, is told
-  // whether any ray of the samples was occluded.
-  LightShares batch_shares(std::uint64_t seed, std::uint32_t first = 0, std::uint32_t count = kBatch,
-                           bool* any_occluded = nullptr) const {
-    return shares_of(Sequence(seed, kBatch), first, count, any_occluded);
+  // and `count` are multiples of kHalfFan. Its expectation is the rest, exactly.
+  LightShares batch_shares(std::uint64_t seed, std::uint32_t first = 0, std::uint32_t count = kBatch) const {
+    return shares_of(Sequence(seed, kBatch), first, count);
   }
   // This draws from any sequence.
-  LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count,
-                        bool* any_occluded = nullptr) const;
+  LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count) const;
 
  private:
   struct Ray;
@@ -280,12 +274,13 @@ class PointTransport {
   rays::Fan lamp_fan(const Transport::SeenLamp& lamp) const;
   // Sends a ray of a fan there if that is above the horizon.
   void aim(rays::Fan& fan, std::uint32_t ray, const rays::Float3& direction) const;
-  color::Rgb lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count, bool* any_occluded) const;
+  color::Rgb lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
   LightShares shown(const Ray& ray, bool occluded, const Sequence& sequence, std::uint32_t index) const;
   LightShares shown_over_ground(const Ray& ray, const rays::Hit& hit, const Sequence& sequence,
                                 std::uint32_t index) const;
   void add_sent(const rays::Float3& direction, const color::Rgb& sent, float scale, LightShares& shares) const;
   LightShares mirrored(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
+  color::Rgb open_floor(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
   color::Rgb emitter_sample(const std::array<double, 4>& numbers) const;
   color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
 
@@ -303,7 +298,6 @@ class PointTransport {
   float mesh_cosine_ = -2;
   float light_chance_ = 0;  // of a direction that is drawn from the environment
   BrightPlaces::Receiver receiver_;
-  HorizonShares horizon_;  // of such directions
   rays::Hit mirror_hit_;
   std::uint32_t mirror_samples_ = 0;  // in a batch
   // Lamps that are discs, parts of which the mesh may hide: samples estimate the hidden part, or the free part where

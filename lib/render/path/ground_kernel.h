@@ -1,0 +1,46 @@
+// Sums over a floor that shows the environment, in blocks: what the diffuse part and wide lobes gather of it at a
+// point. Compiled for several instruction sets, of which the best that the processor has is chosen at run time.
+// goniochrome-paths(7), "Ground".
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "rays/float3.h"
+
+namespace goniochrome::render {
+
+// Blocks one by one, each quantity by itself; the last ones are dark and fill the lanes of a kernel.
+struct GroundBlocks {
+  static constexpr std::size_t kLanes = 16;
+  using Places = std::array<std::vector<float>, 3>;
+
+  Places place;   // of the light of a block of floor, local
+  Places sent;    // radiance times area
+  Places toward;  // of the light that the environment has in the block's place below the horizon, unit
+  Places hidden;  // its radiance times solid angle
+
+  void add(const rays::Float3& at, const rays::Float3& light, const rays::Float3& direction,
+           const rays::Float3& behind);
+  void fill();
+};
+
+// A point with the lobes cos^E about its mirror direction.
+struct GroundReceiver {
+  static constexpr std::size_t kMostLobes = 8;
+
+  rays::Float3 position, normal, to_viewer, mirrored;
+  float coat_index = 1;  // paint::kNoCoat: none
+  std::size_t lobes = 0;
+  float exponents[kMostLobes] = {};
+};
+
+// Light of weight 1: the floor's less that of the environment behind it.
+struct GroundColumns {
+  rays::Float3 diffuse, flakes[GroundReceiver::kMostLobes], gloss[GroundReceiver::kMostLobes];
+};
+
+GroundColumns sum_ground(const GroundBlocks& blocks, const GroundReceiver& point);
+
+}  // namespace goniochrome::render
