@@ -213,9 +213,9 @@ TEST(Texts, ThePageOpensWithItsFirstParagraphAndExamples) {
             ".SH DETAILS\n.SS A title\nSecond.\n.PP\nThird.\n");
 }
 
-int run_tool(const std::vector<std::string>& words, const std::function<Result<Verdict>(Session&)>& run) {
+int run_tool(const std::vector<std::string>& words, const std::function<Result<Verdict>(Session&)>& run,
+             const CommonOptions& common = {}) {
   Values v;
-  CommonOptions common;
   std::vector<std::string> storage = {"sample-tool"};
   storage.insert(storage.end(), words.begin(), words.end());
   std::vector<char*> argv;
@@ -230,6 +230,28 @@ TEST(Tool, TheExitStatusFollowsTheOutcome) {
   EXPECT_EQ(run_tool({}, [](Session&) -> Result<Verdict> { return input_error("x: is bad"); }), 3);
   EXPECT_EQ(run_tool({}, [](Session&) { return Verdict::kStopped; }), 4);
   EXPECT_EQ(run_tool({}, [](Session&) -> Result<Verdict> { throw std::logic_error("broken"); }), 70);
+}
+
+TEST(Tool, QuietKeepsWhatExplainsAnExitStatus) {
+  const auto told = [](Verdict verdict, bool quiet) {
+    CommonOptions common;
+    common.quiet = quiet;
+    testing::internal::CaptureStderr();
+    run_tool(
+        {},
+        [&](Session& session) {
+          session.say("first");
+          if (verdict != Verdict::kDone) session.say_verdict("too far");
+          session.warn("left out");
+          session.say("summary");
+          return verdict;
+        },
+        common);
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(told(Verdict::kDone, true), "");
+  EXPECT_EQ(told(Verdict::kNegative, true), "too far\nsample-tool: warning: left out\nsummary\n");
+  EXPECT_EQ(told(Verdict::kStopped, false), "first\ntoo far\nsample-tool: warning: left out\nsummary\n");
 }
 
 }  // namespace

@@ -97,7 +97,10 @@ std::string Session::provenance() const {
 }
 
 void Session::say(const std::string& line) const {
-  if (common_.quiet) return;
+  common_.quiet ? held_back_ = line, void() : say_verdict(line);
+}
+
+void Session::say_verdict(const std::string& line) const {
   if (progress_shown_) tell("\r\033[K");
   progress_shown_ = false;
   tell(line + "\n");
@@ -105,7 +108,14 @@ void Session::say(const std::string& line) const {
 
 void Session::warn(const std::string& line) {
   results()["warnings"].push_back(line);
-  say(fmt::format("{}: warning: {}", tool_, line));
+  if (!common_.quiet) say_verdict(fmt::format("{}: warning: {}", tool_, line));
+}
+
+void Session::end(Verdict verdict) {
+  if (!common_.quiet || verdict == Verdict::kDone) return;
+  for (const Json& warning : results().value("warnings", Json::array()))
+    say_verdict(fmt::format("{}: warning: {}", tool_, warning.get<std::string>()));
+  if (!held_back_.empty()) say_verdict(held_back_);
 }
 
 void Session::progress(const std::string& line) const {
@@ -161,6 +171,7 @@ int tool_main(int argc, char** argv, const ToolSpec& table, const CommonOptions&
     if (!verdict.ok()) return fail(spec.name, verdict.error());
     if (const auto written = session.write_report(); !written.ok()) return fail(spec.name, written.error());
     if (const auto closed = close_output(); !closed.ok()) return fail(spec.name, closed.error());
+    session.end(*verdict);
     return static_cast<int>(*verdict);
   } catch (const std::bad_alloc&) {
     return fail(spec.name, {ErrorKind::kInput, "out of memory: the input is too large for this machine"});

@@ -50,6 +50,10 @@ class Session {
 
   // One line on standard error, unless --quiet.
   void say(const std::string& line) const;
+  // One line that explains an exit status other than 0; --quiet keeps it.
+  void say_verdict(const std::string& line) const;
+  // With --quiet, tells the warnings and the last line of a run whose exit status is not 0.
+  void end(Verdict verdict);
   // `tool: warning: ...`, also collected under results.warnings.
   void warn(const std::string& line);
   // A progress line, which the next line overwrites. It appears only on a terminal, and only after 0.5 s.
@@ -65,6 +69,7 @@ class Session {
   Stopwatch clock_;
   Report report_;
   mutable bool progress_shown_ = false;
+  mutable std::string held_back_;  // the last line that --quiet kept from the user
 };
 
 // The main function of a tool parses argv by the table, which writes into the caller's options; answers --help,

@@ -419,10 +419,11 @@ class CgatsParser {
     const bool lacks_illuminant = condition.illuminant.empty() && options_.illuminant.empty(),
                lacks_observer = condition.observer_deg == 0 && options_.observer_deg == 0;
     if (lacks_illuminant || lacks_observer)
-      remarks_.note(!lacks_observer     ? "states no illuminant: taken as D50; give --illuminant if not"
-                    : !lacks_illuminant ? "states no observer: taken as 2 deg; give --observer if not"
-                                        : "states neither illuminant nor observer: taken as D50/2; give --illuminant "
-                                          "and --observer if not",
+      remarks_.note(!lacks_observer ? "states no illuminant: taken as D50; give paint-convert --illuminant if not"
+                    : !lacks_illuminant
+                        ? "states no observer: taken as 2 deg; give paint-convert --observer if not"
+                        : "states neither illuminant nor observer: taken as D50/2; give paint-convert --illuminant "
+                          "and --observer if not",
                     "");
     return completed(condition, options_, {"D50", 2});
   }

@@ -85,7 +85,7 @@ TEST_F(Cgats, ReadsXyzAndAssumesUnstatedConditions) {
 // XYZ from 0 to 1 were read as percent without a word: L* 8.6 for a white of 95.
 TEST_F(Cgats, XyzTooDarkForPercentAreTold) {
   const std::string small = table("SAMPLE_ID XYZ_X XYZ_Y XYZ_Z", "7 0.9 0.95 0.8\n8 0.1 0.12 0.09");
-  EXPECT_THAT(good(small).warnings, Contains(HasSubstr("no Y is above 0.95: give --scale factor")));
+  EXPECT_THAT(good(small).warnings, Contains(HasSubstr("no Y is above 0.95: give paint-convert --scale factor")));
   ImportOptions options;
   options.scale = Scale::kFactor;
   const auto read = good(small, options);

@@ -266,7 +266,7 @@ TEST(PaintCsv, TheScaleOfAFileIsFoundFromAllOfIt) {
     EXPECT_NEAR(rows.at(2).lab.L, lightness(0.015), 1e-9);
     if (scale == Scale::kUnstated) {
       EXPECT_THAT(read.closing, ElementsAre("p.csv: reflectances were read as percent: as factors, 1 of 1 paints would "
-                                            "reflect more than paint can; give --scale factor if not"));
+                                            "reflect more than paint can; give paint-convert --scale factor if not"));
     }
   }
   EXPECT_THAT(reading_of_text(dark, Scale::kFactor).errors,
@@ -279,10 +279,12 @@ TEST(PaintCsv, TheScaleOfAFileIsFoundFromAllOfIt) {
 // One value says nothing of the others, and a paint that is bright near to specular may be metal, or dark in percent.
 TEST(PaintCsv, RefusesAScaleThatMayBeEither) {
   const std::string silver = flat_table({{"silver,45as15", 2.2}, {"silver,45as45", 0.45}, {"silver,45as110", 0.1}});
-  EXPECT_THAT(reading_of_text(silver).errors,
-              ElementsAre("p.csv: nothing says whether reflectances are percent or factors, and \"silver\" has 2.2 at "
-                          "45as15, which may be either: give --scale percent, or --scale factor where 1 is the perfect "
-                          "diffuser"));
+  EXPECT_THAT(
+      reading_of_text(silver).errors,
+      ElementsAre(
+          "p.csv: nothing says whether reflectances are percent or factors, and \"silver\" has 2.2 at "
+          "45as15, which may be either: give paint-convert --scale percent, or --scale factor where 1 is the perfect "
+          "diffuser"));
   EXPECT_THAT(reading_of_text(silver).paints, testing::IsEmpty());
   const auto L = [&](Scale scale) {
     const Reading read = reading_of_text(silver, scale);

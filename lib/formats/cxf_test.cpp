@@ -258,7 +258,7 @@ TEST_F(Cxf, RefusesFactorsThatNoPaintHas) {
   EXPECT_THAT(
       refusal(text("2.0", "1.0")),
       HasSubstr("CxF3 says that reflectances are factors, where 1 is the perfect diffuser, and \"dark\" has 1 at "
-                "45as45, which is more than a paint reflects: give --scale percent"));
+                "45as45, which is more than a paint reflects: give paint-convert --scale percent"));
   const auto percent = good(text("2.0", "1.0"), {"", 0, false, Scale::kPercent});
   EXPECT_NEAR(percent.paints.at(0).measurement->rows.at(0).lab.L, 116 * std::cbrt(0.02) - 16, 1e-9);
   const auto silver = good(text("2.2", "0.45"));
@@ -300,7 +300,7 @@ TEST_F(Cxf, XyzTooDarkForPercentAreTold) {
   const std::string small =
       cxf(object("s", "<ColorCIEXYZ ColorSpecification=\"a\"><X>0.2</X><Y>0.21</Y><Z>0.22</Z></ColorCIEXYZ>"),
           specification("a", angles({{15, ""}}), "", "<Illuminant>D65</Illuminant><Observer>10_Degree</Observer>"));
-  EXPECT_THAT(good(small).warnings, ElementsAre(HasSubstr("no Y is above 0.21: give --scale factor")));
+  EXPECT_THAT(good(small).warnings, ElementsAre(HasSubstr("no Y is above 0.21: give paint-convert --scale factor")));
   ImportOptions options;
   options.scale = Scale::kFactor;
   const auto read = good(small, options);
@@ -415,7 +415,7 @@ TEST_F(Cxf, ReadsTheColorsOfCxf2) {
       spectrum + "</ReflectanceSpectrum></Color></ColorSet></Palette></CxF>";
   const auto none = good(text);
   EXPECT_THAT(none.paints, IsEmpty());
-  EXPECT_THAT(none.warnings, Contains(HasSubstr("give --viewing GEOMETRY")));
+  EXPECT_THAT(none.warnings, Contains(HasSubstr("give paint-convert --viewing GEOMETRY")));
   ImportOptions options;
   options.viewings = {{"", geometry("45as45")}};
   const auto paints = good(text, options);

@@ -206,13 +206,14 @@ std::optional<paint::Geometry> geometry_in_words(std::string_view words, const I
       return viewing.geometry;
     }
   const std::string typical = has_words(text, "SCE") ? "SCE" : has_words(text, "SCI") ? "SCI" : shown(text);
-  remarks.note(text.empty()
-                   ? "no viewing geometry is stated, and readings without one are left out: give --viewing "
-                     "GEOMETRY, such as 45as45, to take them as that"
-                   : fmt::format("the viewing \"{}\" has no aspecular angle, and its readings are left out: "
-                                 "give --viewing \"WORDS=GEOMETRY\", such as \"{}=45as45\", to take them as that",
-                                 shown(text), typical),
-               "");
+  remarks.note(
+      text.empty()
+          ? "no viewing geometry is stated, and readings without one are left out: give "
+            "paint-convert --viewing GEOMETRY, such as 45as45, to take them as that"
+          : fmt::format("the viewing \"{}\" has no aspecular angle, and its readings are left out: "
+                        "give paint-convert --viewing \"WORDS=GEOMETRY\", such as \"{}=45as45\", to take them as that",
+                        shown(text), typical),
+      "");
   return std::nullopt;
 }
 
@@ -250,7 +251,7 @@ bool OpenPaint::complete(const ImportOptions& options, Remarks& remarks) {
   measurement.textures = textures;
   if (others)
     remarks.note(fmt::format("readings under other illuminants or observers than {}/{} were left out: choose with "
-                             "--illuminant and --observer",
+                             "paint-convert --illuminant and --observer",
                              measurement.condition.illuminant, measurement.condition.observer_deg),
                  paint.name);
   return true;

@@ -50,7 +50,7 @@ TEST_F(Qtx, ASphereIsNamedAndNeverGuessed) {
   const auto none = good(text);
   EXPECT_THAT(none.paints, IsEmpty());
   EXPECT_THAT(none.warnings, Contains(HasSubstr("the viewing \"%R SAV SCE UV Inc\" has no aspecular angle, and its "
-                                                "readings are left out: give --viewing")));
+                                                "readings are left out: give paint-convert --viewing")));
   const auto excluded = good(text, as_45("sce"));
   ASSERT_EQ(excluded.paints.size(), 1u);
   EXPECT_EQ(excluded.paints[0].name, "a");
@@ -86,7 +86,7 @@ TEST_F(Qtx, TristimulusValuesTellColorAndScale) {
   EXPECT_NEAR(factors.paints[0].measurement->spectra[0].factors[0], .1, 1e-15);
   EXPECT_THAT(factors.warnings, Contains(HasSubstr("factors, as the L* beside them says")));
   EXPECT_THAT(good(section("d", "45/0", 31, -7.3)).warnings,
-              Contains(HasSubstr("give --scale factor if they are factors")));
+              Contains(HasSubstr("give paint-convert --scale factor if they are factors")));
 }
 
 // XYZ from 0 to 1 were nearly black, and XYZ beside the spectrum of another color were dropped, both without a word.

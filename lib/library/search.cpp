@@ -134,7 +134,7 @@ Result<SearchPlan> LibrarySearch::plan(const paint::Paint& query) const {
     if (!options_.mix_conditions)
       return input_error(
           "its Lab values are for {}, the library has some for {}: measure or convert one of them, or compare the "
-          "numbers as they are with --mix-observers",
+          "numbers as they are with colorsnap --mix-observers",
           condition_name(paint::condition_of(query)), condition_name(section.condition));
     plan.mixed = section.condition;
   }

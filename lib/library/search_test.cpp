@@ -132,7 +132,7 @@ TEST_F(Searching, ConditionsDoNotMix) {
   const auto refused = LibrarySearch(index, {}).plan(all[0]);
   ASSERT_FALSE(refused.ok());
   EXPECT_THAT(refused.error().message, HasSubstr("D65/10, the library has some for D65/2"));
-  EXPECT_THAT(refused.error().message, HasSubstr("--mix-observers"));
+  EXPECT_THAT(refused.error().message, HasSubstr("colorsnap --mix-observers"));
   const LibrarySearch mixing(index, {.count = 5, .mix_conditions = true});
   const auto plan = mixing.plan(all[0]);
   ASSERT_TRUE(plan.ok());

@@ -1,7 +1,9 @@
 #include "quality/comparison.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "base/text.h"
@@ -11,6 +13,11 @@
 namespace goniochrome::quality {
 
 namespace {
+
+constexpr std::array kLabDifferences = {
+    std::pair{"dL", &color::LabDifference::dL}, std::pair{"da", &color::LabDifference::da},
+    std::pair{"db", &color::LabDifference::db}, std::pair{"dC", &color::LabDifference::dC},
+    std::pair{"dH", &color::LabDifference::dH}};
 
 std::string light_name(const color::ViewingCondition& condition) {
   return fmt::format("{}/{}", condition.illuminant, condition.observer_deg);
@@ -36,9 +43,7 @@ void summarize(Comparison& comparison, std::size_t formulas) {
     if (!(std::abs(value) <= std::abs(most))) most = value;
   };
   for (const AngleDifference& angle : comparison.angles) {
-    for (const auto member : {&color::LabDifference::dL, &color::LabDifference::da, &color::LabDifference::db,
-                              &color::LabDifference::dC, &color::LabDifference::dH})
-      take(angle.lab.*member, mean.lab.*member, largest.lab.*member);
+    for (const auto& [name, member] : kLabDifferences) take(angle.lab.*member, mean.lab.*member, largest.lab.*member);
     for (std::size_t i = 0; i < formulas; ++i) take(angle.by_formula[i], mean.by_formula[i], largest.by_formula[i]);
   }
 }
@@ -54,6 +59,42 @@ void add_indices(const Subject& standard, const Subject& sample, std::vector<Dev
     if (other != standard.paint.gloss.end())
       others.push_back(
           {kWhole, fmt::format("gloss{}", shortest(gloss.angle_deg)), gloss.gloss_units - other->gloss_units});
+  }
+}
+
+void add_missing(const std::string& at, const std::string& quantity, Comparison& comparison) {
+  comparison.missing.push_back({at, quantity, std::numeric_limits<double>::quiet_NaN()});
+}
+
+// Adds what a reading of the standard would tell and the sample has no reading for; mean and largest lack it too.
+void add_missing_rows(const Subject& standard, const Subject& sample, const CompareOptions& options,
+                      Comparison& comparison) {
+  std::vector<std::string> places;
+  for (const paint::LabReading& row : standard.rows)
+    if (std::ranges::find(sample.rows, row.geometry, &paint::LabReading::geometry) == sample.rows.end())
+      places.push_back(paint::geometry_name(row.geometry));
+  if (places.empty()) return;
+  comparison.remarks.push_back(fmt::format("the sample lacks geometries of its standard: {} of {} are compared",
+                                           comparison.angles.size(), standard.rows.size()));
+  for (const std::string& place : places)
+    for (const auto& [name, member] : kLabDifferences) add_missing(place, name, comparison);
+  places.insert(places.end(), {kMean, kLargest});
+  for (const std::string& place : places)
+    for (const color::DifferenceFormula& formula : options.formulas)
+      add_missing(place, quantity_of(formula), comparison);
+}
+
+// The place of a texture: its geometry, or the whole paint.
+std::string texture_place(const paint::TextureReading& texture) {
+  return texture.geometry.empty() ? kWhole : texture.geometry;
+}
+
+void add_missing_textures(const paint::Measurement& standard, Comparison& comparison) {
+  for (const paint::TextureReading& texture : standard.textures) {
+    const std::string at = texture_place(texture), quantity = "texture:" + texture.quantity;
+    if (std::ranges::none_of(comparison.others,
+                             [&](const Deviation& d) { return d.at == at && d.quantity == quantity; }))
+      add_missing(at, quantity, comparison);
   }
 }
 
@@ -77,8 +118,7 @@ void add_textures(const paint::Measurement& standard, const paint::Measurement& 
                       texture.quantity, other->version, texture.version));
       continue;
     }
-    comparison.others.push_back({texture.geometry.empty() ? kWhole : texture.geometry, "texture:" + texture.quantity,
-                                 texture.value - other->value});
+    comparison.others.push_back({texture_place(texture), "texture:" + texture.quantity, texture.value - other->value});
   }
 }
 
@@ -95,13 +135,16 @@ Result<void> add_metamerism(const paint::Paint& standard, const paint::Paint& sa
                  paint::metamerism(*sample.measurement, *standard.measurement, light, test, options.formulas.front()));
     for (const paint::DifferenceAt& difference : found)
       comparison.others.push_back({paint::geometry_name(difference.geometry), "metamerism_" + name, difference.value});
+    for (const paint::SpectrumReading& spectrum : standard.measurement->spectra)
+      if (std::ranges::find(found, spectrum.geometry, &paint::DifferenceAt::geometry) == found.end())
+        add_missing(paint::geometry_name(spectrum.geometry), "metamerism_" + name, comparison);
   }
   return {};
 }
 
 // Compares two paints under one light.
 Result<Comparison> compare_in_one_light(const Subject& standard, const Subject& sample, const CompareOptions& options) {
-  Comparison comparison{standard.paint.name, sample.paint.name, {}, {}, {}, {}, {}};
+  Comparison comparison{standard.paint.name, sample.paint.name, {}, {}, {}, {}, {}, {}};
   for (const paint::LabReading& row : sample.rows) {
     const auto other = std::ranges::find(standard.rows, row.geometry, &paint::LabReading::geometry);
     if (other == standard.rows.end()) continue;
@@ -114,13 +157,12 @@ Result<Comparison> compare_in_one_light(const Subject& standard, const Subject& 
   if (comparison.angles.empty())
     return input_error("they have no geometry in common: the standard was measured at {}, the sample at {}",
                        names_of_rows(standard.rows), names_of_rows(sample.rows));
-  if (comparison.angles.size() < standard.rows.size())
-    comparison.remarks.push_back(fmt::format("the sample lacks geometries of its standard: {} of {} are compared",
-                                             comparison.angles.size(), standard.rows.size()));
+  add_missing_rows(standard, sample, options, comparison);
   summarize(comparison, options.formulas.size());
   add_indices(standard, sample, comparison.others);
   if (standard.paint.measurement && sample.paint.measurement)
     add_textures(*standard.paint.measurement, *sample.paint.measurement, comparison);
+  if (standard.paint.measurement) add_missing_textures(*standard.paint.measurement, comparison);
   GONIO_TRY(add_metamerism(standard.paint, sample.paint, options, comparison));
   return Result(std::move(comparison));
 }
@@ -166,9 +208,7 @@ std::vector<Deviation> deviations(const Comparison& comparison, const CompareOpt
   std::vector<Deviation> all;
   for (const AngleDifference& angle : comparison.angles) {
     const std::string at = paint::geometry_name(angle.geometry);
-    const color::LabDifference& d = angle.lab;
-    for (const auto& [name, value] : {std::pair{"dL", d.dL}, {"da", d.da}, {"db", d.db}, {"dC", d.dC}, {"dH", d.dH}})
-      all.push_back({at, name, value});
+    for (const auto& [name, member] : kLabDifferences) all.push_back({at, name, angle.lab.*member});
     for (std::size_t i = 0; i < names.size(); ++i) all.push_back({at, names[i], angle.by_formula[i]});
   }
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -39,6 +39,7 @@ struct Comparison {
   std::vector<AngleDifference> angles;  // ascending by library::geometry_order()
   AngleDifference mean, largest;        // over the geometries; the largest are those of the largest size, with sign
   std::vector<Deviation> others;        // indices, gloss, textures, metamerism
+  std::vector<Deviation> missing;       // the sample lacks what its standard has for them; their values are NaN
   std::vector<std::string> remarks;     // what was converted or could not be compared
 };
 

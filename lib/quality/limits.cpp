@@ -133,6 +133,17 @@ Excess excess_of(const Deviation& d, const Limit& limit, bool up, const Comparis
   return {d, up ? std::nullopt : limit.low, up ? limit.high : std::nullopt, std::move(words)};
 }
 
+// The words for a quantity that has a limit and no value. Mean and largest name the geometries that they lack.
+std::string words_of_missing(const Deviation& d, const Comparison& comparison) {
+  const auto spans = [](const Deviation& deviation) { return deviation.at == kMean || deviation.at == kLargest; };
+  std::vector<std::string> places;
+  for (const Deviation& other : comparison.missing)
+    if (other.quantity == d.quantity && !spans(other)) places.push_back(other.at);
+  if (!spans(d) || places.empty()) return fmt::format("{}: {} has a limit and was not measured", d.at, d.quantity);
+  return fmt::format("{}: {} has a limit, and {} {} not measured", d.at, d.quantity, joined(places, ", "),
+                     places.size() == 1 ? "was" : "were");
+}
+
 bool concerns(const Limit& limit, const Deviation& d, const std::string& first_formula) {
   if ((limit.quantity == "dE" ? first_formula : limit.quantity) != d.quantity) return false;
   return limit.at == "*" ? d.at != kMean && d.at != kLargest : limit.at == d.at;
@@ -214,28 +225,41 @@ Result<void> add_needed(const std::vector<Limit>& limits, CompareOptions& option
   return {};
 }
 
-std::vector<Excess> judged(const Comparison& comparison, const CompareOptions& options,
-                           const std::vector<Limit>& limits) {
-  std::vector<Excess> excesses;
-  if (limits.empty()) return excesses;
+Judged judged(const Comparison& comparison, const CompareOptions& options, const std::vector<Limit>& limits) {
+  Judged result;
+  if (limits.empty()) return result;
   const std::vector<Deviation> all = deviations(comparison, options);
   const std::string first_formula = quantity_of(options.formulas.front());
+  std::vector<Excess> unmeasured;
   for (const Limit& limit : limits) {
     bool met = false;
+    const auto meet = [&](const std::string& at) {
+      met = true;
+      if (std::ranges::find(result.places, at) == result.places.end()) result.places.push_back(at);
+    };
+    const auto lacks = [&](const Deviation& d) {
+      meet(d.at);
+      unmeasured.push_back({d, limit.low, limit.high, words_of_missing(d, comparison)});
+    };
     for (const Deviation& d : all) {
       if (!concerns(limit, d, first_formula) || std::isnan(d.value)) continue;
-      met = true;
+      meet(d.at);
       if (!keeps(d.value, limit))
-        excesses.push_back(excess_of(d, limit, limit.high && d.value > *limit.high, comparison));
+        result.excesses.push_back(excess_of(d, limit, limit.high && d.value > *limit.high, comparison));
     }
-    if (met) continue;
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    excesses.push_back({{limit.at, limit.quantity, none},
-                        limit.low,
-                        limit.high,
-                        fmt::format("{}: {} has a limit and was not measured", limit.at, limit.quantity)});
+    for (const Deviation& d : comparison.missing)
+      if (concerns(limit, d, first_formula)) lacks(d);
+    if (!met) lacks({limit.at == "*" ? kWhole : limit.at, limit.quantity, std::numeric_limits<double>::quiet_NaN()});
   }
-  return excesses;
+  std::ranges::move(unmeasured, std::back_inserter(result.excesses));
+  return result;
+}
+
+const char* Judged::verdict(const std::string& at) const {
+  const auto is_there = [&](const std::string& place) { return at == kWhole || place == at; };
+  if (std::ranges::none_of(places, is_there)) return "-";
+  const auto first = std::ranges::find_if(excesses, [&](const Excess& e) { return is_there(e.deviation.at); });
+  return first == excesses.end() ? "pass" : std::isnan(first->deviation.value) ? "incomplete" : "fail";
 }
 
 }  // namespace goniochrome::quality

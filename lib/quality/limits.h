@@ -42,14 +42,23 @@ paint::Paint with_limits(paint::Paint paint, const std::vector<Limit>& limits);
 // Adds the formulas and illuminants that the limits name to those of the options.
 Result<void> add_needed(const std::vector<Limit>& limits, CompareOptions& options);
 
-// A limit that is not kept; the value is NaN where there was none to judge.
+// A limit that is not kept, or whose quantity was not measured; the value is NaN then.
 struct Excess {
   Deviation deviation;
   std::optional<double> low, high;  // the bound that is passed; both where there was no value
   std::string words;                // "45as15: dL -2.1, limit -1.5: too dark near gloss"
 };
-std::vector<Excess> judged(const Comparison& comparison, const CompareOptions& options,
-                           const std::vector<Limit>& limits);
+
+// A comparison beside its limits.
+struct Judged {
+  std::vector<Excess> excesses;     // measured ones first
+  std::vector<std::string> places;  // to which a limit applies
+
+  // At a place, and at kWhole of all places: "fail" where a limit is passed, else "incomplete" where a quantity that
+  // has a limit was not measured, else "pass"; "-" where no limit applies.
+  const char* verdict(const std::string& at = kWhole) const;
+};
+Judged judged(const Comparison& comparison, const CompareOptions& options, const std::vector<Limit>& limits);
 
 // The standard, and after it the eight paints that just keep the limits at every geometry: lighter and darker ones, and
 // six in directions of hue 60 deg apart, named as those of paint::neighbors(). They have rows alone. Error: no limit

@@ -39,7 +39,7 @@ std::vector<Limit> limits(const std::string& rows) {
 
 std::vector<std::string> words(const Comparison& comparison, const CompareOptions& options, const std::string& rows) {
   std::vector<std::string> result;
-  for (const Excess& excess : judged(comparison, options, limits(rows))) result.push_back(excess.words);
+  for (const Excess& excess : judged(comparison, options, limits(rows)).excesses) result.push_back(excess.words);
   return result;
 }
 
@@ -69,11 +69,62 @@ TEST(Limits, AreKeptByNumbersOnThem) {
   paint::Paint standard = kRed, sample = kRed;
   standard.measurement->rows[0].lab.L = 124.3, sample.measurement->rows[0].lab.L = 121.9;
   const Comparison c = *compare(*subject_of(standard), *subject_of(sample), kOptions);
-  EXPECT_TRUE(judged(c, kOptions, limits("45as15,dL,-2.4,2.4\n")).empty());
-  EXPECT_EQ(judged(c, kOptions, limits("45as15,dL,-2.39999,2.4\n")).size(), 1u);
+  EXPECT_TRUE(judged(c, kOptions, limits("45as15,dL,-2.4,2.4\n")).excesses.empty());
+  EXPECT_EQ(judged(c, kOptions, limits("45as15,dL,-2.39999,2.4\n")).excesses.size(), 1u);
 }
 
-TEST(Limits, OfWhatWasNotMeasuredFail) {
+// The judgement of a sample that was not measured at the last geometry of its standard.
+Judged without_110(const color::Lab& by, const std::string& rows) {
+  paint::Paint sample = kRed;
+  sample.measurement->rows.pop_back();
+  for (paint::LabReading& row : sample.measurement->rows)
+    row.lab = {row.lab.L + by.L, row.lab.a + by.a, row.lab.b + by.b};
+  return judged(*compare(*subject_of(kRed), *subject_of(sample), kOptions), kOptions, limits(rows));
+}
+
+TEST(Limits, AreNotKeptByReadingsThatTheSampleLacks) {
+  const Judged all = without_110({}, "*,dL,-1,1\n");
+  EXPECT_STREQ(all.verdict(), "incomplete");
+  EXPECT_STREQ(all.verdict("45as15"), "pass");
+  EXPECT_STREQ(all.verdict("45as110"), "incomplete");
+  ASSERT_EQ(all.excesses.size(), 1u);
+  EXPECT_EQ(all.excesses.front().words, "45as110: dL has a limit and was not measured");
+  EXPECT_EQ(without_110({}, "max,dE,,1\n").excesses.front().words,
+            "max: dE_ciede2000 has a limit, and 45as110 was not measured");
+  EXPECT_STREQ(without_110({}, "mean,dE_cmc:2:1,,1\n").verdict(), "incomplete");
+  EXPECT_STREQ(without_110({}, "45as15,dL,-1,1\n").verdict(), "pass") << "the control: no limit there";
+  // A limit that is passed comes first.
+  const Judged dark = without_110({-2, 0, 0}, "*,dL,-1,1\n");
+  EXPECT_STREQ(dark.verdict(), "fail");
+  EXPECT_EQ(dark.excesses.back().words, "45as110: dL has a limit and was not measured");
+}
+
+TEST(Limits, GiveNoVerdictWhereThereIsNone) {
+  const Judged some = judged(moved({}, kOptions), kOptions, limits("45as15,dL,-1,1\n"));
+  EXPECT_STREQ(some.verdict("45as15"), "pass");
+  EXPECT_STREQ(some.verdict("45as45"), "-");
+  EXPECT_STREQ(some.verdict("max"), "-");
+  EXPECT_STREQ(some.verdict(), "pass");
+  EXPECT_STREQ(judged(moved({}, kOptions), kOptions, {}).verdict(), "-");
+}
+
+TEST(Limits, OfTexturesTakeThePlacesOfTheStandard) {
+  paint::Paint standard = kRed, sample = kRed;
+  standard.measurement->textures = {{"Grade", "15d", "", 3}, {"Grade", "45d", "", 2}};
+  sample.measurement->textures = {standard.measurement->textures.front()};
+  const auto verdict = [&](const char* at) -> std::string {
+    return judged(*compare(*subject_of(standard), *subject_of(sample), kOptions), kOptions,
+                  limits("*,texture:Grade,-1,1\n"))
+        .verdict(at);
+  };
+  EXPECT_EQ(verdict("15d"), "pass");
+  EXPECT_EQ(verdict("45d"), "incomplete");
+  sample.measurement->textures = standard.measurement->textures;
+  EXPECT_EQ(verdict("45d"), "pass") << "the control";
+}
+
+TEST(Limits, OfWhatWasNotMeasuredAreIncomplete) {
+  EXPECT_STREQ(judged(moved({}, kOptions), kOptions, limits("45as25,dL,-1,1\n")).verdict(), "incomplete");
   EXPECT_EQ(words(moved({}, kOptions), kOptions, "45as25,dL,-1,1\n"),
             std::vector<std::string>{"45as25: dL has a limit and was not measured"});
   EXPECT_EQ(words(moved({}, kOptions), kOptions, "*,gloss60,-1,1\n15d,texture:Sparkle Grade,,1\n").size(), 2u);
@@ -142,7 +193,8 @@ TEST(Limits, MadeByAShareAreKeptByItAndNotByMore) {
     maker.add(panels.back(), kOptions);
   }
   const auto kept = [&](const std::vector<Limit>& limits) {
-    return std::ranges::count_if(panels, [&](const Comparison& c) { return judged(c, kOptions, limits).empty(); });
+    return std::ranges::count_if(panels,
+                                 [&](const Comparison& c) { return judged(c, kOptions, limits).excesses.empty(); });
   };
   EXPECT_EQ(kept(*maker.by_share(0.9)), 180);
   EXPECT_EQ(kept(*maker.by_share(1)), 200);
@@ -160,7 +212,7 @@ TEST(Limits, AreReachedByTheEightPaintsThatJustPass) {
   EXPECT_EQ((*family)[1].name, "red.face-lighter");
   for (std::size_t i = 1; i < 9; ++i) {
     const Comparison c = *compare(*subject_of(kRed), *subject_of((*family)[i]), kOptions);
-    EXPECT_TRUE(judged(c, kOptions, all).empty()) << (*family)[i].name;
+    EXPECT_TRUE(judged(c, kOptions, all).excesses.empty()) << (*family)[i].name;
     paint::Paint beyond = (*family)[i];
     for (std::size_t g = 0; g < 3; ++g) {
       color::Lab& lab = beyond.measurement->rows[g].lab;
@@ -168,7 +220,7 @@ TEST(Limits, AreReachedByTheEightPaintsThatJustPass) {
       lab = {s.L + 1.001 * (lab.L - s.L), s.a + 1.001 * (lab.a - s.a), s.b + 1.001 * (lab.b - s.b)};
       EXPECT_NE(lab, s);
     }
-    EXPECT_GE(judged(*compare(*subject_of(kRed), *subject_of(beyond), kOptions), kOptions, all).size(), 1u);
+    EXPECT_GE(judged(*compare(*subject_of(kRed), *subject_of(beyond), kOptions), kOptions, all).excesses.size(), 1u);
   }
   EXPECT_FALSE(just_passing(kRed, kOptions, limits("*,dL,-1,1\n")).ok());
   EXPECT_FALSE(just_passing(kRed, kOptions, limits("*,dL,1,2\n")).ok());

@@ -261,6 +261,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     for (const fit::FoundBasis& set : search.sets)
       GONIO_TRY(formats::write_basis(each_name(options, set.exponents.size()), basis_of(options, mirror, search, set)));
   GONIO_TRY(formats::write_basis(options.output, basis_of(options, mirror, search, search.sets.back())));
+  if (search.stopped)
+    session.say_verdict("fit-basis: the time limit stopped the search: the best exponents are written");
   return search.stopped ? cli::Verdict::kStopped : cli::Verdict::kDone;
 }
 

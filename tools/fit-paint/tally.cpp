@@ -228,7 +228,8 @@ cli::Verdict Tally::finish() {
         {{"name", bad.name}, {"geometry", bad.geometry}, {"de00", bad.de00}, {"limit", bad.limit}});
 
   if (done() == 0) session_.warn("the input holds no paints: nothing was fitted");
-  session_.say(summary());
+  const bool negative = done() == 0 || failed_ > 0 || not_converged_ > 0 || stopped_ > 0;
+  negative ? session_.say_verdict(summary()) : session_.say(summary());
   for (std::size_t k = 1; k < worst_.size() && worst_[k].de00 > kBad_de00; ++k)
     session_.say(fmt::format("  then {:.2f} ({} at {}: {})", worst_[k].de00, worst_[k].name, worst_[k].geometry,
                              worst_[k].limit));
@@ -254,7 +255,7 @@ cli::Verdict Tally::finish() {
         session_.tool(), open_coats_, widest_name_, widest_.least_haze.haze, widest_.most_haze.haze,
         widest_.probable.haze));
   if (stopped_ > 0) return cli::Verdict::kStopped;
-  return done() == 0 || failed_ > 0 || not_converged_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
+  return negative ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }
 
 }  // namespace goniochrome::tool

@@ -219,8 +219,8 @@ class Run {
       line += fmt::format("; {} stay under {} up to {} deg, {} do not", done_ - failing_.size(),
                           shortest(request_.threshold), shortest(*request_.tolerance_deg), failing_.size());
     }
-    session_.say(line);
-    for (const std::string& name : failing_) session_.say("  " + name);
+    failing_.empty() ? session_.say(line) : session_.say_verdict(line);
+    for (const std::string& name : failing_) session_.say_verdict("  " + name);
     if (done_ + failed_ == 0) session_.warn("the input holds no paints: nothing was computed");
     return failing_.empty() && failed_ == 0 && done_ > 0 ? cli::Verdict::kDone : cli::Verdict::kNegative;
   }

@@ -32,7 +32,7 @@ constexpr const char* kStyle = R"(
 body { margin: 0 auto; padding: 12px; max-width: 748px; }
 h1 { font-size: 22px; margin: 0 0 4px; } h2 { font-size: 17px; margin: 20px 0 4px; overflow-wrap: anywhere; }
 p { margin: 3px 0; } .note { color: #555; font-size: 12.5px; }
-.fail { color: #b3261e; font-weight: 600; } .pass { color: #1b6e3c; font-weight: 600; }
+.fail, .incomplete { color: #b3261e; font-weight: 600; } .pass { color: #1b6e3c; font-weight: 600; }
 ul { margin: 4px 0; padding-left: 20px; } .failures { columns: 2; font-size: 12.5px; }
 img, svg { display: block; max-width: 100%; height: auto; } .planes { display: flex; flex-wrap: wrap; }
 .planes svg { width: 33.3%; } .many.planes svg { width: 25%; } .top { display: flex; align-items: center; gap: 1%; } .top img { width: 46%; } .top svg { width: 53%; }
@@ -85,7 +85,7 @@ std::string table_of(const Judgement& judgement, const quality::CompareOptions& 
   const auto row = [&](const std::string& at, const std::string& colors, const quality::AngleDifference& angle) {
     text += fmt::format("<tr><td>{}</td><td>{}</td>", at, colors);
     const auto cell = [&](const std::string& quantity, double value) {
-      const bool fails = std::ranges::any_of(judgement.excesses, [&](const quality::Excess& excess) {
+      const bool fails = std::ranges::any_of(judgement.judged.excesses, [&](const quality::Excess& excess) {
         return excess.deviation.at == at && excess.deviation.quantity == quantity;
       });
       text += (fails ? "<td class=\"fail\">" : "<td>") + column_number(value) + "</td>";
@@ -121,14 +121,12 @@ class Charts {
 
   // The heading, the count of verdicts, and the control charts.
   std::string overview() const {
-    std::size_t failed = 0, judged = 0;
-    for (const ChartedSample& each : samples_)
-      failed += !each.judgement.excesses.empty(), judged += !each.judgement.standard->limits.empty();
+    VerdictCount count;
+    for (const ChartedSample& each : samples_) count.add(each.judgement);
     std::string text = fmt::format("<h1>{} sample{} against {}</h1>\n<p>", samples_.size(),
                                    samples_.size() == 1 ? "" : "s", standards_text());
-    if (judged > 0)
-      text += fmt::format("<span class=\"{}\">{} pass, {} fail.</span> ", failed ? "fail" : "pass", judged - failed,
-                          failed);
+    if (count.judged() > 0)
+      text += fmt::format("<span class=\"{}\">{}.</span> ", count.negative() > 0 ? "fail" : "pass", count.words());
     text +=
         "Every difference is sample minus standard.</p>\n<p class=\"note\">Blue lines are the tolerance of " +
         color::formula_name(compare_.formulas.front()) +
@@ -169,7 +167,7 @@ class Charts {
         fmt::format("<section><h2>{}{}</h2>\n<p class=\"note\">against {}</p>\n",
                     verdict == "-" ? "" : fmt::format("<span class=\"{0}\">{0}</span> ", verdict),
                     xml_escaped(judgement.comparison.sample, ""), xml_escaped(judgement.comparison.standard, ""));
-    if (!judgement.excesses.empty()) {
+    if (!judgement.judged.excesses.empty()) {
       text += "<ul class=\"failures\">";
       for (const std::string& words : judgement.words(kMostFailures)) text += "<li>" + xml_escaped(words, "") + "</li>";
       text += "</ul>\n";
@@ -247,7 +245,8 @@ class Charts {
 std::vector<const ChartedSample*> in_order(const std::vector<ChartedSample>& samples) {
   std::vector<const ChartedSample*> order;
   for (const ChartedSample& each : samples) order.push_back(&each);
-  std::ranges::stable_partition(order, [](const ChartedSample* each) { return !each->judgement.excesses.empty(); });
+  std::ranges::stable_partition(order,
+                                [](const ChartedSample* each) { return !each->judgement.judged.excesses.empty(); });
   return order;
 }
 
@@ -260,7 +259,7 @@ Result<void> write_folder(const std::string& folder, Charts& charts, const std::
     const std::string name = fmt::format("{:04}.html", i + 1), sample = order[i]->sample.name;
     GONIO_ASSIGN(const std::string section, charts.section(*order[i]));
     GONIO_TRY(write_file(file(name), page_of(sample, section)));
-    const char* verdict = order[i]->judgement.verdict();
+    const std::string verdict = order[i]->judgement.verdict();
     list += fmt::format("<li><a href=\"{}\">{}</a> <span class=\"{}\">{}</span></li>\n", name, xml_escaped(sample, ""),
                         verdict, verdict);
   }

@@ -78,13 +78,16 @@ void add_report(cli::ToolSpec& spec) {
        "testdata/paints.paints.xml#candy_red",
        "write the paints that just pass, to be drawn beside the standard"}};
   spec.report = {{"judgements[].sample, standard", "names of the pair"},
-                 {"judgements[].verdict", "one of pass, fail, and - where there are no limits"},
-                 {"judgements[].failures[]", "at, quantity, value, limit and words"},
+                 {"judgements[].verdict", "one of pass, fail, incomplete, and - where there are no limits"},
+                 {"judgements[].verdicts.NAME", "the same at each place: a geometry, mean, max or paint"},
+                 {"judgements[].failures[]",
+                  "at, quantity, value, limit and words; the value of what was not measured is null"},
                  {"judgements[].geometries.NAME", "dL, da, db, dC, dH and dE by each formula: sample minus standard"},
                  {"judgements[].mean, max", "the same over the geometries"},
                  {"judgements[].others.NAME", "indices and gloss of the paint; textures and metamerism by geometry"},
                  {"standards", "number of standards"},
-                 {"compared, failed", "number of samples that were compared, and that fail"},
+                 {"compared, passed, failed, incomplete, not_judged",
+                  "numbers of samples: compared, and of each verdict"},
                  {"left_out", "number of samples that --keep-going left out"},
                  {"pairs_per_s", "pairs a second on all threads, without reading and writing"},
                  {"warnings[]", "the warnings of the run"}};
@@ -106,14 +109,18 @@ cli::ToolSpec tool_spec(Options& o) {
       "metamerism. Textures are compared where instrument, quantity, version and geometry agree.",
       "Where standard and sample are stated for different illuminants or observers, the one that has spectra is "
       "brought to the light of the other, and a warning tells so; without spectra the pair is refused.",
-      "The exit status is 1 where a sample fails. Each failure is told in a sentence, as in \"45as15: dL -2.1, limit "
-      "-1.5: too dark near gloss\"; the line of a sample has the first four, and JSON, paint XML and the report have "
-      "all. "
-      "Limits that name something that was not measured fail.",
+      "# Verdicts\nThe verdict of a line is by the limits of that line, and the verdict of the line paint by all of "
+      "the sample:\n- pass: every quantity that has a limit keeps it.\n- fail: one of them passes its limit.\n- "
+      "incomplete: none of them passes its limit, and one was not measured, as where the sample lacks an angle of its "
+      "standard. The largest and the mean dE are incomplete then, too.\n- a hyphen: no limit applies, and nothing was "
+      "judged.\nThe exit status is 1 where a sample fails or is incomplete. Each reason is a sentence, as in "
+      "\"45as15: dL -2.1, limit -1.5: too dark near gloss\" or \"45as110: dL has a limit and was not measured\"; the "
+      "line of a sample has the first four, and JSON, paint XML and the report have all. --quiet keeps these lines.",
       "LIMITS: The table has the columns geometry, quantity, low and high, separated by commas, or by semicolons or "
       "tabs, "
       "where numbers may have a decimal comma. The geometry is a name, * for every "
-      "geometry or for the paint, or mean or max for dE over the geometries. The quantity is dL, da, db, dC, dH, "
+      "geometry of the standard or for the paint, or mean or max for dE over the geometries. The quantity is dL, da, "
+      "db, dC, dH, "
       "dE (by the first formula), dE_FORMULA, flop_index, chroma_index, hue_shift_index, hue_travel_deg, gloss20, "
       "gloss60, gloss85, metamerism_ILLUMINANT, or texture:NAME with the instrument's name of it. One of low and high "
       "may be empty. Formulas and illuminants that the limits name need no option. Numbers within 1e-9 of a limit "

@@ -49,6 +49,52 @@ field() {
   [ "$(field dL mean), $(field dE_cmc:2:1 max)" = "0, 0" ]
 }
 
+@test "a sample that lacks an angle with a limit is incomplete, in every output and with -q" {
+  grep -v 45as110 std.csv >short.csv
+  paint-convert -q short.csv -o short.paints.xml
+  run paint-compare -q -s std.paints.xml -l limits.csv short.paints.xml -o table.tsv --report report.json --chart page.html
+  echo "$output"
+  [ "$status" -eq 1 ]
+  [ "${lines[0]}" = 'paint-compare: "batch" is incomplete against "batch": 45as110: dL has a limit and was not measured; max: dE_cmc:2:1 has a limit, and 45as110 was not measured' ]
+  [ "${lines[-1]}" = 'paint-compare: 1 compared with 1 standard, 0 pass, 0 fail, 1 incomplete' ]
+  [ "$(for at in 45as15 45as110 mean max paint; do field verdict $at; done | xargs)" = "pass incomplete - incomplete incomplete" ]
+  [ "$(field dL 45as110)" = - ]
+  jq -e '.results | .failed == 0 and .incomplete == 1 and .passed == 0' report.json
+  jq -e '.results.judgements[0] | .verdict == "incomplete" and .verdicts["45as110"] == "incomplete" and .verdicts["45as15"] == "pass"
+    and .verdicts.mean == "-" and (.failures[0] | .at == "45as110" and .value == null)' report.json
+  grep -q '<span class="incomplete">incomplete</span> batch' page.html
+  run ! paint-compare -q -s std.paints.xml -l limits.csv short.paints.xml -o judged.paints.xml
+  grep -q 'result="incomplete">45as110: dL has a limit and was not measured' judged.paints.xml
+  # Limits that name the angles judge such a sample, and the others are not judged.
+  printf 'geometry,quantity,low,high\n45as15,dL,-1.5,1.5\n' >named.csv
+  run paint-compare -q -s std.paints.xml -l named.csv short.paints.xml -o table.tsv
+  [ "$status, $output" = "0, " ]
+  [ "$(for at in 45as15 45as45 mean max paint; do field verdict $at; done | xargs)" = "pass - - - pass" ]
+}
+
+@test "samples of standards without limits are counted as not judged" {
+  sed 's/batch/other/' std.csv >other.csv
+  paint-convert -q other.csv -o other.paints.xml
+  for dL in 0.1 0.2 0.3; do paint-edit -q std.paints.xml --lightness-shift $dL -o accepted$dL.paints.xml; done
+  paint-compare -q -s std.paints.xml --make-limits with.paints.xml accepted*.paints.xml -o table.tsv
+  paint-convert -q with.paints.xml other.paints.xml --to xml -o both.paints.xml
+  run paint-compare -s both.paints.xml accepted0.2.paints.xml other.paints.xml -o table.tsv --report report.json
+  echo "$output"
+  [ "$output" = "paint-compare: 2 compared with 2 standards, 1 pass, 0 fail, 1 not judged: their standards have no limits" ]
+  [ "$(awk '$1 == "other" { print $NF }' table.tsv | sort -u)" = - ]
+  jq -e '.results | .passed == 1 and .not_judged == 1 and .judgements[1].verdicts["45as15"] == "-"' report.json
+}
+
+@test "advice names the tool that has the option" {
+  { echo 'sample,geometry,illuminant,observer,400,420,440,460,480,500,520,540,560,580,600,620,640,660,680,700'
+    echo 'batch,45as45,D65,10,.2,.2,.2,.2,.2,.2,.2,.2,.2,.2,.2,.2,.2,.2,.2,.2'; } >spectra.csv
+  run paint-compare -s std.paints.xml spectra.csv -o table.tsv
+  echo "$output"
+  [[ $output == *'give paint-convert --scale percent if not'* ]]
+  ! grep -qE '[^t] --(scale|viewing)' <<<"$output"
+  paint-convert -q --scale percent spectra.csv -o dark.paints.xml
+}
+
 @test "JSON lines and the report hold the same judgement, paint XML its verdict" {
   run ! paint-compare -q -s std.paints.xml -l limits.csv dark.paints.xml -o verdict.jsonl --report report.json
   [ "$(jq -r '.verdict, .failures[0].quantity' verdict.jsonl | xargs)" = "fail dL" ]

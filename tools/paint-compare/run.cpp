@@ -64,7 +64,7 @@ class Run {
     GONIO_ASSIGN(const quality::Subject subject, quality::subject_of(sample));
     Made result{{standard, {}, {}}, ""};
     GONIO_ASSIGN(result.judgement.comparison, quality::compare(standard->subject, subject, compare_));
-    result.judgement.excesses = quality::judged(result.judgement.comparison, compare_, standard->limits);
+    result.judgement.judged = quality::judged(result.judgement.comparison, compare_, standard->limits);
     result.text = sink_->text(result.judgement);
     return Result(std::move(result));
   }
@@ -92,10 +92,12 @@ class Run {
   Result<void> note(Made made, const paint::Paint& sample) {
     Judgement& judgement = made.judgement;
     ++compared_;
+    count_.add(judgement);
     for (const std::string& remark : judgement.comparison.remarks) remarks_.note(remark, sample.name);
-    if (!judgement.excesses.empty() && ++failed_ <= kFailuresShown)
-      session_.say(fmt::format("{}: \"{}\" fails against \"{}\": {}", session_.tool(), sample.name,
-                               judgement.comparison.standard, joined(judgement.words(kWordsShown), "; ")));
+    if (!judgement.judged.excesses.empty() && count_.negative() <= kFailuresShown)
+      session_.say_verdict(fmt::format("{}: \"{}\" {} against \"{}\": {}", session_.tool(), sample.name,
+                                       judgement.verdict() == "fail" ? "fails" : "is incomplete",
+                                       judgement.comparison.standard, joined(judgement.words(kWordsShown), "; ")));
     if (!options_.make_limits.empty()) maker_.add(judgement.comparison, compare_);
     session_.add("judgements", [&] { return judgement_json(judgement, compare_); });
     GONIO_TRY(sink_->write(judgement, made.text, sample));
@@ -131,19 +133,23 @@ class Run {
     Json& results = session_.results();
     results["standards"] = standards_.all().size();
     results["compared"] = compared_;
-    results["failed"] = failed_;
+    results["passed"] = count_.passed;
+    results["failed"] = count_.failed;
+    results["incomplete"] = count_.incomplete;
+    results["not_judged"] = count_.without;
     results["left_out"] = left_out_;
     results["pairs_per_s"] = json_number(comparing_s_ > 0 ? static_cast<double>(compared_) / comparing_s_ : 0);
-    if (failed_ > kFailuresShown)
-      session_.say(fmt::format("{}: {} more samples fail", session_.tool(), failed_ - kFailuresShown));
+    if (count_.negative() > kFailuresShown)
+      session_.say_verdict(
+          fmt::format("{}: {} more samples do not pass", session_.tool(), count_.negative() - kFailuresShown));
     if (compared_ + left_out_ == 0) session_.warn("the input holds no paints: nothing was compared");
     std::string line = fmt::format("{}: {} compared with {} standard{}", session_.tool(), compared_,
                                    standards_.all().size(), standards_.all().size() == 1 ? "" : "s");
-    line += standards_.has_limits() ? fmt::format(", {} pass, {} fail", compared_ - failed_, failed_)
-                                    : ", not judged: there are no limits";
+    line += standards_.has_limits() ? ", " + count_.words() : ", not judged: there are no limits";
     if (left_out_ > 0) line += fmt::format(", {} left out", left_out_);
+    const bool negative = compared_ == 0 || count_.negative() + left_out_ > 0;
     session_.say(line);
-    return compared_ == 0 || failed_ + left_out_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
+    return negative ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
 
   const Options& options_;
@@ -155,7 +161,8 @@ class Run {
   formats::Remarks remarks_;
   std::vector<ChartedSample> charted_;
   std::vector<LimitFamily> families_;  // of --show-limit, for the page
-  std::size_t compared_ = 0, failed_ = 0, left_out_ = 0;
+  VerdictCount count_;
+  std::size_t compared_ = 0, left_out_ = 0;
   double comparing_s_ = 0;
 };
 

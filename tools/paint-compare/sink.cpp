@@ -25,12 +25,6 @@ std::string others_at(const quality::Comparison& comparison, const std::string& 
   return text.empty() ? "-" : text;
 }
 
-std::string verdict_at(const Judgement& judgement, const std::string& at) {
-  const bool fails =
-      std::ranges::any_of(judgement.excesses, [&](const quality::Excess& excess) { return excess.deviation.at == at; });
-  return judgement.standard->limits.empty() ? "-" : fails ? "fail" : "pass";
-}
-
 // Appends the line of a place; `names` are those of sample and standard with their tabs.
 void add_line(const Judgement& judgement, const std::string& names, const std::string& at,
               const quality::AngleDifference& angle, int decimals, std::string& text) {
@@ -39,17 +33,21 @@ void add_line(const Judgement& judgement, const std::string& names, const std::s
   for (const double value : {d.dL, d.da, d.db, d.dC, d.dH}) text += '\t', text += table_number(value, decimals);
   for (const double value : angle.by_formula) text += '\t', text += table_number(value, decimals);
   text += '\t', text += others_at(judgement.comparison, at, decimals);
-  text += '\t', text += verdict_at(judgement, at), text += '\n';
+  text += '\t', text += judgement.judged.verdict(at), text += '\n';
 }
 
-// Places of others that are no geometry of the comparison, such as the instrument's own words for its light.
-std::vector<std::string> further_places(const quality::Comparison& comparison) {
-  std::vector<std::string> places = {quality::kWhole};
-  for (const quality::Deviation& d : comparison.others) {
-    const auto is_angle = [&](const quality::AngleDifference& a) { return paint::geometry_name(a.geometry) == d.at; };
-    if (std::ranges::find(places, d.at) == places.end() && std::ranges::none_of(comparison.angles, is_angle))
-      places.push_back(d.at);
-  }
+// The places of a sample: its geometries, mean, largest and the paint; further ones, such as the instrument's own words
+// for its light; and those that were not measured and have a limit.
+std::vector<std::string> places_of(const Judgement& judgement) {
+  const quality::Comparison& comparison = judgement.comparison;
+  std::vector<std::string> places;
+  const auto add = [&](const std::string& place) {
+    if (std::ranges::find(places, place) == places.end()) places.push_back(place);
+  };
+  for (const quality::AngleDifference& angle : comparison.angles) add(paint::geometry_name(angle.geometry));
+  for (const char* place : {quality::kMean, quality::kLargest, quality::kWhole}) add(place);
+  for (const quality::Deviation& d : comparison.others) add(d.at);
+  for (const std::string& place : judgement.judged.places) add(place);
   return places;
 }
 
@@ -67,11 +65,11 @@ std::string table_lines(const Judgement& judgement, const quality::CompareOption
   add_line(judgement, names, quality::kLargest, comparison.largest, decimals, text);
   std::string blank;
   for (std::size_t i = 0; i < 5 + compare.formulas.size(); ++i) blank += "\t-";
-  for (const std::string& place : further_places(comparison)) {
-    // The verdict of the paint is that of all of its limits.
-    const std::string verdict = place == quality::kWhole ? judgement.verdict() : verdict_at(judgement, place);
-    text += names + table_field(place) + blank + "\t" + others_at(comparison, place, decimals) + "\t" + verdict + "\n";
-  }
+  std::vector<std::string> further = places_of(judgement);
+  further.erase(further.begin(), std::ranges::find(further, quality::kWhole));
+  for (const std::string& place : further)
+    text += names + table_field(place) + blank + "\t" + others_at(comparison, place, decimals) + "\t" +
+            judgement.judged.verdict(place) + "\n";
   return text;
 }
 
@@ -101,12 +99,24 @@ paint::Paint with_verdict(paint::Paint sample, const Judgement& judgement) {
 
 std::vector<std::string> Judgement::words(std::size_t most) const {
   std::vector<std::string> words;
-  for (const quality::Excess& excess : excesses) words.push_back(excess.words);
+  for (const quality::Excess& excess : judged.excesses) words.push_back(excess.words);
   if (words.size() > most) {
     words.resize(most);
-    words.push_back(fmt::format("and {} more", excesses.size() - most));
+    words.push_back(fmt::format("and {} more", judged.excesses.size() - most));
   }
   return words;
+}
+
+void VerdictCount::add(const Judgement& judgement) {
+  const std::string verdict = judgement.verdict();
+  ++(verdict == "pass" ? passed : verdict == "fail" ? failed : verdict == "incomplete" ? incomplete : without);
+}
+
+std::string VerdictCount::words() const {
+  std::string text = fmt::format("{} pass, {} fail", passed, failed);
+  if (incomplete > 0) text += fmt::format(", {} incomplete", incomplete);
+  if (without > 0) text += fmt::format(", {} not judged: their standards have no limits", without);
+  return text;
 }
 
 Json judgement_json(const Judgement& judgement, const quality::CompareOptions& compare) {
@@ -114,7 +124,7 @@ Json judgement_json(const Judgement& judgement, const quality::CompareOptions& c
   Json json = {
       {"sample", comparison.sample},    {"standard", comparison.standard}, {"direction", "sample minus standard"},
       {"verdict", judgement.verdict()}, {"failures", Json::array()},       {"geometries", Json::object()}};
-  for (const quality::Excess& excess : judgement.excesses)
+  for (const quality::Excess& excess : judgement.judged.excesses)
     json["failures"].push_back({{"at", excess.deviation.at},
                                 {"quantity", excess.deviation.quantity},
                                 {"value", json_number(excess.deviation.value)},
@@ -125,6 +135,7 @@ Json judgement_json(const Judgement& judgement, const quality::CompareOptions& c
   json["mean"] = angle_json(comparison.mean, compare);
   json["max"] = angle_json(comparison.largest, compare);
   for (const quality::Deviation& d : comparison.others) json["others"][d.at][d.quantity] = json_number(d.value);
+  for (const std::string& place : places_of(judgement)) json["verdicts"][place] = judgement.judged.verdict(place);
   return json;
 }
 

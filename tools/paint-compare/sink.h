@@ -19,12 +19,22 @@ namespace goniochrome::tool {
 struct Judgement {
   const Standard* standard = nullptr;
   quality::Comparison comparison;
-  std::vector<quality::Excess> excesses;
+  quality::Judged judged;
 
-  // "pass", "fail", or "-" where there are no limits.
-  const char* verdict() const { return standard->limits.empty() ? "-" : excesses.empty() ? "pass" : "fail"; }
+  std::string verdict() const { return judged.verdict(); }
   // All that fails, in words; beyond `most` their number.
   std::vector<std::string> words(std::size_t most = std::string::npos) const;
+};
+
+// The samples of each verdict.
+struct VerdictCount {
+  std::size_t passed = 0, failed = 0, incomplete = 0, without = 0;
+
+  void add(const Judgement& judgement);
+  std::size_t judged() const { return passed + failed + incomplete; }
+  std::size_t negative() const { return failed + incomplete; }
+  // "3 pass, 1 fail", and what else there is.
+  std::string words() const;
 };
 
 Json judgement_json(const Judgement& judgement, const quality::CompareOptions& compare);

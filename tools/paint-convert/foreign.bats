@@ -323,7 +323,7 @@ EOF
   corpus=$BATS_TEST_DIRNAME/../../lib/fuzz/corpus
   run --separate-stderr paint-convert "$corpus/qtx/two.qtx" -o out.xml
   [ "$status" -eq 0 ] # the standard has a geometry
-  [[ $stderr == *'the viewing "%R SAV SCE UV Inc" has no aspecular angle, and its readings are left out: give --viewing'* ]]
+  [[ $stderr == *'the viewing "%R SAV SCE UV Inc" has no aspecular angle, and its readings are left out: give paint-convert --viewing'* ]]
   paint-convert -q --viewing SCE=45as15 "$corpus/qtx/two.qtx" --to csv >out.csv
   [ "$(cut -d, -f2 out.csv | tail -n +2 | paste -sd' ')" = "45as45 45as15" ]
   for wrong in SCE=front =45as45 front; do

@@ -366,7 +366,7 @@ lightness() { sed -n 2p | cut -d, -f5 | xargs printf '%.3f'; }
   flat 2.2 45as15 >bright.csv
   run --separate-stderr paint-convert bright.csv --to csv
   [ "$status" -eq 3 ]
-  [[ "$stderr" == *'"x" has 2.2 at 45as15, which may be either: give --scale percent'* ]]
+  [[ "$stderr" == *'"x" has 2.2 at 45as15, which may be either: give paint-convert --scale percent'* ]]
   run --separate-stderr paint-convert -k bright.csv --to csv
   [ "$status" -eq 1 ]
   [ "${#lines[@]}" -eq 1 ]

@@ -125,10 +125,12 @@ class Run {
 
   void note(const Answer& answer) {
     fits_.push_back(answer_json(answer));
-    if (!is_improved(answer, request_.fit) || !answer.fit.converged) negative_ = true;
+    const bool negative = !is_improved(answer, request_.fit) || !answer.fit.converged;
+    negative_ = negative_ || negative;
     if (!answer.fit.converged)
       session_.warn(fmt::format("{}: not converged: the best paint found is written", answer.name));
-    if (++told_ <= kNamesShown) session_.say(answer_line(answer));
+    if (++told_ <= kNamesShown)
+      negative ? session_.say_verdict(answer_line(answer)) : session_.say(answer_line(answer));
     if (request_.single)
       session_.say(
           fmt::format("  at light {}, view {}: {:.2f} to {:.2f}; one geometry can always be met, the others pay",

@@ -113,8 +113,9 @@ class SeamRun {
     json["views"] = stage_.views.size();
     json["seam"] = places_json(*answer);
     fits_.push_back(std::move(json));
-    if (!is_improved(*answer, request_.fit) || !answer->fit.converged) negative_ = true;
-    session_.say(answer_line(*answer));
+    const bool negative = !is_improved(*answer, request_.fit) || !answer->fit.converged;
+    negative_ = negative_ || negative;
+    negative ? session_.say_verdict(answer_line(*answer)) : session_.say(answer_line(*answer));
     GONIO_TRY(writer.write(painted(paint, *answer)));
     return options_.picture.empty() ? Result<void>() : draw(paint, *answer);
   }

@@ -132,9 +132,10 @@ void CxfResolver::place(const CxfColor& color, std::size_t n, std::size_t k) {
   }
   if (angles.empty()) {
     remarks_.note(
-        fmt::format("values of {} geometry have no aspecular angle and were left out: give --viewing GEOMETRY, "
-                    "such as 45as45, to take them as that",
-                    specification.other.empty() ? "unstated" : specification.other),
+        fmt::format(
+            "values of {} geometry have no aspecular angle and were left out: give paint-convert --viewing GEOMETRY, "
+            "such as 45as45, to take them as that",
+            specification.other.empty() ? "unstated" : specification.other),
         open_->paint.name);
     return;
   }
@@ -162,10 +163,10 @@ color::ViewingCondition CxfResolver::stated(const CxfSpecification& specificatio
   const bool silent = specification.condition.illuminant.empty() || specification.condition.observer_deg == 0;
   const color::ViewingCondition condition = completed(specification.condition, options_, {"D65", 10});
   if (silent && (options_.illuminant.empty() || options_.observer_deg == 0))
-    remarks_.note(
-        fmt::format("illuminant or observer is not stated: taken as {}/{}; give --illuminant and --observer if not",
-                    condition.illuminant, condition.observer_deg),
-        open_->paint.name);
+    remarks_.note(fmt::format("illuminant or observer is not stated: taken as {}/{}; give paint-convert --illuminant "
+                              "and --observer if not",
+                              condition.illuminant, condition.observer_deg),
+                  open_->paint.name);
   return condition;
 }
 

@@ -79,9 +79,10 @@ void RecordImport::make_paint(SpectralRecord& record) {
   const bool silent = record.condition.illuminant.empty() || record.condition.observer_deg == 0;
   const color::ViewingCondition condition = completed(record.condition, options_, {"D65", 10});
   if (silent && (options_.illuminant.empty() || options_.observer_deg == 0))
-    remarks_.note(fmt::format("colors of spectra are those under {}/{}: --illuminant and --observer choose others",
-                              condition.illuminant, condition.observer_deg),
-                  "");
+    remarks_.note(
+        fmt::format("colors of spectra are those under {}/{}: paint-convert --illuminant and --observer choose others",
+                    condition.illuminant, condition.observer_deg),
+        "");
   for (double& value : record.values) value *= units_[static_cast<std::size_t>(record.scale)];
   const std::optional<color::Lab> lab = color_of(record, *record.geometry, condition);
   if (!lab) return;

@@ -42,7 +42,7 @@ std::string reflectance(double value) {
   return fmt::format("{:.4g}", value);
 }
 
-constexpr const char* kRemedy = "give --scale percent, or --scale factor where 1 is the perfect diffuser";
+constexpr const char* kRemedy = "give paint-convert --scale percent, or --scale factor where 1 is the perfect diffuser";
 constexpr const char* kOtherScale = "give the other scale, or leave --scale out";
 
 }  // namespace
@@ -172,9 +172,10 @@ Result<double> ScaleJudge::unit_of_format(const std::string& format, Scale defin
   }
   if (percent && !is_told_by_lab() && paints_ > 0 && brightest_ <= kDarkest)
     remarks.note(
-        fmt::format("{} has reflectances in percent, of which none is above {}: give --scale factor if they are "
-                    "factors",
-                    format, reflectance(brightest_)),
+        fmt::format(
+            "{} has reflectances in percent, of which none is above {}: give paint-convert --scale factor if they are "
+            "factors",
+            format, reflectance(brightest_)),
         "");
   else if (percent)
     note_dark(remarks);
@@ -202,7 +203,9 @@ Result<double> ScaleJudge::unit(Scale stated, Scale option, Remarks& remarks) {
     return 0.01;
   }
   if (impossible_ == 0 && first_bright_.empty()) {
-    remarks.note("reflectances were read as factors, where 1 is the perfect diffuser: give --scale percent if not", "");
+    remarks.note(
+        "reflectances were read as factors, where 1 is the perfect diffuser: give paint-convert --scale percent if not",
+        "");
     return 1;
   }
   if (2 * impossible_ >= paints_ && impossible_ > 0) {
@@ -210,12 +213,13 @@ Result<double> ScaleJudge::unit(Scale stated, Scale option, Remarks& remarks) {
     if (kMixed * dark_ >= paints_)
       return input_error(
           "reflectances are written as percent and as factors: {}, which as a factor is more than paint reflects, and "
-          "{}, which in percent is nearly black, as {} of {} paints are: split the file, or give --scale percent if "
+          "{}, which in percent is nearly black, as {} of {} paints are: split the file, or give paint-convert --scale "
+          "percent if "
           "they are so dark",
           first_impossible_, first_dark_, dark_, paints_);
     note_dark(remarks);
     remarks.note(fmt::format("reflectances were read as percent: as factors, {} of {} paints would reflect more than "
-                             "paint can; give --scale factor if not",
+                             "paint can; give paint-convert --scale factor if not",
                              impossible_, paints_),
                  "");
     return 0.01;
@@ -241,10 +245,11 @@ color::Xyz XyzScale::scaled(const color::Xyz& xyz) {
 void XyzScale::finish(Remarks& remarks) const {
   constexpr double kBlack = 1.25;  // of 100: where no reading of a file is brighter, all are nearly black
   if (!is_given_ && brightest_ > 0 && brightest_ <= kBlack)
-    remarks.note(fmt::format("XYZ were read from 0 to 100, as the format has them, and no Y is above {}: give --scale "
-                             "factor if they go from 0 to 1, --scale percent if all are that dark",
-                             reflectance(brightest_)),
-                 "");
+    remarks.note(
+        fmt::format("XYZ were read from 0 to 100, as the format has them, and no Y is above {}: give "
+                    "paint-convert --scale factor if they go from 0 to 1, --scale percent if all are that dark",
+                    reflectance(brightest_)),
+        "");
 }
 
 void note_uncovered(double held_share, std::string_view example, Remarks& remarks) {
