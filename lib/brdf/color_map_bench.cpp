@@ -1,6 +1,6 @@
 // A color map by isolines (two dimensions) against a table over all three angles of a pair of directions, and against
 // measured pairs that are interpolated at every pixel, for the same flake paint: time of a lookup beside its error.
-// [Kirchner] goniochrome-accuracy(7), COLOR MAPS
+// [Kirchner] goniochrome-accuracy(7), "COLOR MAPS"
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

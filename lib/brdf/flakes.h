@@ -1,5 +1,5 @@
 // The flakes of a paint as its lobes have them: each flake is a mirror that shows one direction, drawn from the cosine
-// power of its lobe, so that the mean over many flakes is the lobe. goniochrome-flakes(7), MODEL.
+// power of its lobe, so that the mean over many flakes is the lobe. goniochrome-flakes(7), "MODEL".
 #pragma once
 
 #include <memory>

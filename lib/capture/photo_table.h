@@ -1,5 +1,5 @@
 // The table of the photographs of a surface: which file, where the light and the camera were, and the exposure.
-// fit-sbrdf(1), TABLE.
+// fit-sbrdf(1).
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
 // Paints as tables in text (CSV), read and written as a stream. A long table has one row for each sample and geometry,
 // `sample,geometry,illuminant,observer,L,a,b`. A wide table has one row for each sample,
 // `sample,illuminant,observer,L15,a15,b15,...`. A long table may also have spectra, in columns named by their
-// wavelengths. goniochrome-paint(5), TABLES.
+// wavelengths. goniochrome-paint(5), "TABLES".
 #pragma once
 
 #include <memory>

@@ -21,12 +21,12 @@ struct Importer {
 // The workbooks (XLSX) of multi-angle instruments and their programs. Tables of colors and of spectra are found on all
 // sheets by their headings. A paint is a name and, where there is one, a date, and may stand on several sheets. Where a
 // geometry has a spectrum and no Lab, the Lab is integrated from it; where it has both and they disagree, the Lab is
-// taken and a remark tells by how much. Errors name file, sheet and row. goniochrome-paint(5), WORKBOOKS.
+// taken and a remark tells by how much. Errors name file, sheet and row. goniochrome-paint(5), "WORKBOOKS".
 bool looks_workbook(std::string_view head);
 Result<ImportedPaints> read_workbook(InputFile input, const ImportOptions& options);
 
 // QTX, the exchange format of color quality programs: a section for each standard and batch, whose spectrum is percent.
-// The viewing is stated in words. goniochrome-paint(5), FILES OF INSTRUMENTS; so are those below.
+// The viewing is stated in words. goniochrome-paint(5), "FILES OF INSTRUMENTS"; so are those below.
 bool looks_qtx(std::string_view head);
 Result<ImportedPaints> read_qtx(InputFile input, const ImportOptions& options);
 

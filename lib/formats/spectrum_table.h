@@ -1,4 +1,5 @@
-// Tables of spectra in text (CSV): lights or reflectances, one in each column. goniochrome-paint(5), TABLES OF SPECTRA.
+// Tables of spectra in text (CSV): lights or reflectances, one in each column.
+// goniochrome-paint(5), "TABLES OF SPECTRA".
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // Surfaces that are kept as EXR files: the color map of a paint, which gives its color for two angles, and the texture
-// of a surface whose reflection differs from point to point. goniochrome-paint(5), COLOR MAPS.
+// of a surface whose reflection differs from point to point. goniochrome-paint(5), "COLOR MAPS".
 #pragma once
 
 #include <string>

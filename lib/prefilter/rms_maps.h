@@ -1,5 +1,5 @@
 // The mean square of the radiance by the lobes of an environment, from which the grain of flakes follows that show
-// single directions of it. goniochrome-flakes(7), LIGHT.
+// single directions of it. goniochrome-flakes(7), "LIGHT".
 #pragma once
 
 #include "prefilter/prefilter.h"

@@ -1,5 +1,5 @@
 // Tolerances: the limits of quantities at geometries, as a table of text; whether a comparison keeps them, in words
-// that a painter understands; and the paints that lie on their limits. goniochrome-paint(5), LIMITS.
+// that a painter understands; and the paints that lie on their limits. goniochrome-paint(5), "LIMITS".
 #pragma once
 
 #include <optional>

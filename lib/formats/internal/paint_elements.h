@@ -1,4 +1,4 @@
-// The elements of paint XML, for the reader. goniochrome-paint(5), PAINT XML.
+// The elements of paint XML, for the reader. goniochrome-paint(5), "PAINT XML".
 #pragma once
 
 #include <algorithm>

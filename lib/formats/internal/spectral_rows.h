@@ -43,7 +43,7 @@ Result<void> check_not_negative(const std::vector<double>& factors);
 Result<void> sort_wavelengths(std::vector<WavelengthColumn>& columns);
 
 // Finds the scale of a file's reflectances from all of its readings together. A single value tells nothing: 2 is a dark
-// paint in percent, and the gloss of a bright one in factors. goniochrome-paint(5), REFLECTANCES.
+// paint in percent, and the gloss of a bright one in factors. goniochrome-paint(5), "REFLECTANCES".
 class ScaleJudge {
  public:
   // A reading of a paint: its values, and L* where the file states it beside them. The readings of a paint stand

@@ -1,5 +1,5 @@
 // The element <tilts> of a paint: tilted lobes that stand for its color map. It has a namespace of its own, so that
-// readers that do not know it keep it as they keep every other vocabulary. goniochrome-paint(5), TILTED LOBES.
+// readers that do not know it keep it as they keep every other vocabulary. goniochrome-paint(5), "TILTED LOBES".
 #pragma once
 
 #include <string>

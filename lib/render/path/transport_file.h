@@ -1,4 +1,4 @@
-// Transports in the EXR of a picture, beside its buffers. goniochrome-paint(5), Transport files.
+// Transports in the EXR of a picture, beside its buffers. goniochrome-paint(5), "TRANSPORTS".
 #pragma once
 
 #include <optional>
