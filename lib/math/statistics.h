@@ -34,4 +34,13 @@ inline double percentile_95(std::vector<double> values) {
   return ranked(std::move(values), rank);
 }
 
+struct Range {
+  double low, high;
+};
+
+// The range of one standard error of percentile_95() of a population, from values that were drawn from it without
+// return, by their ranks: either end is passed with a probability of .159 at most. The upper end is infinite where the
+// values are too few, as below 36 of a large population.
+Range percentile_95_range(std::vector<double> values, std::size_t population);
+
 }  // namespace goniochrome::math

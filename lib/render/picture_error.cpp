@@ -41,7 +41,7 @@ PixelSample sampled_pixels(const Gbuffer& g, const Scene& scene, int count, std:
   }
   std::vector<TexturePlace> places;
   if (scene.layer != nullptr) places = scene.layer->filtered_places(g);
-  PixelSample sample;
+  PixelSample sample{{}, {}, visible.size()};
   for (const std::size_t i : drawn(visible.size(), static_cast<std::size_t>(count), seed)) {
     const auto [x, y] = visible[i];
     sample.places.push_back(visible[i]);
@@ -50,26 +50,32 @@ PixelSample sampled_pixels(const Gbuffer& g, const Scene& scene, int count, std:
   return sample;
 }
 
+PictureError error_of(const PixelSample& sample, const std::vector<double>& de00) {
+  PictureError error;
+  error.checked_pixels = static_cast<int>(de00.size());
+  error.visible_pixels = sample.visible;
+  if (de00.empty()) return error;
+  const auto worst = std::ranges::max_element(de00);
+  const std::array<int, 2>& place = sample.places[static_cast<std::size_t>(worst - de00.begin())];
+  error.worst_x = place[0], error.worst_y = place[1];
+  error.de00_mean = math::mean(de00), error.de00_max = *worst;
+  error.de00_p95 = percentile_95(de00);
+  error.p95_range = math::percentile_95_range(de00, sample.visible);
+  return error;
+}
+
 PictureError picture_error(const Frame& frame, const Scene& scene, const Surroundings& around, double white_luminance,
                            int count, std::uint64_t seed) {
   const Stopwatch clock;
   const double white = white_luminance > 0 ? white_luminance : 1;  // in the dark all is black
   const PixelSample sample = sampled_pixels(*frame.gbuffer, scene, count, seed);
-  const std::vector<std::array<int, 2>>& chosen = sample.places;
   const std::vector<color::Rgb> truth = exact_radiance(sample.points, scene, effects_of(scene), around);
-
-  PictureError error;
-  error.checked_pixels = static_cast<int>(chosen.size());
   std::vector<double> de00;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const float* pixel = frame.centers.pixel(chosen[i][0], chosen[i][1]);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const float* pixel = frame.centers.pixel(sample.places[i][0], sample.places[i][1]);
     de00.push_back(seen_difference({pixel[0], pixel[1], pixel[2]}, truth[i], white));
-    error.de00_mean += de00.back() / static_cast<double>(chosen.size());
-    if (de00.back() <= error.de00_max) continue;
-    error.de00_max = de00.back();
-    error.worst_x = chosen[i][0], error.worst_y = chosen[i][1];
   }
-  error.de00_p95 = percentile_95(std::move(de00));
+  PictureError error = error_of(sample, de00);
   error.time_s = clock.elapsed_s();
   return error;
 }

@@ -122,17 +122,9 @@ class Judge {
 
   TruthError error(const Scene& scene) const {
     TruthError error;
-    error.total.checked_pixels = static_cast<int>(truth_.size());
-    error.total.de00_p95 = total_;
+    error.total = error_of(sample_, values(&Judge::total));
     error.standard_error = noise_;
     error.sharp = is_sharp();
-    for (std::size_t i = 0; i < truth_.size(); ++i) {
-      const double de00 = total(i);
-      error.total.de00_mean += de00 / static_cast<double>(truth_.size());
-      if (de00 <= error.total.de00_max) continue;
-      error.total.de00_max = de00;
-      error.total.worst_x = sample_.places[i][0], error.total.worst_y = sample_.places[i][1];
-    }
     error.shares.prefilter = percentile(&Judge::prefilter);
     error.shares.occlusion = percentile(&Judge::occlusion);
     error.shares.bounce = percentile(&Judge::bounce);
@@ -209,11 +201,12 @@ class Judge {
     });
   }
 
-  double percentile(double (Judge::*of)(std::size_t) const) const {
+  std::vector<double> values(double (Judge::*of)(std::size_t) const) const {
     std::vector<double> values;
     for (std::size_t i = 0; i < truth_.size(); ++i) values.push_back((this->*of)(i));
-    return percentile_95(std::move(values));
+    return values;
   }
+  double percentile(double (Judge::*of)(std::size_t) const) const { return percentile_95(values(of)); }
   // The change as plans have it.
   double worth(const RayEffects& without) const {
     constexpr RayEffects kAll{true, true, true};

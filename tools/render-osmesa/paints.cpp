@@ -53,7 +53,7 @@ Result<std::size_t> place_of(const std::string& file, const std::string& name, c
     if (choice.takes(names[i])) places.push_back(i), met.push_back(names[i]);
   if (places.size() == 1) return places.front();
   if (places.empty())
-    return usage_error("{} holds no paint \"{}\": {}it holds {}", file, name, nearest_of(name, names), listed(names));
+    return input_error("{} holds no paint \"{}\": {}it holds {}", file, name, nearest_of(name, names), listed(names));
   return usage_error("{}#{} means {} paints, and one is wanted: write {}#NAME for one of them: {}", file, name,
                      places.size(), file, listed(met));
 }

@@ -160,7 +160,7 @@ near() {
 @test "--check agrees with the reference integrator where nothing is approximated" {
   run render-osmesa --mesh panels.obj --light 20,30 --light -1,1,1,0.5,0.5,0.2 -p paints.xml#red $front --effects all,-rays --check 100 -o out.exr --report r.json
   [ "$status" -eq 0 ]
-  [[ "$output" =~ "dE00 to the reference: mean 0.00, p95 0.00, max 0.00" ]]
+  [[ "$output" =~ "dE00 to the reference: mean 0.00, p95 0.00 (0.00 to 0.00), max 0.00" ]]
   grep -q '"checked_pixels": 100' r.json
 }
 
@@ -196,7 +196,7 @@ refused() {
 @test "mistakes in part and paint names are answered with what there is" {
   refused 2 'no part or material "midle": did you mean "middle"? its parts are left, middle, right; its materials are lacquer, glass' \
     --mesh panels.obj $light --part midle=paints.xml#red
-  refused 2 'holds no paint "rde": did you mean "red"? it holds red, green, white, bare' --mesh panels.obj $light -p paints.xml#rde
+  refused 3 'holds no paint "rde": did you mean "red"? it holds red, green, white, bare' --mesh panels.obj $light -p paints.xml#rde
   refused 2 'paints.xml#*e* means 4 paints, and one is wanted: write paints.xml#NAME for one of them: red, green' \
     --mesh panels.obj $light --part 'middle=paints.xml#*e*'
   render-osmesa -q --size 32x32 --mesh panels.obj $light -p paints.xml#red --part 'middle=paints.xml#gr*' -o one.exr

@@ -30,24 +30,17 @@ namespace {
 // Pixels that the truth of each effect is measured at; it takes an integration for each of them.
 constexpr int kMostTruth = 100;
 
-void check(const Options& options, const render::Frame& frame, const render::Scene& scene, const Source& source,
-           double white, cli::Session& session) {
+cli::Verdict check(const Options& options, const render::Frame& frame, const render::Scene& scene, const Source& source,
+                   double white, cli::Session& session) {
   session.progress(fmt::format("checking {} pixels", options.check));
   const envmap::Environment* environment = source.environment ? &*source.environment : nullptr;
   const render::PictureError error =
       render::picture_error(frame, scene, environment, white, options.check, session.common().seed);
-  session.results()["error"] = {{"against", "model"},
-                                {"de00_mean", json_number(error.de00_mean)},
-                                {"de00_p95", json_number(error.de00_p95)},
-                                {"de00_max", json_number(error.de00_max)},
-                                {"checked_pixels", error.checked_pixels},
-                                {"worst_x", error.worst_x},
-                                {"worst_y", error.worst_y},
-                                {"time_s", error.time_s},
-                                {"source", source.name}};
-  session.say(fmt::format("dE00 to the reference: mean {:.2f}, p95 {:.2f}, max {:.2f} at {},{} ({} pixels, {:.1f} s)",
-                          error.de00_mean, error.de00_p95, error.de00_max, error.worst_x, error.worst_y,
+  session.results()["error"] = error_json(error, "model", source.name);
+  session.say(fmt::format("dE00 to the reference: mean {:.2f}, p95 {}, max {:.2f} at {},{} ({} pixels, {:.1f} s)",
+                          error.de00_mean, told_p95(error), error.de00_max, error.worst_x, error.worst_y,
                           error.checked_pixels, error.time_s));
+  return tell_verdict(error, session.common().tolerance, session);
 }
 
 // The frame as it is without the effects of rays, which the model does not know.
@@ -105,6 +98,7 @@ class Shooting {
   // Nobody asked how accurate the picture is to be, nor how long it may take.
   bool is_quick() const;
   void tell_noise();
+  void tell(bool explains, const std::string& line) const;
   void tell_rays();
   Result<void> look(render::Renderer& renderer);
   Result<render::Plan> load(render::Renderer& renderer, const DressedMesh& dress);
@@ -282,19 +276,27 @@ Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Disp
   return view.trace_again ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }
 
+// Says a line, which --quiet keeps where it explains an exit status.
+void Shooting::tell(bool explains, const std::string& line) const {
+  explains ? session_.say_verdict(line) : session_.say(line);
+}
+
 // Tells the effects of rays that an engine without rays was given.
 void Shooting::tell_rays() {
   const render::CorrectionNoise& rays = frame_.rays;
   if (!plan_.effects.rays.any() || (rays.dark && !plan_.effects.rays.floor)) return;
-  stopped_ |= session_.common().time_limit_s > 0 && session_.common().tolerance_given && !rays.reached;
   session_.results()["rays"] = {{"noise_de00_p95", json_number(rays.de00_p95)},
                                 {"samples", rays.samples},
                                 {"free_share", rays.free_share},
                                 {"reached", rays.reached},
                                 {"ms", rays.ms}};
-  session_.say(fmt::format(
-      "rays: {:.0f} samples a point in {:.0f} ms, errors dE00 {:.2f} (p95){}", rays.samples, rays.ms, rays.de00_p95,
-      rays.reached ? "" : fmt::format(", stopped before it was within {:.3g}", plan_.effects.ray_noise_de00)));
+  const bool late = session_.common().time_limit_s > 0 && session_.common().tolerance_given && !rays.reached;
+  stopped_ |= late;
+  tell(
+      late,
+      fmt::format(
+          "rays: {:.0f} samples a point in {:.0f} ms, errors dE00 {:.2f} (p95){}", rays.samples, rays.ms, rays.de00_p95,
+          rays.reached ? "" : fmt::format(", stopped before it was within {:.3g}", plan_.effects.ray_noise_de00)));
 }
 
 bool Shooting::is_quick() const {
@@ -308,7 +310,8 @@ void Shooting::tell_noise() {
   const render::Noise& noise = *frame_.noise;
   all_reached_ = all_reached_ && noise.reached;
   const bool by_time_alone = session_.common().time_limit_s > 0 && !session_.common().tolerance_given;
-  stopped_ |= !noise.reached && !request_.plan.quick && !by_time_alone;
+  const bool late = !noise.reached && !request_.plan.quick && !by_time_alone;
+  stopped_ |= late;
   Json& results = session_.results();
   results["noise_de00_p95"] = json_number(noise.de00_p95);
   results["noise_de00_mean"] = json_number(noise.de00_mean);
@@ -321,10 +324,11 @@ void Shooting::tell_noise() {
         "paths are also aimed at bright places of the surface, such as a wall beside a lamp: the mean square "
         "of what a direction brings to a matt surface is predicted to be {:.1f} times smaller\n",
         noise.places_gain));
-  session_.say(fmt::format(
-      "noise: dE00 p95 {:.2f}, mean {:.2f} after {:.0f} samples a pixel in {:.1f} s{}", noise.de00_p95, noise.de00_mean,
-      noise.samples_mean, noise.time_s,
-      noise.reached ? "" : fmt::format(", stopped before it was within {}", shortest(session_.common().tolerance))));
+  tell(late, fmt::format("noise: dE00 p95 {:.2f}, mean {:.2f} after {:.0f} samples a pixel in {:.1f} s{}",
+                         noise.de00_p95, noise.de00_mean, noise.samples_mean, noise.time_s,
+                         noise.reached ? ""
+                                       : fmt::format(", stopped before it was within {}",
+                                                     shortest(session_.common().tolerance))));
 }
 
 Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& display) {
@@ -389,10 +393,8 @@ Result<cli::Verdict> Shooting::check_picture() {
   const bool traced =
       frame_.rays.samples > 0 || plan_.effects.rays.any() || (stage_.rays && stage_.rays->absent.empty());
   const bool truth = options_.check_against == "truth" || (options_.check_against == "auto" && traced);
-  if (!truth || stage_.gbuffer) {
-    check(options_, open_frame(frame_), stage_.scene, stage_.source, white_.luminance, session_);
-    return cli::Verdict::kDone;
-  }
+  if (!truth || stage_.gbuffer)
+    return check(options_, open_frame(frame_), stage_.scene, stage_.source, white_.luminance, session_);
   session_.progress(fmt::format("checking {} pixels", options_.check));
   render::TruthRequest request;
   request.environment = stage_.source.environment ? &*stage_.source.environment : nullptr;
@@ -405,8 +407,7 @@ Result<cli::Verdict> Shooting::check_picture() {
   request.whole = by_rays();
   GONIO_ASSIGN(const render::TruthError error,
                render::truth_error(frame_, over_floor(true), plan_.effects.rays, request));
-  tell_truth(error, stage_.source.name, session_.common().tolerance, session_);
-  return error.total.de00_p95 > session_.common().tolerance ? cli::Verdict::kNegative : cli::Verdict::kDone;
+  return tell_truth(error, stage_.source.name, session_.common().tolerance, session_);
 }
 
 }  // namespace

@@ -77,13 +77,31 @@ decided() { grep -A4 "\"effect\": \"$1\"" auto.json | grep -q "\"decision\": \"$
 # Forced out, the error that the check shows is the one that the plan predicted, within a factor of 2.
 @test "--check tells what the plan left out" {
   run render-osmesa $view --check 5 -p fitted.xml#candy_red --env studio.env.exr --effects all,-rays,-mirror -o off.exr --report off.json
-  [ "$status" -eq 0 ]
+  [ "$status" -le 1 ]
   [[ "$output" =~ left\ out:\ dE00\ p95\ [1-9] ]]
   for key in de00_mean de00_p95 de00_max shading_ms shading_all_ms; do
     sed -n '/"left_out": {/,/}/p' off.json | grep -q "\"$key\": [0-9]"
   done
   render-osmesa -q $view --check 5 -p fitted.xml#candy_red --env studio.env.exr --effects all,-rays -o all.exr --report all.json
   sed -n '/"left_out": {/,/}/p' all.json | grep -qE '"de00_max": 0(\.0)?,?$'
+}
+
+@test "--check against the model has a verdict, and tells how well the checked pixels know it" {
+  off="$view -p fitted.xml#candy_red --env studio.env.exr --effects all,-rays,-lobes"
+  run render-osmesa -q $off --check 60,model -o off.exr --report off.json
+  echo "$output"
+  [ "$status" -eq 1 ]
+  [[ $output == *"the picture is farther from the reference than --tolerance 1 allows"* ]]
+  jq -e '.results.error | .de00_p95_low < .de00_p95 and .de00_p95 < .de00_p95_high' off.json
+  # The range of a part of the pixels holds the figure of all of them, within two standard errors.
+  render-osmesa -q $off --tolerance 100 --check 100000,model -o off.exr --report all.json
+  jq -e '.results.error | .de00_p95_low == .de00_p95 and .de00_p95 == .de00_p95_high' all.json
+  jq -e --slurpfile all all.json '.results.error as $e | $all[0].results.error.de00_p95 as $p |
+    $p > 2 * $e.de00_p95_low - $e.de00_p95 and $p < 2 * $e.de00_p95_high - $e.de00_p95' off.json
+  # A tolerance within the range is left open.
+  run render-osmesa $off --tolerance "$(jq .results.error.de00_p95 off.json)" --check 60,model -o off.exr
+  [ "$status" -eq 0 ]
+  [[ $output == *"60 pixels leave it open whether p95 is within --tolerance"*"--check 240 narrows it"* ]]
 }
 
 # Every pixel is checked: near the outline an effect is worth ten times its mean, and few pixels do not tell its 95th
