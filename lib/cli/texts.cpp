@@ -70,8 +70,7 @@ std::string domain_sentences(const Option& option) {
   else if (has_high)
     add(fmt::format("{:.15g} or less", option.high));
   if (!text.empty()) text = " Value:" + text + ".";
-  if (std::holds_alternative<std::vector<std::string>*>(option.target))
-    text += " Repeatable.";
+  if (std::holds_alternative<std::vector<std::string>*>(option.target)) text += " Repeatable.";
   return text;
 }
 
@@ -224,8 +223,7 @@ std::string man_page(const ToolSpec& spec) {
   }
   if (!spec.report.empty()) {
     text += ".SH REPORT\nThe object\n.I results\nof\n.B \\-\\-report\nholds these keys:\n";
-    for (const ReportKey& key : spec.report)
-      text += fmt::format(".TP\n.B {}\n{}\n", roff(key.key), roff(sentence(key.meaning)));
+    for (const ReportKey& key : spec.report) text += fmt::format(".TP\n.B {}\n{}.\n", roff(key.key), roff(key.meaning));
   }
   text +=
       ".SH EXIT STATUS\n0: done. 1: done, and the verdict is negative. 2: the command line is wrong. 3: an input is "

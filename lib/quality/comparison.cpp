@@ -33,6 +33,10 @@ bool has_spectra(const paint::Paint& paint) {
   return paint.measurement && !paint.measurement->spectra.empty();
 }
 
+void add_missing(const std::string& at, const std::string& quantity, Comparison& comparison) {
+  comparison.missing.push_back({at, quantity, std::numeric_limits<double>::quiet_NaN()});
+}
+
 // The mean of each difference, and the one of the largest size.
 void summarize(Comparison& comparison, std::size_t formulas) {
   AngleDifference &mean = comparison.mean, &largest = comparison.largest;
@@ -48,11 +52,19 @@ void summarize(Comparison& comparison, std::size_t formulas) {
   }
 }
 
-void add_indices(const Subject& standard, const Subject& sample, std::vector<Deviation>& others) {
+// Indices of a sample that lacks 15, 45 or 110 degrees, which its standard has, would be those of a fitted curve.
+void add_indices(const Subject& standard, const Subject& sample, Comparison& comparison) {
+  using Source = paint::PaintMetrics::Source;
+  const bool lacks = standard.metrics.source == Source::kRows && sample.metrics.source == Source::kFitted;
+  std::vector<Deviation>& others = comparison.others;
   for (const char* name : {"flop_index", "chroma_index", "hue_shift_index", "hue_travel_deg"}) {
     const auto value = paint::find_metric(name)->value;
     const double difference = sample.metrics.*value - standard.metrics.*value;
-    if (std::isfinite(difference)) others.push_back({kWhole, name, difference});
+    if (!std::isfinite(difference)) continue;
+    if (lacks)
+      add_missing(kWhole, name, comparison);
+    else
+      others.push_back({kWhole, name, difference});
   }
   for (const paint::GlossReading& gloss : sample.paint.gloss) {
     const auto other = std::ranges::find(standard.paint.gloss, gloss.angle_deg, &paint::GlossReading::angle_deg);
@@ -60,10 +72,6 @@ void add_indices(const Subject& standard, const Subject& sample, std::vector<Dev
       others.push_back(
           {kWhole, fmt::format("gloss{}", shortest(gloss.angle_deg)), gloss.gloss_units - other->gloss_units});
   }
-}
-
-void add_missing(const std::string& at, const std::string& quantity, Comparison& comparison) {
-  comparison.missing.push_back({at, quantity, std::numeric_limits<double>::quiet_NaN()});
 }
 
 // Adds what a reading of the standard would tell and the sample has no reading for; mean and largest lack it too.
@@ -159,7 +167,7 @@ Result<Comparison> compare_in_one_light(const Subject& standard, const Subject& 
                        names_of_rows(standard.rows), names_of_rows(sample.rows));
   add_missing_rows(standard, sample, options, comparison);
   summarize(comparison, options.formulas.size());
-  add_indices(standard, sample, comparison.others);
+  add_indices(standard, sample, comparison);
   if (standard.paint.measurement && sample.paint.measurement)
     add_textures(*standard.paint.measurement, *sample.paint.measurement, comparison);
   if (standard.paint.measurement) add_missing_textures(*standard.paint.measurement, comparison);

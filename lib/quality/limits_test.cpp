@@ -93,6 +93,9 @@ TEST(Limits, AreNotKeptByReadingsThatTheSampleLacks) {
             "max: dE_ciede2000 has a limit, and 45as110 was not measured");
   EXPECT_STREQ(without_110({}, "mean,dE_cmc:2:1,,1\n").verdict(), "incomplete");
   EXPECT_STREQ(without_110({}, "45as15,dL,-1,1\n").verdict(), "pass") << "the control: no limit there";
+  // A curve through the other angles says nothing of the flop.
+  EXPECT_EQ(without_110({}, "*,flop_index,-1,1\n").excesses.front().words,
+            "paint: flop_index has a limit and was not measured");
   // A limit that is passed comes first.
   const Judged dark = without_110({-2, 0, 0}, "*,dL,-1,1\n");
   EXPECT_STREQ(dark.verdict(), "fail");

@@ -31,7 +31,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
             "of both.");
   spec.heading = "limits";
   spec.option("limits,l", "FILE", "limits.csv", &o.limits, "table of limits by which samples pass or fail")
-      .more("Without it, the limits count that a standard carries. LIMITS describes the table.");
+      .more("Without it, the limits count that a standard carries. \"LIMITS\" describes the table.");
   spec.option("make-limits", "FILE", "limits.csv", &o.make_limits, "make limits of the samples, which were accepted")
       .more(
           "They are the mean of each quantity at each geometry +- --spread standard deviations; dE has an upper limit "
@@ -112,11 +112,13 @@ cli::ToolSpec tool_spec(Options& o) {
       "# Verdicts\nThe verdict of a line is by the limits of that line, and the verdict of the line paint by all of "
       "the sample:\n- pass: every quantity that has a limit keeps it.\n- fail: one of them passes its limit.\n- "
       "incomplete: none of them passes its limit, and one was not measured, as where the sample lacks an angle of its "
-      "standard. The largest and the mean dE are incomplete then, too.\n- a hyphen: no limit applies, and nothing was "
-      "judged.\nThe exit status is 1 where a sample fails or is incomplete. Each reason is a sentence, as in "
+      "standard. The largest and the mean dE and the indices are incomplete then, too.\n- a hyphen: no limit "
+      "applies, and nothing was "
+      "judged.",
+      "The exit status is 1 where a sample fails or is incomplete. Each reason is a sentence, as in "
       "\"45as15: dL -2.1, limit -1.5: too dark near gloss\" or \"45as110: dL has a limit and was not measured\"; the "
       "line of a sample has the first four, and JSON, paint XML and the report have all. --quiet keeps these lines.",
-      "LIMITS: The table has the columns geometry, quantity, low and high, separated by commas, or by semicolons or "
+      "# LIMITS\nThe table has the columns geometry, quantity, low and high, separated by commas, or by semicolons or "
       "tabs, "
       "where numbers may have a decimal comma. The geometry is a name, * for every "
       "geometry of the standard or for the paint, or mean or max for dE over the geometries. The quantity is dL, da, "

@@ -65,6 +65,10 @@ field() {
   grep -q '<span class="incomplete">incomplete</span> batch' page.html
   run ! paint-compare -q -s std.paints.xml -l limits.csv short.paints.xml -o judged.paints.xml
   grep -q 'result="incomplete">45as110: dL has a limit and was not measured' judged.paints.xml
+  # All that a geometry lacks is one reason.
+  printf 'geometry,quantity,low,high\n*,dL,-9,9\n*,da,-9,9\n*,dE,,9\n' >three.csv
+  run paint-compare -q -s std.paints.xml -l three.csv short.paints.xml -o table.tsv
+  [[ ${lines[0]} == *': 45as110: dL, da, dE_ciede2000 have limits and were not measured' ]]
   # Limits that name the angles judge such a sample, and the others are not judged.
   printf 'geometry,quantity,low,high\n45as15,dL,-1.5,1.5\n' >named.csv
   run paint-compare -q -s std.paints.xml -l named.csv short.paints.xml -o table.tsv

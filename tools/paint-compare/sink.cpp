@@ -1,6 +1,8 @@
 #include "sink.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include "base/text.h"
 
@@ -99,10 +101,22 @@ paint::Paint with_verdict(paint::Paint sample, const Judgement& judgement) {
 
 std::vector<std::string> Judgement::words(std::size_t most) const {
   std::vector<std::string> words;
-  for (const quality::Excess& excess : judged.excesses) words.push_back(excess.words);
+  std::map<std::string, std::vector<std::string>> missing;  // quantities by geometry
+  for (const quality::Excess& excess : judged.excesses)
+    if (std::isnan(excess.deviation.value)) missing[excess.deviation.at].push_back(excess.deviation.quantity);
+  for (const char* place : {quality::kMean, quality::kLargest}) missing.erase(place);  // they name the geometries
+  for (const quality::Excess& excess : judged.excesses) {
+    const auto found = missing.find(excess.deviation.at);
+    if (!std::isnan(excess.deviation.value) || found == missing.end() || found->second.size() == 1)
+      words.push_back(excess.words);
+    else if (excess.deviation.quantity == found->second.front())
+      words.push_back(
+          fmt::format("{}: {} have limits and were not measured", found->first, joined(found->second, ", ")));
+  }
   if (words.size() > most) {
+    const std::size_t more = words.size() - most;
     words.resize(most);
-    words.push_back(fmt::format("and {} more", judged.excesses.size() - most));
+    words.push_back(fmt::format("and {} more", more));
   }
   return words;
 }
