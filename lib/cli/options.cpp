@@ -75,8 +75,7 @@ void add_common_options(ToolSpec& spec, CommonOptions& common, const CommonTexts
   spec.option("threads", "N", "4", &common.threads, "number of threads; 0 is one for each core")
       .from(0, 1024)
       .more("The results do not depend on it. 1 needs the fewest threads, where the system allows no more.");
-  spec.flag("quiet,q", &common.quiet, "print nothing but errors")
-      .more("Where the exit status is 1 or 4, warnings and the line that explains it stay.");
+  spec.flag("quiet,q", &common.quiet, "print only errors, and reasons of status 1 and 4");
 }
 
 }  // namespace goniochrome::cli

@@ -213,6 +213,13 @@ TEST(Texts, ThePageOpensWithItsFirstParagraphAndExamples) {
             ".SH DETAILS\n.SS A title\nSecond.\n.PP\nThird.\n");
 }
 
+TEST(Texts, ThePageGivesValuesOfTheReportAsTheyAre) {
+  Values v;
+  ToolSpec spec = table(v);
+  spec.report = {{"status", "optimal or failed"}};
+  EXPECT_NE(man_page(spec).find(".B status\noptimal or failed.\n"), std::string::npos);
+}
+
 int run_tool(const std::vector<std::string>& words, const std::function<Result<Verdict>(Session&)>& run,
              const CommonOptions& common = {}) {
   Values v;

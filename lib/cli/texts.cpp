@@ -226,9 +226,9 @@ std::string man_page(const ToolSpec& spec) {
     for (const ReportKey& key : spec.report) text += fmt::format(".TP\n.B {}\n{}.\n", roff(key.key), roff(key.meaning));
   }
   text +=
-      ".SH EXIT STATUS\n0: done. 1: done, and the verdict is negative. 2: the command line is wrong. 3: an input is "
-      "wrong, a file cannot be read or written, or memory or a thread is missing. 4: a limit stopped the work, and the "
-      "best result is written; 4 goes before 1. 70: a bug. goniochrome(7) has the rules for scripts.\n";
+      ".SH EXIT STATUS\n0: done. 1: done, with a negative verdict. 2: wrong command line. 3: wrong input, a file that "
+      "cannot be read or written, or no memory or thread. 4, before 1: a limit stopped the work, and the best "
+      "result is written. 70: a bug. goniochrome(7) has the rules for scripts.\n";
   std::vector<std::string> pages = spec.see_also;
   for (const char* of_all : {"goniochrome-paint(5)", "goniochrome(7)"})
     if (std::ranges::find(pages, of_all) == pages.end()) pages.emplace_back(of_all);

@@ -73,8 +73,8 @@ void add_light(cli::ToolSpec& spec, Options& o) {
           "Its parts are:\n- WHERE: AZIMUTH,ELEVATION or X,Y,Z toward a lamp far away, or place:X,Y,Z in units of the "
           "mesh.\n- LIGHT: R,G,B or a name as in --spectral, the radiance of a white diffuser that faces the lamp "
           "[1,1,1].\n- EXTENT: the angle of its disc, from 0, a point, to 180 [0.53]. It does not change the light.\nA "
-          "lamp at a place has that extent and light in the middle of the mesh. --engine auto takes the engine path "
-          "for it; cpu and gl draw it as a point, and refuse an extent that is seen.");
+          "lamp at a place has that extent and light in the middle of the mesh, and takes the engine path; cpu and gl "
+          "draw it as a point alone.");
   spec.option("emit", "PART=LIGHT", "Lamp=20,18,15", &o.emissions, "make a part or material shine by itself")
       .more(
           "LIGHT is the radiance of both sides of the part: R,G,B, or a name and a factor, as A*20. It takes the "
@@ -185,9 +185,8 @@ void add_checking(cli::ToolSpec& spec, Options& o) {
           "Differences are CIEDE2000, relative to the brightest white diffuser. AGAINST is truth where rays are "
           "traced, and else model:\n- model: exact lobes of every texel of the image, with nothing in the way of "
           "light.\n- truth: with shadows and bounced light, traced until their standard error is below a tenth of the "
-          "difference or a twentieth of --tolerance.\nThe range behind the 95th percentile (p95) is of one standard "
-          "error of the choice of pixels; four times the pixels halve it. Where p95 is above --tolerance, the exit "
-          "status is 1.");
+          "difference or a twentieth of --tolerance.\nThe range "
+          "behind p95 is its standard error. Where p95 is above --tolerance, the exit status is 1.");
   spec.option("check-source", "FILE", "testdata/studio.exr", &o.check_source,
               "image that a prefiltered environment was made from, if it was moved")
       .more("The engines integral and path use it too.");
@@ -276,7 +275,7 @@ void add_report(cli::ToolSpec& spec) {
        "exposure, display and view of a PNG, and the brightest that a white diffuser can be"},
       {"repairs: normals_made, degenerate_dropped, polygons_split, triangles_turned", "what was mended in the mesh"},
       {"error: de00_p95_low, de00_p95_high",
-       "range of one standard error of de00_p95 by the choice of pixels; null above it where these are too few"},
+       "its range of one standard error; null: too few pixels"},
       {"error: de00_mean, de00_p95, de00_max, checked_pixels, worst_x, worst_y, time_s, source, against",
        "of --check; the source is the image that the reference used"},
       {"error: standard_error, fit", "95th percentiles of the noise of the truth, and of what fits miss of readings"},
