@@ -22,7 +22,7 @@ class OpenFloor {
   OpenFloor(const rays::RayScene& scene, const rays::Float3& eye, const AlongDirection& hidden,
             const AlongDirection& shown, const std::function<color::Rgb(const rays::Float3& place)>& left);
 
-  // What the diffuse part and wide lobes gather of weight 1.
+  // The light that the diffuse part and wide lobes gather, of weight 1.
   GroundColumns columns(const GroundReceiver& point) const;
   // The means about a direction below the horizon, over about so much of the hemisphere; `number` in [0,1).
   rays::Float3 lit(const rays::Float3& from, const rays::Float3& direction, float extent_sr, float number) const;

@@ -149,7 +149,7 @@ class PaintedPoint {
   // The first lobes of exponents up to `sharpest`, no more than `most`. None where the point shows anything but its
   // diffuse part, its mirror and lobes about mirrored(); without_wide() is then not to be asked.
   std::optional<std::vector<WideLobe>> wide_lobes(float sharpest, std::size_t most) const;
-  // The same point without its diffuse part and so many of the first lobes.
+  // This point without its diffuse part and so many of the first lobes.
   PaintedPoint without_wide(std::size_t lobes) const;
 
   const rays::Float3& normal() const { return normal_; }
