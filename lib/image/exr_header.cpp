@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -104,9 +103,9 @@ bool is_value(std::string_view type, std::string_view value) {
   if (type == "chlist") return is_channel_list(Bytes(value));
   if (type == "stringvector") return is_list_of_texts(Bytes(value));
   if (type == "preview") return is_preview(Bytes(value));
-  const auto* const fixed =
-      std::find_if(kSizes.begin(), kSizes.end(), [&](const auto& row) { return row.first == type; });
-  return fixed == kSizes.end() || fixed->second == value.size();
+  for (const auto& [name, size] : kSizes)
+    if (name == type) return size == value.size();
+  return true;
 }
 
 }  // namespace

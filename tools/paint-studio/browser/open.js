@@ -62,6 +62,20 @@ drive("files of every kind are opened", { width: 1400, height: 900 }, async ({ b
     const distance = (a) => a.reduce((sum, x, i) => sum + Math.abs(x - theirs[i]), 0) / theirs.reduce((sum, x) => sum + x, 0);
     return [distance(ours), distance(others)]; })()`);
   check(`the light is that of the tool, and the control is not: ${apart}`, apart[0] <= 0.01 && apart[1] > 0.05);
+  // OpenEXR by the scan-line reader: equal pixels give equal maps.
+  const maps = (name) => value(`studio.opening.filtered(${JSON.stringify(name)}, new Uint8Array(Uint8Array.from(atob("${fs.readFileSync(path.join(folder, name)).toString("base64")}"), (c) => c.charCodeAt(0))))
+    .then(({ numbers }) => crypto.subtle.digest("SHA-256", numbers)).then((digest) => [...new Uint8Array(digest)].join(), (error) => error.message)`);
+  const unpacked = await maps("probe-none.exr");
+  check("OpenEXR is the light of the probe", /^[\d,]+$/.test(unpacked) && unpacked === (await maps("probe.hdr")));
+  for (const name of ["rle", "zips", "zip"]) check(`${name} unpacks to the same`, (await maps(`probe-${name}.exr`)) === unpacked);
+  const crop = await maps("probe-crop.exr");
+  check("a crop of halves stands in its window", crop !== unpacked && crop === (await maps("probe-full.exr")));
+  fs.writeFileSync(path.join(folder, "probe-cut.exr"), fs.readFileSync(path.join(folder, "probe-zip.exr")).subarray(0, -40));
+  for (const [name, what] of [["piz", "PIZ"], ["dwaa", "DWAA"], ["tiles", "tiles"], ["cut", "cut off"]]) {
+    const told = await open(path.join(folder, `probe-${name}.exr`));
+    check(`${name} is refused with a remedy: ${told}`, told.includes(what) && /save it as|fetch it/.test(told));
+  }
+  check(`OpenEXR is opened: ${await open(path.join(folder, "probe-half.exr"))}`, (await value("studio.data.environments.at(-1).name")) === "probe-half");
   check("the light is shown", (await value("studio.stageView.environment")) === (await value("studio.data.environments.length - 1")));
   await shot("open-light");
 

@@ -20,9 +20,15 @@ async function inflated(id, bytesFor = (size) => new Uint8Array(size)) {
   const text = taken(id), pieces = [], piece = 1 << 20;
   for (let at = 0; at < text.length; at += piece) pieces.push(bytesOf(text.slice(at, at + piece)));
   const packed = new Blob(pieces), last = new DataView(await packed.slice(-4).arrayBuffer());
-  const target = bytesFor(last.getUint32(0, true)), reader = packed.stream().pipeThrough(new DecompressionStream("gzip")).getReader();
+  return inflatedInto(bytesFor(last.getUint32(0, true)), packed, "gzip");
+}
+
+// Fills bytes with what is packed. Throws where that is too much or too little.
+async function inflatedInto(target, packed, format) {
+  const reader = packed.stream().pipeThrough(new DecompressionStream(format)).getReader();
   for (let at = 0;;) {
     const { done, value } = await reader.read();
+    if (done && at < target.length) throw new RangeError("packed bytes are missing");
     if (done) return target;
     target.set(value, at);
     at += value.length;

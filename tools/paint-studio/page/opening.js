@@ -52,6 +52,60 @@ async function unzipped(bytes) {
   return parts;
 }
 
+// The scan lines of an OpenEXR file, one after the other and unpacked; null where they are damaged, or not such as
+// platform_exr.cpp reads, which says why. "OpenEXR File Layout", openexr.com
+async function scanLines(bytes) {
+  const view = new DataView(bytes.buffer), places = {}, blockLines = [1, 1, 1, 16];
+  let at = 8;
+  const word = () => {
+    const end = bytes.indexOf(0, at), text = String.fromCharCode(...bytes.subarray(at, end));
+    at = end + 1;
+    return text;
+  };
+  try {
+    for (let name = word(); name !== ""; name = word()) {
+      word();  // the type
+      places[name] = at + 4;
+      at += 4 + view.getUint32(at, true);
+    }
+    const [left, top, right, bottom] = [0, 4, 8, 12].map((i) => view.getInt32(places.dataWindow + i, true)), height = bottom - top + 1, table = at;
+    const packing = bytes[places.compression], lines = blockLines[packing], all = [];
+    let lineBytes = 0;
+    for (at = places.channels; word() !== ""; at += 16) lineBytes += (right - left + 1) * (view.getInt32(at, true) === 1 ? 2 : 4);
+    for (let line = 0; line < height; line += lines) {
+      const place = Number(view.getBigUint64(table + (8 * line) / lines, true)), room = new Uint8Array(lineBytes * Math.min(lines, height - line));
+      const packed = bytes.subarray(place + 8, place + 8 + view.getUint32(place + 4, true));
+      if (view.getInt32(place, true) !== top + line) return null;
+      all.push(room);
+      // A block that packing does not make smaller is stored as it is. Else its bytes at even places come before the others, each as what
+      // it adds to the one before, and 128.
+      if (packed.length === room.length) room.set(packed);
+      else {
+        const steps = new Uint8Array(room.length), odd = (room.length + 1) >> 1;
+        if (packing === 1) unpackRuns(packed, steps);
+        else await inflatedInto(steps, new Blob([packed]), "deflate");
+        for (let i = 1; i < steps.length; ++i) steps[i] += steps[i - 1] - 128;
+        for (let i = 0; i < steps.length; ++i) room[i] = steps[(i & 1 ? odd : 0) + (i >> 1)];
+      }
+    }
+    return new Uint8Array(await new Blob(all).arrayBuffer());
+  } catch {
+    return null;
+  }
+}
+// A count n below 0 comes before -n bytes, and another before one byte that stands n + 1 times.
+function unpackRuns(packed, target) {
+  let to = 0;
+  for (let at = 0; at < packed.length;) {
+    const count = (packed[at++] << 24) >> 24;
+    if (count < 0) target.set(packed.subarray(at, at - count), to);
+    else target.fill(packed[at], to, to + count + 1);
+    at += count < 0 ? -count : 1;
+    to += count < 0 ? -count : count + 1;
+  }
+  if (to !== target.length) throw new RangeError("packed bytes are missing");
+}
+
 class Opening {
   constructor(app, module, code) {
     Object.assign(this, { app, module, code });
@@ -154,6 +208,8 @@ function serveLight() {
     try {
       const engine = await makeEngine(module, (part) => self.postMessage({ part }));
       engine.give(name, bytes);
+      const lines = bytes[0] === 0x76 ? await scanLines(bytes) : null;
+      if (lines) engine.give(`${name}/lines`, lines);
       const answer = engine.ask({ do: "light", name, basis }), numbers = engine.list("numbers");
       self.postMessage({ ...answer, numbers }, [numbers.buffer]);
     } catch (error) {

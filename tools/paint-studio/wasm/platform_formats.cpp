@@ -46,11 +46,7 @@ namespace image {
 Result<ImagePart> read_image(const std::string& path, Inks) {
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
   GONIO_ASSIGN(const std::string content, input.rest(std::string::npos));
-  if (is_exr(content))
-    return input_error(
-        "{}: is OpenEXR, which a page does not read: save it as Radiance HDR (.hdr), or filter it by prefilter-envmap "
-        "and make a page with it",
-        path);
+  if (is_exr(content)) return studio::decoded_exr(content, path);
   return decoded_hdr(content, path);
 }
 std::string image_file(const std::string& path) {
