@@ -5,6 +5,7 @@
 #include "render/gl/disc_texture.h"
 #include "render/gl/gbuffer_shader.h"
 #include "render/gl/shader.h"
+#include "render/gl/shader_parts.h"
 #include "render/internal/maps.h"
 #include "render/internal/product_forms.h"
 #include "render/scene_effects.h"
@@ -12,7 +13,7 @@
 namespace goniochrome::render {
 
 PagePrograms page_programs() {
-  return {for_opengl_es(gbuffer_vertex_shader()), for_opengl_es(gbuffer_fragment_shader(false)),
+  return {for_opengl_es(gbuffer_vertex_shader(true)), for_opengl_es(gbuffer_fragment_shader(true)),
           for_opengl_es(shading_vertex_shader())};
 }
 
@@ -33,7 +34,9 @@ PageShading shading_programs(Effects effects, const color::ReflectionOperator& o
 PageLayers page_layers(Effects effects, const color::ReflectionOperator& op) {
   effects.lights = 1;
   effects.extent = true;
-  return {for_opengl_es(layers_fragment_shader(effects, op)), light_layers(effects), slots_of(effects).light_slot()};
+  const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
+  return {for_opengl_es(layers_fragment_shader(effects, op)), light_layers(effects),
+          map_colors(product_of(effects, forms), forms), slots_of(effects).light_slot()};
 }
 
 Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Effects& effects,

@@ -3,6 +3,7 @@
 // goniochrome-rendering(7), "RENDERING".
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,8 @@ PagePrograms page_programs();
 struct PageLayers {
   std::string layers_fragment;
   std::vector<LightLayer> layers;
-  int light_slot = 0;  // the fourth channel of its weights is the square of the coat's index
+  std::array<color::Rgb, 4> colors;  // of the channels of light as maps hold it
+  int light_slot = 0;                // the fourth channel of its weights is the square of the coat's index
 };
 PageLayers page_layers(Effects effects, const color::ReflectionOperator& op);
 

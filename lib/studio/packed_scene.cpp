@@ -145,8 +145,11 @@ Json packed_layers(const formats::Basis& basis) {
                     {"lamps", layer.of_lamps},
                     {"sampler", layer.sampler},
                     {"shift", layer.shift_slot < 0 ? Json() : Json::array({layer.shift_slot, layer.shift_channel})}});
-  return {{"program", all.layers_fragment},   {"list", std::move(list)},        {"light_slot", all.light_slot},
-          {"at_once", render::kLayersAtOnce}, {"beside", render::kBesideLayer}, {"none", render::kNoLayer}};
+  Json colors = Json::array();
+  for (const color::Rgb& rgb : all.colors) colors.push_back(vector_json(rgb));
+  return {{"program", all.layers_fragment}, {"list", std::move(list)},          {"light_slot", all.light_slot},
+          {"colors", std::move(colors)},    {"at_once", render::kLayersAtOnce}, {"beside", render::kBesideLayer},
+          {"none", render::kNoLayer}};
 }
 
 Json packed_finishes(const formats::Basis& basis, PackedNumbers& numbers) {

@@ -40,17 +40,19 @@ cli::ToolSpec tool_spec(Options& o) {
       "a link that holds the design and how it is seen. A browser keeps the sessions of its last eight tabs.",
       "Files are opened by one button, or dropped or pasted anywhere: paints in all formats of paint-convert(1), whose "
       "first becomes the design, with the error of its fit; meshes in OBJ and glTF, with the files that they name; "
-      "pictures of light in Radiance HDR, which are filtered for the basis of the page; pictures and sessions. The "
-      "readers are those of the tools. OpenEXR, and glTF that is packed by Draco or meshoptimizer, are refused by "
-      "name. "
+      "pictures of light in Radiance HDR and OpenEXR, which are filtered for the basis of the page; pictures and "
+      "sessions. The readers are those of the tools. OpenEXR is read as scan lines without compression or with RLE, "
+      "ZIPS "
+      "or ZIP; others, and glTF that is packed by Draco or meshoptimizer, are refused by name. "
       "Meshes and lights that were opened stay until the page is closed; sessions do not hold them.",
       "All parts of the mesh wear the design, but for those that nobody paints, such as glass and tires: these are "
       "told by their names, as in render-osmesa. A list has all parts, with what was recognized. There, or after a "
       "click on a part, it wears the paint, a second paint, glass, rubber or chrome, or is hidden. The "
       "ground of the environment lies below the mesh as render-osmesa lays it, with the shadow that the mesh throws "
-      "on it for eight turns of the light, between which the page interpolates; a mesh that is opened in the page "
-      "throws none. Beside the traced views of --transport, the mesh itself has no shadows and no light from one part "
-      "to another. It shows no color maps anywhere, and a warning tells how many paints "
+      "on it for eight turns of the light, between which the page interpolates. The page finds the shadow of the mesh "
+      "on itself, and the shadows of meshes and lights that are opened in it, while nothing else is to be done: from "
+      "128 directions, so that it is soft. Parts send no light to each other and to the ground, but in the traced "
+      "views of --transport. The page shows no color maps anywhere, and a warning tells how many paints "
       "have these. Brushed paints take longer to draw. While something moves, and first after each change, slow "
       "computers draw the picture with fewer pixels. Where a picture takes long, the page keeps the light of a view "
       "that "
@@ -74,8 +76,7 @@ cli::ToolSpec tool_spec(Options& o) {
       .more("Each environment must have the lobes of the basis.");
   spec.option("transport", "FILE", "view.exr", &o.transports,
               "traced view of the mesh, made by render-osmesa(1) with --aov transport")
-      .more(
-          "The file needs the lobes of the basis and the parts of the mesh. See Traced views.");
+      .more("The file needs the lobes of the basis and the parts of the mesh. See Traced views.");
   spec.option("basis,b", "FILE", "testdata/b7.basis.xml", &o.basis, "basis that the page fits paints to")
       .more("Without it there are seven lobes, with exponents from 1.3 to 3000, and the mirror.");
   spec.flag("empty", &o.empty, "take a mesh, a light and paints of the tool itself where none is named")

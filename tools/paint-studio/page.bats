@@ -103,6 +103,19 @@ needs_browser() {
     run /usr/bin/python3 "$code/compare.py" "candy_red-$light-shadeless.f32" "ground-$light.exr" "$white" beside
     echo "$light without shadow: $output"
     awk -v shaded="$shaded" -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[1] > 1.5 * shaded && n[2] > 4) }'
+    # The page finds the shadow as well; and that of the mesh on itself, without which the control is.
+    run /usr/bin/python3 "$code/compare.py" "candy_red-$light-found.f32" "ground-$light.exr" "$white" beside
+    echo "$light, shadow found by the page: $output"
+    awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[1] <= 0.6 && n[2] <= 2) }'
+    for what in shaded found; do
+      run /usr/bin/python3 "$code/compare.py" "candy_red-$light-$what.f32" "ground-$light.exr" "$white"
+      echo "$light, mesh, $what: $output"
+      awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[1] <= 1.4 && n[2] <= 7) }'
+    done
+    shaded=${output%% *}
+    run /usr/bin/python3 "$code/compare.py" "candy_red-$light.f32" "ground-$light.exr" "$white"
+    echo "$light, mesh without shadow: $output"
+    awk -v shaded="$shaded" -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[1] > 1.15 * shaded) }'
     # The control: the environment far away, as it is without the ground.
     run /usr/bin/python3 "$code/compare.py" "candy_red-$light-groundless.f32" "ground-$light.exr" "$white" beside
     echo "$light without ground: $output"

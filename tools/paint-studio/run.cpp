@@ -101,8 +101,8 @@ std::string plan_text(const Options& options) {
                                        ", the light of each lobe at every point in as few bits as change a paint by no "
                                        "more than 0.02 dE00",
       options.transports.empty()
-          ? "shadows on the mesh, light from one part to another, and "
-          : "shadows on the mesh and light from one part to another beside the traced views, and ");
+          ? "light from one part to another, and "
+          : "light from one part to another beside the traced views, and ");
 }
 
 }  // namespace

@@ -2,24 +2,59 @@
 
 namespace goniochrome::render {
 
-std::string gbuffer_vertex_shader() {
+namespace {
+
+// The light that a vertex loses, as moments: sums of d and of d d^T over directions, each times its luminance and its
+// part of the sphere. They are those of both sides, as if the surface were a mirror.
+constexpr const char* kMoments = R"(uniform sampler2D moments_0, moments_1, moments_2;
+uniform int moment_columns;  // of these pictures, which have a texel for each vertex; 0: nothing is lost
+out vec4 first;  // x y z, xx
+out vec4 second;  // yy zz xy yz
+out vec2 third;  // zx; the light that the other side loses
+void occlude() {
+  first = second = vec4(0.0), third = vec2(0.0);
+  if (moment_columns == 0) return;
+  ivec2 at = ivec2(gl_VertexID % moment_columns, gl_VertexID / moment_columns);
+  first = texelFetch(moments_0, at, 0), second = texelFetch(moments_1, at, 0), third = texelFetch(moments_2, at, 0).xy;
+}
+)";
+
+// The bands of spherical harmonics of what is lost about a direction: their zonal kernels are 2 l + 1 times the
+// Legendre polynomials.
+constexpr const char* kBands = R"(uniform vec2 turn;  // cosine and sine by which the environment was turned
+in vec4 first, second;
+in vec2 third;
+layout(location = 1) out vec4 occlusion;
+vec3 bands(vec3 d) {
+  d.xz = vec2(dot(turn, d.xz), turn.x * d.z - turn.y * d.x);
+  float all = first.w + second.x + second.y;
+  float squares = first.w * d.x * d.x + second.x * d.y * d.y + second.y * d.z * d.z +
+                  2.0 * (second.z * d.x * d.y + second.w * d.y * d.z + third.x * d.z * d.x);
+  return vec3(all, 3.0 * dot(first.xyz, d), 2.5 * (3.0 * squares - all));
+}
+)";
+
+}  // namespace
+
+std::string gbuffer_vertex_shader(bool on_page) {
   return std::string(kHead) + R"(layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 vertex_normal;
 uniform mat4 clip;
 out vec3 normal;
-void main() {
+)" + (on_page ? kMoments : "") +
+         R"(void main() {
   normal = vertex_normal;
-  gl_Position = clip * vec4(position, 1.0);
+)" + (on_page ? "  occlude();\n" : "") +
+         R"(  gl_Position = clip * vec4(position, 1.0);
 }
 )";
 }
 
-std::string gbuffer_fragment_shader(bool with_triangles) {
-  const char* number = with_triangles ? R"(uniform int first;  // the number of the part's first triangle
+std::string gbuffer_fragment_shader(bool on_page) {
+  const char* second = on_page ? kBands : R"(uniform int first;  // the number of the part's first triangle
 layout(location = 1) out uint triangle;
-)"
-                                      : "";
-  return std::string(kHead) + kRays + number + R"(uniform int part;
+)";
+  return std::string(kHead) + kRays + second + R"(uniform int part;
 in vec3 normal;
 layout(location = 0) out vec4 gbuffer;
 void main() {
@@ -29,7 +64,10 @@ void main() {
   float cos_o = dot(n, wo);
   if (cos_o < 1e-3) n = normalize(n + (1e-3 - cos_o) * wo);
   gbuffer = vec4(n, side * float(part + 1));
-)" + (with_triangles ? "  triangle = uint(first + gl_PrimitiveID);\n}\n" : "}\n");
+)" +
+         (on_page ? "  occlusion = vec4(dot(bands(n), vec3(1.0, 2.0 / 3.0, 0.25)), bands(2.0 * dot(n, wo) * n - wo));\n"
+                    "  if (!gl_FrontFacing) occlusion = vec4(third.yy, 0.0, 0.0);\n}\n"
+                  : "  triangle = uint(first + gl_PrimitiveID);\n}\n");
 }
 
 }  // namespace goniochrome::render

@@ -14,9 +14,9 @@ inline constexpr const char* kRays =
 vec3 ray() { return normalize(corner + gl_FragCoord.x * right + gl_FragCoord.y * down); }
 )";
 
-// Draws the G-buffer: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from inside);
-// and, as a second picture unless it is left out, the number of the triangle.
-std::string gbuffer_vertex_shader();
-std::string gbuffer_fragment_shader(bool with_triangles = true);
+// Draws the G-buffer: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from inside).
+// A second picture is the number of the triangle; on a page it is the occlusion of each pixel, as kOcclusion reads it.
+std::string gbuffer_vertex_shader(bool on_page = false);
+std::string gbuffer_fragment_shader(bool on_page = false);
 
 }  // namespace goniochrome::render

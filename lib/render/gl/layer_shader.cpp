@@ -9,13 +9,15 @@ namespace goniochrome::render {
 namespace {
 
 // The light of a slot from the maps in a mirror direction.
-std::string map_light_function(const Effects& effects) {
+std::string map_light_function(const Effects& effects, bool shaded) {
   std::string text = "\nvec4 map_light(vec3 r, int slot, vec3 n) {\n  vec4 light = vec4(0.0);\n";
   for (const LightLayer& layer : light_layers(effects)) {
     if (layer.of_lamps) continue;
     std::string toward = layer.sampler == "diffuse" || layer.sampler == "coat_diffuse" ? "n" : "r";
     if (layer.shift_slot >= 0) toward = fmt::format("r + W({}).{} * n", layer.shift_slot, "rgba"[layer.shift_channel]);
-    text += fmt::format("  if (slot == {}) light = textureLod({}, {}, 0.0);\n", layer.slot, layer.sampler, toward);
+    text +=
+        fmt::format("  if (slot == {}) light = {};\n", layer.slot,
+                    light_left(shaded, layer.exponent, fmt::format("textureLod({}, {}, 0.0)", layer.sampler, toward)));
   }
   return text + "  return light;\n}\n";
 }
@@ -67,15 +69,16 @@ std::vector<LightLayer> light_layers(const Effects& effects) {
   const WeightTable slots = slots_of(effects);
   std::vector<LightLayer> layers;
   if (effects.environment) {
-    if (effects.diffuse) layers.push_back({WeightTable::diffuse_slot(), false, "diffuse"});
-    if (effects.diffuse && effects.coat) layers.push_back({slots.coat_diffuse_slot(), false, "coat_diffuse"});
+    if (effects.diffuse) layers.push_back({WeightTable::diffuse_slot(), false, "diffuse", kDiffusePart});
+    if (effects.diffuse && effects.coat)
+      layers.push_back({slots.coat_diffuse_slot(), false, "coat_diffuse", kDiffusePart});
     for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
-      LightLayer layer{WeightTable::lobe_slot(j), false, fmt::format("lobe_{}", j)};
+      LightLayer layer{WeightTable::lobe_slot(j), false, fmt::format("lobe_{}", j), effects.lobes[j].exponent};
       if (is_shifted(effects, effects.lobes[j].exponent))
         layer.shift_slot = slots.shift_slot(j), layer.shift_channel = static_cast<int>(j % 4);
       layers.push_back(std::move(layer));
     }
-    if (effects.mirror) layers.push_back({slots.mirror_slot(), false, "mirror"});
+    if (effects.mirror) layers.push_back({slots.mirror_slot(), false, "mirror", paint::kMirrorExponent});
   }
   if (effects.single_lights() == 0) return layers;
   if (effects.diffuse) layers.push_back({slots.light_slot(), true, ""});
@@ -87,23 +90,22 @@ std::vector<LightLayer> light_layers(const Effects& effects) {
   return layers;
 }
 
-std::string gathering_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
-                                      bool projected_ground) {
-  const bool lamps = effects.single_lights() > 0;
+std::string gathering_fragment_shader(const Effects& effects, const color::ReflectionOperator& op, bool on_page) {
+  const bool lamps = effects.single_lights() > 0, shaded = is_shaded(effects, on_page);
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
-  projected_ground = projected_ground && effects.background == Background::kEnvironment;
+  const bool projected_ground = on_page && effects.background == Background::kEnvironment;
   std::string text = std::string(kHead) + "// goniochrome-rendering(7), \"Layers\"\n" + uniforms(effects) + kRays;
   text +=
       fmt::format("uniform int slots[{0}];\nuniform float scales[{0}];\nlayout(location = 0) out vec4 layers[{0}];\n",
                   kLayersAtOnce);
-  text += kWeight;
+  text += kWeight + (shaded ? occlusion_functions(product, forms) : "");
   if (product == Product::kForms && effects.environment)
     text += forms_functions(forms, effects.background == Background::kEnvironment);
   if (lit_gloss(effects)) text += fresnel_function();
   if (effects.coat && lamps) text += kLetIn;
   if (lamps) text += disc_functions(effects.lobes.size()) + "float index2;  // of the coat, squared\n";
-  if (effects.environment) text += map_light_function(effects);
+  if (effects.environment) text += map_light_function(effects, shaded);
   if (lamps && !effects.lobes.empty()) text += lamp_light_function(effects);
   if (projected_ground) text += ground_functions(effects);
   std::string beside, sums, written;
@@ -116,6 +118,7 @@ std::string gathering_fragment_shader(const Effects& effects, const color::Refle
   text += start_of_main(
       effects, "",
       fmt::format("    vec4 shown = {};\n", background_color(effects, product, projected_ground)) + beside);
+  if (shaded) text += occlusion_start(effects);
   text += tilt_frame(effects) + fmt::format("  vec4 sums[{0}] = vec4[{0}]({1});\n", kLayersAtOnce, sums);
   if (effects.environment) {
     // A brushed surface has lobes about each of its normals; its diffuse part and its mirror have their own.

@@ -22,8 +22,10 @@ float cos_power(float versine, float exponent) {
 )";
 
 // One term of what the environment shows.
-std::string product_with_map(Product product, int slot, const std::string& map, const std::string& direction) {
-  const std::string weight = fmt::format("W({})", slot), light = fmt::format("textureLod({}, {}, 0.0)", map, direction);
+std::string product_with_map(Product product, int slot, const std::string& map, const std::string& direction,
+                             double exponent, bool shaded) {
+  const std::string weight = fmt::format("W({})", slot),
+                    light = light_left(shaded, exponent, fmt::format("textureLod({}, {}, 0.0)", map, direction));
   if (product == Product::kForms) return weight + " * " + light;
   if (product == Product::kPlain) return weight + ".rgb * " + light + ".rgb";
   return fmt::format("times({}.rgb, {}.rgb)", weight, light);
@@ -67,7 +69,7 @@ std::string disc_lobes(const Effects& effects) {
 }
 
 // The light of the lobes from the environment in a mirror direction, and from a light.
-std::string lobe_functions(const Effects& effects, Product product) {
+std::string lobe_functions(const Effects& effects, Product product, bool shaded) {
   std::string text;
   if (effects.environment) {
     text += fmt::format(
@@ -77,8 +79,9 @@ std::string lobe_functions(const Effects& effects, Product product) {
     for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
       const bool shifted = is_shifted(effects, effects.lobes[j].exponent);
       const std::string toward = shifted ? fmt::format("r + W({}).{} * n", slots.shift_slot(j), "rgba"[j % 4]) : "r";
-      text += fmt::format("  sum += {};\n",
-                          product_with_map(product, WeightTable::lobe_slot(j), fmt::format("lobe_{}", j), toward));
+      text +=
+          fmt::format("  sum += {};\n", product_with_map(product, WeightTable::lobe_slot(j), fmt::format("lobe_{}", j),
+                                                         toward, effects.lobes[j].exponent, shaded));
     }
     text += "  return sum;\n}\n";
   }
@@ -98,17 +101,17 @@ std::string lobe_functions(const Effects& effects, Product product) {
 }
 
 // L = K_D pi P_1(n) + sum W_j P_Ej(r) + K_M F P_inf(r)
-std::string environment_terms(const Effects& effects, Product product, bool tilted) {
+std::string environment_terms(const Effects& effects, Product product, bool tilted, bool shaded) {
   std::string text = "\n  // the environment\n";
   const std::string sum = product == Product::kForms ? "products" : "radiance";
   if (product == Product::kForms) text += "  vec4 products = vec4(0.0);\n";
-  const auto term = [&](int slot, const char* map, const char* direction) {
-    text += fmt::format("  {} += {};\n", sum, product_with_map(product, slot, map, direction));
+  const auto term = [&](int slot, const char* map, const char* direction, double exponent) {
+    text += fmt::format("  {} += {};\n", sum, product_with_map(product, slot, map, direction, exponent, shaded));
   };
-  if (effects.diffuse) term(WeightTable::diffuse_slot(), "diffuse", "n");
-  if (effects.diffuse && effects.coat) term(slots_of(effects).coat_diffuse_slot(), "coat_diffuse", "n");
+  if (effects.diffuse) term(WeightTable::diffuse_slot(), "diffuse", "n", kDiffusePart);
+  if (effects.diffuse && effects.coat) term(slots_of(effects).coat_diffuse_slot(), "coat_diffuse", "n", kDiffusePart);
   if (!effects.lobes.empty()) text += over_tilts(effects, sum, "lobes", ", n");
-  if (effects.mirror) term(slots_of(effects).mirror_slot(), "mirror", "r");
+  if (effects.mirror) term(slots_of(effects).mirror_slot(), "mirror", "r", paint::kMirrorExponent);
   if (tilted) text += fmt::format("  {} += tilted_lobes(r, n, wo);\n", sum);
   if (product == Product::kForms) text += "  radiance += color_of(products);\n";
   return text;
@@ -168,14 +171,14 @@ std::string shading_vertex_shader() {
 }
 
 std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
-                                    const std::vector<double>& tilted, bool projected_ground) {
-  const bool lit_lobes = effects.single_lights() > 0 && !effects.lobes.empty();
+                                    const std::vector<double>& tilted, bool on_page) {
+  const bool lit_lobes = effects.single_lights() > 0 && !effects.lobes.empty(), shaded = is_shaded(effects, on_page);
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
   // 1. What the program is given, and the functions that it needs.
   std::string text = std::string(kHead) + "// goniochrome-rendering(7), \"RENDERING\"\n";
   text += uniforms(effects) + tilt_uniforms(effects, tilted) + kRays + "layout(location = 0) out vec4 color;\n" +
-          kWeight + placed_lamp_functions(effects);
+          kWeight + (shaded ? occlusion_functions(product, forms) : "") + placed_lamp_functions(effects);
   if (effects.reflection && (product == Product::kOperator || effects.single_lights() > 0))
     text += reflection_function(op);
   if (effects.environment && product == Product::kForms)
@@ -185,17 +188,18 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   if (lit_lobes && !effects.discs()) text += kCosPower;
   if (effects.single_lights() > 0 && effects.discs())
     text += disc_functions(effects.lobes.size()) + disc_weights(effects);
-  if (!effects.lobes.empty()) text += lobe_functions(effects, product);
+  if (!effects.lobes.empty()) text += lobe_functions(effects, product, shaded);
   text += tilt_function(effects, tilted, product);
-  projected_ground = projected_ground && effects.background == Background::kEnvironment;
+  const bool projected_ground = on_page && effects.background == Background::kEnvironment;
   if (projected_ground) text += ground_functions(effects);
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
   text += start_of_main(effects, "",
                         fmt::format("    color = {};\n", background_color(effects, product, projected_ground)));
   text += "  vec3 radiance = vec3(0.0);\n";
+  if (shaded) text += occlusion_start(effects);
   // 3. The sum of what the environment and the lights show.
   text += tilt_frame(effects);
-  if (effects.environment) text += environment_terms(effects, product, !tilted.empty());
+  if (effects.environment) text += environment_terms(effects, product, !tilted.empty(), shaded);
   if (effects.single_lights() > 0) text += light_terms(effects);
   return text + "  color = vec4(radiance, 1.0);\n}\n";
 }

@@ -1,6 +1,8 @@
 #include "render/gl/shader_parts.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "base/angles.h"
 #include "base/text.h"
@@ -8,6 +10,12 @@
 #include "brdf/lobe_model.h"
 
 namespace goniochrome::render {
+
+namespace {
+
+constexpr double kSharpestBands = 8;  // exponent
+
+}  // namespace
 
 std::string glsl(double value) {
   const std::string text = fmt::format("{}", static_cast<float>(value));
@@ -144,15 +152,47 @@ std::string over_tilts(const Effects& effects, const std::string& sum, const std
                      sum, function, more);
 }
 
+std::array<color::Rgb, 4> map_colors(Product product, const ProductForms& forms) {
+  if (product != Product::kForms) return {color::Rgb{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {}};
+  std::array<color::Rgb, 4> colors;
+  for (std::size_t i = 0; i < colors.size(); ++i) colors[i] = forms.of(static_cast<int>(i), {1, 1, 1}) * forms.out[i];
+  return colors;
+}
+
+std::string occlusion_functions(Product product, const ProductForms& forms) {
+  std::string luminance;
+  for (const color::Rgb& rgb : map_colors(product, forms))
+    luminance += (luminance.empty() ? "" : ", ") + glsl(color::xyz_d65_from_rgb(rgb).Y);
+  return fmt::format("const vec4 luminance = vec4({});\n", luminance) + kOcclusion;
+}
+
+std::string occlusion_start(const Effects& effects) {
+  std::string text = "  occluded = texelFetch(occlusion, ivec2(gl_FragCoord.xy), 0);\n";
+  const auto off = [](const Effects::LobeUse& lobe) { return std::abs(std::log(lobe.exponent / kSharpestBands)); };
+  const auto wide = std::ranges::min_element(effects.lobes, {}, off);
+  if (wide == effects.lobes.end()) return text;
+  const std::string map = fmt::format("textureLod(lobe_{}, r, 0.0)", wide - effects.lobes.begin());
+  return text + fmt::format("  vec4 wide = {};\n  sharp = dot(luminance, {}) / max(dot(luminance, wide), 1e-6);\n", map,
+                            light_left(true, wide->exponent, "wide"));
+}
+
+std::string light_left(bool shaded, double exponent, const std::string& look_up) {
+  if (!shaded) return look_up;
+  if (exponent == kDiffusePart) return fmt::format("left({}, occluded.x)", look_up);
+  if (exponent > 2 * kSharpestBands) return "sharp * " + look_up;
+  return fmt::format("left({}, vec2({}, {}))", look_up, glsl((exponent + 1) / (exponent + 2)),
+                     glsl(exponent / (exponent + 3)));
+}
+
 std::string ground_functions(const Effects& effects) {
-  return std::string(kProjectedGround) + (effects.lobes.size() <= kMostLobesOverShade ? kKeptLight : "");
+  return std::string(kProjectedGround) + (is_shaded(effects, true) ? kKeptLight : "");
 }
 
 std::string background_color(const Effects& effects, Product product, bool projected_ground) {
   switch (effects.background) {
     case Background::kEnvironment: {
       const std::string seen = fmt::format("textureLod(mirror, {}, 0.0)", projected_ground ? "projected(-wo)" : "-wo");
-      const char* kept = projected_ground && effects.lobes.size() <= kMostLobesOverShade ? "kept_light(-wo) * " : "";
+      const char* kept = is_shaded(effects, projected_ground) ? "kept_light(-wo) * " : "";
       return product == Product::kForms ? fmt::format("vec4({}unreflected({}), 1.0)", kept, seen)
                                         : fmt::format("vec4({}{}.rgb, 1.0)", kept, seen);
     }

@@ -1,6 +1,7 @@
 // Pieces of shading programs that several of them have in common. goniochrome-rendering(7), "RENDERING".
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 
@@ -54,7 +55,7 @@ vec3 projected(vec3 ray) {
 
 // The part of its light that the ground keeps beside the mesh, where a ray meets it. WebGL 2 promises 16 textures, so
 // that there is no room for it beside more lobes.
-inline constexpr std::size_t kMostLobesOverShade = 8;
+inline constexpr std::size_t kMostLobesOverShade = 7;
 inline constexpr const char* kKeptLight = R"(uniform sampler2D ground_light;
 uniform vec3 ground_place;  // where its square begins, in x and z, and squares to a unit of length; 0 for none
 uniform vec2 ground_turn;  // cosine and sine by which the environment was turned
@@ -65,6 +66,29 @@ vec3 kept_light(vec3 ray) {
   return place == clamp(place, 0.0, 1.0) ? texture(ground_light, place).rgb : vec3(1.0);
 }
 )";
+// The share of a lobe's light that the mesh and its ground leave on a page. `bands` are the bands 1 and 2 of the lobe
+// itself, about whose axis `occluded` holds the bands of the luminance that is lost; of the diffuse part it holds the
+// sum. Bands tell little of sharp lobes, which keep the share of a wider lobe.
+inline constexpr const char* kOcclusion = R"(uniform sampler2D occlusion;
+vec4 occluded;
+float sharp = 1.0;
+vec4 left(vec4 light, float lost) { return light * clamp(1.0 - lost / max(dot(luminance, light), 1e-6), 0.0, 1.5); }
+vec4 left(vec4 light, vec2 bands) { return left(light, occluded.y + dot(bands, occluded.zw)); }
+)";
+std::string occlusion_functions(Product product, const ProductForms& forms);
+// A statement that takes the occlusion of a point, where r is known.
+std::string occlusion_start(const Effects& effects);
+// The colors of the channels of light as maps hold it.
+std::array<color::Rgb, 4> map_colors(Product product, const ProductForms& forms);
+// A look-up of the light of a lobe cos^E, whose bands are (E+1)/(E+2) and E/(E+3), of the mirror (infinite), or of the
+// diffuse part (kDiffusePart), less what is lost where the program is `shaded`.
+std::string light_left(bool shaded, double exponent, const std::string& look_up);
+constexpr double kDiffusePart = 0;
+// True if a page has room for textures of what is in the way of light.
+inline bool is_shaded(const Effects& effects, bool on_page) {
+  return on_page && effects.lobes.size() <= kMostLobesOverShade;
+}
+
 // The functions of a ground on which the environment may lie.
 std::string ground_functions(const Effects& effects);
 

@@ -15,6 +15,7 @@ drive("files of every kind are opened", { width: 1400, height: 900 }, async ({ b
     await value("studio.say('')");
     await give("#open-files", files);
     await browser.until("((said) => said !== '' && !/is being (read|filtered)/.test(said))(document.getElementById('status').textContent)", 120);
+    await browser.until("!studio.stage.occlusion.busy", 120);
     return status();
   };
   for (const file of paints) {
@@ -92,7 +93,7 @@ drive("files of every kind are opened", { width: 1400, height: 900 }, async ({ b
 
   // Parts wear what is chosen in the list, or after a click on them.
   const wear = (name, row) => value(`(() => { const list = [...document.querySelectorAll("#parts .part")].find((one) => one.textContent.includes(${JSON.stringify(name)})).querySelector("select");
-    list.value = ${row}; list.dispatchEvent(new Event("change")); })()`);
+    list.value = ${row}; list.dispatchEvent(new Event("change")); })()`).then(() => browser.until("!studio.stage.occlusion.busy", 120));
   const sums = () => value(`[...${covered}].reduce((sum, x) => sum + x, 0)`), plain = await sums();
   await wear("Closet", 3);
   const rubber = await sums();

@@ -14,6 +14,8 @@ async function main() {
   const browser = await Browser.open(pathToFileURL(path.resolve(page)).href);
   await browser.until("window.studio !== undefined || document.getElementById('status').textContent !== ''");
   const environments = await browser.evaluate("studio.data.environments.map((one) => one.name)");
+  // The engine gl throws no shadows.
+  await browser.evaluate("(() => { while (studio.stage.occlusion.step()); studio.stage.occlusion.columns = 0; })()");
   // How far a picture from layers is from one by the shading program: of the value of a channel, and a hundredth of white.
   await browser.evaluate(`window.apart = (ours, theirs, number) => {
     const least = 0.01 * studio.stage.environment(number).white;
@@ -63,6 +65,13 @@ async function main() {
   await variant("groundless", "app.stage.ground = false;", "app.stage.ground = true;");
   await variant("shadeless", "window.shade = app.data.environments[app.stageView.environment].ground_light; delete app.data.environments[app.stageView.environment].ground_light;",
                 "app.data.environments[app.stageView.environment].ground_light = window.shade;");
+  // With the shadow of the mesh on itself, and with the shadows that the page finds by itself.
+  await browser.evaluate("studio.stage.occlusion.columns = vertexColumns");
+  await variant("shaded", "", "");
+  await browser.evaluate("studio.grounds = studio.data.environments.map((one) => one.ground_light)");
+  await browser.evaluate("(() => { const { occlusion } = studio.stage; for (const one of studio.data.environments) delete one.ground_light; occlusion.begin(); while (occlusion.step()); })()");
+  await variant("found", "", "");
+  await browser.evaluate("studio.data.environments.forEach((one, i) => { one.ground_light = studio.grounds[i]; })");
   // Layers that were drawn for one paint show another one: that whose wide lobes look elsewhere most, of all that little gloss makes
   // of paints of the library; and with the lamp. The control takes layers as they are.
   // Half of the width and of the height is enough for these.

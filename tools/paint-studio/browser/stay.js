@@ -108,6 +108,7 @@ drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value,
   await value("losing.restoreContext()");
   await browser.until("!studio.stageView.lost");
   await value("studio.turn('undo')");
+  await quiet();
   const after = await value(radiance);
   check("the picture is back", JSON.stringify(await paint()) === kept && before.some((x) => x > 0) && before.every((x, i) => Math.abs(x - after[i]) <= 1e-6 * (1 + x)));
 

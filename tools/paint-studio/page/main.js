@@ -139,6 +139,7 @@ class App {
     const { second } = this.parts;
     if (second) this.engine.ask({ do: "fit", paint: second.paint });
     this.stage.partsChanged(second ? this.engine.list("weights") : null);
+    this.stageView.shadow();
     this.stageView.cells = [];
     this.compare(this.compared.choice);
     this.show();

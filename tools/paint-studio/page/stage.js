@@ -33,6 +33,7 @@ class Stage {
     this.lamp = null;  // {direction, white}: where it stands beside the mesh, and what a white surface facing it shows
     this.partsVersion = 0;  // of what the parts wear
     this.gathered = new GatheredLight(this);
+    this.occlusion = new Occlusion(this);
     this.uploadMesh();
     gl.frontFace(gl.CW);  // counter-clockwise, seen with y down
   }
@@ -56,20 +57,23 @@ class Stage {
   }
 
   uploadMesh() {
-    const gl = this.gl, buffer = (target, values) => {
-      const made = gl.createBuffer();
-      gl.bindBuffer(target, made);
-      gl.bufferData(target, values, gl.STATIC_DRAW);
-      return made;
-    };
-    this.meshVertices = gl.createVertexArray();
-    gl.bindVertexArray(this.meshVertices);
-    [this.mesh.positions, this.mesh.normals].forEach((values, index) => {
-      this.normalBuffer = buffer(gl.ARRAY_BUFFER, values);
+    const gl = this.gl;
+    this.meshVertices = this.vertices(this.mesh.positions, this.mesh.normals);
+    this.normalBuffer = gl.getParameter(gl.ARRAY_BUFFER_BINDING);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, this.mesh.corners, gl.STATIC_DRAW);
+  }
+  // An array of vertices of three numbers each, which is then bound.
+  vertices(...attributes) {
+    const gl = this.gl, made = gl.createVertexArray();
+    gl.bindVertexArray(made);
+    attributes.forEach((values, index) => {
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
       gl.vertexAttribPointer(index, 3, gl.FLOAT, false, 0, 0);
       gl.enableVertexAttribArray(index);
     });
-    buffer(gl.ELEMENT_ARRAY_BUFFER, this.mesh.corners);
+    return made;
   }
 
   // Turns the environment. Normals and rays are turned against it instead, so that the maps stay as they are.
@@ -155,6 +159,13 @@ class Stage {
     made.groundTurn = this.turn;
     return made.ground;
   }
+  // The shadow on the ground: its texture, and where its square begins from the point that saw the environment, in x and z, and squares to a
+  // unit of length.
+  groundShade(environment) {
+    const packed = this.data.environments[environment].ground_light, { seen_from } = this.data.mesh.ground;
+    const shade = packed ? { ...packed, texture: this.groundLight(environment, packed) } : this.occlusion.ground ? this.occlusion.groundLight(environment) : null;
+    return { texture: shade?.texture ?? null, place: shade ? [shade.low[0] - seen_from[0], shade.low[1] - seen_from[2], 1 / shade.side] : [0, 0, 0] };
+  }
   // The program and the textures of an environment, made when it is first shown.
   environment(number) {
     if (this.environments[number]) return this.environments[number];
@@ -188,36 +199,37 @@ class Stage {
     return made;
   }
 
-  // A texture to draw into, kept by its name and made anew where the size changes.
-  target(name, width, height, kind, withDepth) {
+  // A texture to draw into, with a second one of halves where that is wanted, kept by its name and made anew where the size changes.
+  target(name, width, height, kind, withDepth, withSecond = false) {
     const gl = this.gl, known = this.targets.get(name);
     if (known && known.width === width && known.height === height) return known;
     if (known) {
-      gl.deleteTexture(known.texture);
+      for (const texture of [known.texture, known.depth, known.second]) gl.deleteTexture(texture);
       gl.deleteFramebuffer(known.framebuffer);
-      if (known.depth) gl.deleteRenderbuffer(known.depth);
     }
-    const made = { width, height, framebuffer: gl.createFramebuffer(), texture: gl.createTexture(), key: "" };
-    gl.bindTexture(gl.TEXTURE_2D, made.texture);
-    gl.texStorage2D(gl.TEXTURE_2D, 1, kind, width, height);
-    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
-      gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+    const made = { width, height, framebuffer: gl.createFramebuffer(), key: "" };
     gl.bindFramebuffer(gl.FRAMEBUFFER, made.framebuffer);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, made.texture, 0);
-    if (withDepth) {
-      made.depth = gl.createRenderbuffer();
-      gl.bindRenderbuffer(gl.RENDERBUFFER, made.depth);
-      gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT32F, width, height);
-      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, made.depth);
-    }
+    const attached = (at, what) => {
+      const texture = gl.createTexture();
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.texStorage2D(gl.TEXTURE_2D, 1, what, width, height);
+      for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, at, gl.TEXTURE_2D, texture, 0);
+      return texture;
+    };
+    made.texture = attached(gl.COLOR_ATTACHMENT0, kind);
+    made.depth = withDepth ? attached(gl.DEPTH_ATTACHMENT, gl.DEPTH_COMPONENT32F) : null;
+    made.second = withSecond ? attached(gl.COLOR_ATTACHMENT1, gl.RGBA16F) : null;
+    if (withSecond) gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
     this.targets.set(name, made);
     return made;
   }
 
-  // The visible points of every pixel at one sample. They are drawn again only where the view changed.
-  gbuffer(name, camera, width, height, shift) {
-    const gl = this.gl, target = this.target("gbuffer " + name, width, height, gl.RGBA32F, true);
-    const key = JSON.stringify([camera, shift, this.turn, this.partsVersion]);
+  // The visible points of every pixel at one sample, and the light that they lose in an environment, unless that is null. They are drawn
+  // again only where the view or the light changed.
+  gbuffer(name, camera, width, height, shift, environment) {
+    const light = environment === null ? "none" : this.occlusion.takeLoss(environment), gl = this.gl, target = this.target("gbuffer " + name, width, height, gl.RGBA32F, true, true);
+    const key = JSON.stringify([camera, shift, this.turn, this.partsVersion, light]);
     if (target.key === key) return target;
     const view = projected(camera, width, height, this.mesh, shift), program = this.gbufferProgram;
     for (const name of ["corner", "right", "down"]) view[name] = turnedAgainst(view[name], this.turn);
@@ -225,13 +237,21 @@ class Stage {
     gl.viewport(0, 0, width, height);
     gl.enable(gl.DEPTH_TEST);
     gl.disable(gl.BLEND);
-    gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
+    for (const buffer of [0, 1]) gl.clearBufferfv(gl.COLOR, buffer, [0, 0, 0, 0]);
     gl.clearBufferfv(gl.DEPTH, 0, [1]);
     gl.useProgram(program.program);
+    const { moments, columns } = this.occlusion;
+    for (const unit of [2, 1, 0]) {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(gl.TEXTURE_2D, moments?.textures[unit] ?? null);
+      gl.uniform1i(program.at(`moments_${unit}`), unit);
+    }
+    gl.uniform1i(program.at("moment_columns"), light === "none" ? 0 : columns);
+    gl.uniform2fv(program.at("turn"), this.turnVector);
     gl.uniformMatrix4fv(program.at("clip"), false, view.clip);
     for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), view[name]);
     gl.bindVertexArray(this.meshVertices);
-    for (const part of this.mesh.parts.filter(({ row }) => row !== hiddenRow)) {
+    for (const part of this.shownParts) {
       gl.uniform1i(program.at("part"), part.row);
       gl.drawElements(gl.TRIANGLES, 3 * part.count, gl.UNSIGNED_INT, 12 * part.first);
     }
@@ -278,18 +298,18 @@ class Stage {
       gl.uniform1i(program.at(sampler), unit++);
     };
     bind("gbuffer", gl.TEXTURE_2D, gbuffer.texture);
+    bind("occlusion", gl.TEXTURE_2D, gbuffer.second);
     bind("weights", gl.TEXTURE_2D, texture);
     if (tilts) bind("tilts", gl.TEXTURE_2D, tilts);
     if (program.discs) bind("discs", gl.TEXTURE_2D, program.discs);
     for (const cube of made.cubes) bind(cube.sampler, gl.TEXTURE_CUBE_MAP, cube.texture);
     for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), gbuffer.view[name]);
-    const { seen_from, drop } = this.data.mesh.ground;
+    const { seen_from, drop } = this.data.mesh.ground, shade = this.groundShade(environment);
     gl.uniform3fv(program.at("ground_eye"), turnedAgainst(added(gbuffer.view.eye, seen_from, -1), this.turn));
     gl.uniform1f(program.at("ground_drop"), this.ground ? drop : 0);
-    const shade = this.data.environments[environment].ground_light;
-    bind("ground_light", gl.TEXTURE_2D, shade ? this.groundLight(environment, shade) : gbuffer.texture);
-    gl.uniform3fv(program.at("ground_place"), shade ? [shade.low[0] - seen_from[0], shade.low[1] - seen_from[2], 1 / shade.side] : [0, 0, 0]);
-    gl.uniform2fv(program.at("ground_turn"), [Math.cos((this.turn * Math.PI) / 180), Math.sin((this.turn * Math.PI) / 180)]);
+    bind("ground_light", gl.TEXTURE_2D, shade.texture ?? gbuffer.texture);
+    gl.uniform3fv(program.at("ground_place"), shade.place);
+    gl.uniform2fv(program.at("ground_turn"), this.turnVector);
     for (const [uniform, member] of [["light_direction", "direction"], ["light_white", "white"], ["light_disc", "disc"]])
       if (program.lamps.length > 0) gl.uniform3fv(program.at(uniform + "[0]"), program.lamps.flatMap((lamp) => lamp[member]));
   }
@@ -319,7 +339,7 @@ class Stage {
     this.resize(columns * width, rows * height);
     weights.forEach((own, i) => {
       let sum = null;
-      for (let k = 0; k < samples; ++k) sum = this.shade("cell", this.gbuffer(`cell ${k}`, camera, width, height, samples > 1 ? sampleShifts(samples)[k] : [0, 0]), own, environment, k > 0);
+      for (let k = 0; k < samples; ++k) sum = this.shade("cell", this.gbuffer(`cell ${k}`, camera, width, height, samples > 1 ? sampleShifts(samples)[k] : [0, 0], environment), own, environment, k > 0);
       this.show(sum, samples, environment, stops, target.framebuffer);
       const left = (i % columns) * width, bottom = (rows - 1 - Math.floor(i / columns)) * height;
       gl.bindFramebuffer(gl.READ_FRAMEBUFFER, target.framebuffer);
@@ -364,7 +384,7 @@ class Stage {
   // Draws a picture by the pixel centers alone, into the targets of that name. `overlay` is null, or what the program of that name draws over it.
   draw(name, camera, width, height, weights, environment, stops, overlay = null) {
     this.resize(width, height);
-    const gbuffer = this.gbuffer(name, camera, width, height, [0, 0]);
+    const gbuffer = this.gbuffer(name, camera, width, height, [0, 0], environment);
     this.show(this.shade(name, gbuffer, weights, environment, false), 1, environment, stops);
     if (overlay) this.drawOver(gbuffer, overlay);
   }
@@ -375,7 +395,7 @@ class Stage {
     if (this.gathered.held && this.gathered.held.key !== key) this.gathered.drop();
     if (!this.gathered.serves(key, own, environment)) return false;
     this.resize(width, height);
-    const gbuffer = this.gbuffer(name, camera, width, height, [0, 0]), sides = [this.gathered.shade("gathered", gbuffer, own, environment)];
+    const gbuffer = this.gbuffer(name, camera, width, height, [0, 0], environment), sides = [this.gathered.shade("gathered", gbuffer, own, environment)];
     if (weights.left) sides.push(this.otherSide(key, gbuffer, weights.right, environment));
     this.showSides(sides, weights.left ? Math.round(weights.at * width) : width, this.environment(environment).white, stops);
     if (overlay) this.drawOver(gbuffer, overlay);
@@ -392,17 +412,17 @@ class Stage {
   // Gathers some of the light of a view, and returns whether there is more to be gathered.
   gather(name, camera, width, height, weights, environment) {
     const key = this.gathered.keyOf(camera, width, height, environment);
-    return this.gathered.gather(key, this.gbuffer(name, camera, width, height, [0, 0]), weights.left ?? weights, environment);
+    return this.gathered.gather(key, this.gbuffer(name, camera, width, height, [0, 0], environment), weights.left ?? weights, environment);
   }
 
   // One more sample of a smoother picture; shows it after the last one.
   refine(camera, weights, environment, stops, sample, samples, overlay = null) {
     const { width, height } = this.canvas;
-    const gbuffer = this.gbuffer("samples", camera, width, height, sampleShifts(samples)[sample]);
+    const gbuffer = this.gbuffer("samples", camera, width, height, sampleShifts(samples)[sample], environment);
     const sum = this.shade("samples", gbuffer, weights, environment, sample > 0);
     if (sample !== samples - 1) return;
     this.show(sum, samples, environment, stops);
-    if (overlay) this.drawOver(this.gbuffer("centers", camera, width, height, [0, 0]), overlay);
+    if (overlay) this.drawOver(this.gbuffer("centers", camera, width, height, [0, 0], environment), overlay);
   }
 
   // Rings and the highlight of the light from `toward`, as the environment sees it, over what the canvas shows.
@@ -424,7 +444,7 @@ class Stage {
   // sees them, and whether it wears the paint; null beside the mesh. The buffer that tells it is kept while the view stays.
   surfaceAt(camera, aspect, x, y) {
     const gl = this.gl, width = 640, height = Math.round(width / aspect), known = this.surface;
-    const gbuffer = this.gbuffer("surface", camera, width, height, [0, 0]);
+    const gbuffer = this.gbuffer("surface", camera, width, height, [0, 0], null);
     if (!known || known.key !== gbuffer.key || known.height !== height) {
       const values = new Float32Array(4 * width * height);
       gl.bindFramebuffer(gl.FRAMEBUFFER, gbuffer.framebuffer);
@@ -445,6 +465,8 @@ class Stage {
     ++this.partsVersion;
     this.gathered.drop();
   }
+  get shownParts() { return this.mesh.parts.filter(({ row }) => row !== hiddenRow); }
+  get turnVector() { return [Math.cos((this.turn * Math.PI) / 180), Math.sin((this.turn * Math.PI) / 180)]; }
   // Where another paint is worn beside the design, layers of light that suit the one need not suit the other.
   get hasSecond() { return this.mesh.parts.some(({ row }) => row === 1); }
 
@@ -453,7 +475,7 @@ class Stage {
     const height = 720, width = Math.round(height * aspect), { corner, right, down } = projected(camera, width, height, this.mesh, [0, 0]);
     const { positions, corners } = this.mesh, ray = added(added(corner, right, x * width), down, y * height), at = (i) => positions.subarray(3 * corners[i], 3 * corners[i] + 3);
     let nearest = Infinity, met = 0;
-    const shown = this.mesh.parts.filter(({ row }) => row !== hiddenRow);
+    const shown = this.shownParts;
     for (const { first, count } of shown)
       for (let i = 3 * first; i < 3 * (first + count); i += 3) {  // u and v are barycentric
         const a = at(i), ab = added([...at(i + 1)], a, -1), ac = added([...at(i + 2)], a, -1), p = crossed(ray, ac), determinant = dotted(ab, p);
@@ -483,7 +505,7 @@ class Stage {
 
   // A small picture for a tile, as pixels of a canvas.
   tile(camera, width, height, weights, environment, stops) {
-    const gbuffer = this.gbuffer("tile", camera, width, height, [0, 0]);
+    const gbuffer = this.gbuffer("tile", camera, width, height, [0, 0], environment);
     return this.pixels(this.shade("tile", gbuffer, weights, environment, false), this.environment(environment).white, stops);
   }
   // The pixels of a canvas by which a screen of sRGB shows a picture.
@@ -500,12 +522,12 @@ class Stage {
 
   // The radiance of every pixel center, as floats from the upper left corner.
   radiance(camera, width, height, weights, environment) {
-    const gbuffer = this.gbuffer("radiance", camera, width, height, [0, 0]);
+    const gbuffer = this.gbuffer("radiance", camera, width, height, [0, 0], environment);
     return this.valuesOf(this.shade("radiance", gbuffer, weights, environment, false));
   }
   // The radiance from gathered light, which is gathered for it.
   gatheredRadiance(camera, width, height, weights, environment) {
-    const gbuffer = this.gbuffer("radiance", camera, width, height, [0, 0]);
+    const gbuffer = this.gbuffer("radiance", camera, width, height, [0, 0], environment);
     const key = this.gathered.keyOf(camera, width, height, environment);
     while (this.gathered.gather(key, gbuffer, weights, environment, false));
     if (!this.gathered.serves(key, weights, environment)) throw new Error("There is no room for the layers of this picture.");

@@ -9,7 +9,7 @@ const german = {
   "Drag the ends of the arrow, or focus one and use the arrow keys (with Shift in larger steps).": "Ziehen Sie an den Enden des Pfeils, oder wählen Sie eines aus und nehmen Sie die Pfeiltasten (mit Umschalt in größeren Schritten).",
   "Average of the whole paint": "Mittel des ganzen Lacks", "Color by aspecular angle": "Farbe nach dem Winkel zum Glanz", "Light": "Licht", "Exposure": "Belichtung", "stops": "Blenden",
   "turned by": "gedreht um", "Ground": "Boden",
-  "as the environment shows it, laid below the mesh, with its shadow. The mesh itself has shadows in traced views alone.": "wie ihn die Umgebung zeigt, unter das Netz gelegt, mit dessen Schatten. Das Netz selbst hat nur in verfolgten Ansichten Schatten.",
+  "as the environment shows it, laid below the mesh, with the shadow of the mesh there and on itself.": "wie ihn die Umgebung zeigt, unter das Netz gelegt, mit dem Schatten des Netzes dort und auf sich selbst.",
   "Lamp": "Lampe", "azimuth": "Azimut", "elevation": "Höhe", "brightness": "Helligkeit", "Rings at": "Ringe bei", ", and the highlight": " und das Glanzlicht",
   "Parts": "Teile", "Second paint:": "Zweiter Lack:", "Make this paint the second": "Diesen Lack zum zweiten machen", "none yet": "noch keiner", "The part that was clicked": "Der angeklickte Teil",
   "paint": "Lack", "second paint": "zweiter Lack", "glass": "Glas", "rubber": "Gummi", "chrome": "Chrom", "hidden": "verborgen", "by its name": "nach dem Namen", "not recognized": "nicht erkannt", "unnamed part": "Teil ohne Namen", "Close": "Schließen",

@@ -34,7 +34,7 @@ class TracedViews {
     stage.resize(width, height);
     const border = weights.left ? Math.round(weights.at * width) : width;
     stage.showSides(sides, border, view.white, stops);
-    if (overlay) stage.drawOver(stage.gbuffer("traced", view.camera, width, height, [0, 0]), overlay);
+    if (overlay) stage.drawOver(stage.gbuffer("traced", view.camera, width, height, [0, 0], null), overlay);
     this.answer = this.sides[0].answer;
   }
   side(i, number, paint, small) {

@@ -27,6 +27,7 @@ class StageView {
     this.slow = this.fast = 0;  // frames in a row
     this.full_ms = 0;  // what a picture of all pixels took, once that is known
     this.makeControls();
+    this.shadow();
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
   }
 
@@ -47,6 +48,18 @@ class StageView {
     this.lost = false;
     this.cells = [];
     this.app.graphicsCame();
+    this.shadow();
+  }
+  // Finds the shadow of the mesh on itself while the page has nothing else to do.
+  shadow() {
+    const { stage } = this, go = () => {
+      if (stage !== this.stage || this.lost) return;
+      if (stage.occlusion.step()) this.shadowing = whenIdle(go);
+      else this.redraw();
+    };
+    stage.occlusion.begin();
+    cancelIdle(this.shadowing);
+    this.shadowing = whenIdle(go);
   }
   // Shows another mesh, whose numbers are those bytes.
   takeMesh(mesh, bytes) {
@@ -63,6 +76,7 @@ class StageView {
     for (const { texels } of [...light.cubes, ...(light.discs ? [light.discs] : [])]) texels.push(bytes);
     const list = document.getElementById("environment"), number = this.app.data.environments.push(light) - 1;
     this.stage.environments.push(null);
+    this.shadow();
     list.insertBefore(made("option", { value: number, text: light.name }), list.querySelector("optgroup"));
     list.value = String(number);
     this.choose(list.value);

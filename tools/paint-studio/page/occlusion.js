@@ -1,0 +1,311 @@
+// The shadow of the mesh on itself: the light that each vertex loses, as the moments that the program of the G-buffer
+// reads; and its shadow on the ground, in lights for which the tool has not found it. Depths of the mesh are drawn from
+// directions all around, in tiles of one picture. Each vertex and each place of the ground is a texel that keeps one bit for each
+// direction, from which the light of any environment is taken. goniochrome-rendering(7), "Pages".
+
+const tile = 512, tilesAcross = 8, tilesDown = 4, atOnce = 32, aroundCount = 128, vertexColumns = 1024, groundSize = 192;
+const lightExponent = 60;  // a lobe about as wide as the part of the sphere that one of the directions stands for
+
+// Directions that lie evenly on the sphere, or on its part above `low`, in a spiral (Swinbank and Purser 2006).
+const evenly = (low) => Array.from({ length: aroundCount }, (_, i) => {
+  const y = 1 - ((1 - low) * (2 * i + 1)) / (2 * aroundCount), ring = Math.sqrt(1 - y * y), angle = Math.PI * (3 - Math.sqrt(5)) * i;
+  return [ring * Math.cos(angle), y, ring * Math.sin(angle)];
+});
+const around = evenly(-1), above = evenly(0);
+
+const occlusionHead = `#version 300 es
+precision highp float;
+precision highp sampler2D;
+precision highp usampler2D;
+precision highp samplerCube;
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+uniform ivec2 size;  // of the picture of points
+uniform vec4 ball;  // around the mesh: middle, 1/radius
+vec3 in_tile(vec3 p, vec3 d) {  // x, y and depth from 0 to 1, as seen from direction d
+  vec3 x = normalize(cross(abs(d.y) < 0.9 ? vec3(0, 1, 0) : vec3(1, 0, 0), d)), at = (p - ball.xyz) * ball.w;
+  return 0.5 + 0.5 * vec3(dot(at, x), dot(at, cross(d, x)), -dot(at, d));
+}
+`;
+const inTexel = `
+  ivec2 texel = ivec2(gl_VertexID % size.x, gl_VertexID / size.x);
+  gl_Position = vec4((2.0 * vec2(texel) + 1.0) / vec2(size) - 1.0, 0.0, 1.0);
+  gl_PointSize = 1.0;
+`;
+const depthVertex = `${occlusionHead}
+uniform vec3 toward;
+void main() { gl_Position = vec4(2.0 * in_tile(position, toward) - 1.0, 1.0); }
+`;
+const depthFragment = `#version 300 es
+void main() {}
+`;
+const inTiles = `
+uniform sampler2D depths;
+bool is_hidden(vec3 p, vec3 d, int i) {
+  vec3 at = in_tile(p, d);
+  vec2 place = (clamp(at.xy, 0.001, 0.999) + vec2(i % ${tilesAcross}, i / ${tilesAcross})) / vec2(${tilesAcross}, ${tilesDown});
+  return textureLod(depths, place, 0.0).x < min(at.z, 0.999);
+}
+`;
+const bitsVertex = `${occlusionHead}${inTiles}
+uniform vec3 toward[${atOnce}];
+flat out uint bits;
+void main() {
+  bits = 0u;
+  for (int i = 0; i < ${atOnce}; ++i) {
+    vec3 p = position + (dot(toward[i], normal) < 0.0 ? -4.0 : 4.0) / (${tile}.0 * ball.w) * normal;
+    if (is_hidden(p, toward[i], i)) bits |= 1u << i;
+  }
+${inTexel}}
+`;
+const bitsFragment = `#version 300 es
+precision highp float;
+flat in uint bits;
+layout(location = 0) out uvec4 seen;
+void main() { seen = uvec4(bits); }
+`;
+const ofLight = `
+uniform vec3 around[${aroundCount}];
+uniform usampler2D seen;
+uniform samplerCube light;
+uniform mat4x3 colors;
+uniform vec2 turn;
+vec3 shine(vec3 d) {
+  return colors * textureLod(light, vec3(turn.x * d.x - turn.y * d.z, d.y, turn.y * d.x + turn.x * d.z), 0.0);
+}
+`;
+const lossVertex = `${occlusionHead}${ofLight}
+const vec3 luminance = vec3(0.2627, 0.678, 0.0593);  // of Rec.2020
+uniform sampler2D ground_light;
+uniform vec3 ground_place, seen_from;
+uniform float ground_height;
+flat out vec4 first, second;
+flat out vec2 third;
+void main() {
+${inTexel}
+  first = second = vec4(0.0);
+  third = vec2(0.0);
+  uvec4 all = texelFetch(seen, texel, 0);
+  for (int i = 0; i < ${aroundCount}; ++i) {
+    vec3 d = around[i];
+    float cosine = dot(d, normal), lost = 0.0;
+    if ((all[i >> 5] >> (i & 31) & 1u) != 0u) {
+      lost = dot(luminance, shine(d));
+    } else if (d.y < 0.0) {
+      vec3 met = position - max(position.y - ground_height, 0.0) / d.y * d;
+      vec2 place = ground_place.z * ((met - seen_from).xz - ground_place.xy);
+      bool inside = ground_place.z > 0.0 && place == clamp(place, 0.0, 1.0);
+      vec3 kept = inside ? texture(ground_light, place).rgb : vec3(1.0);
+      lost = dot(luminance, shine(d) - kept * shine(met - seen_from));
+    }
+    // On a back the diffuse part stands for all lobes.
+    if (cosine <= 0.0) {
+      third.y -= 4.0 * cosine * lost / ${aroundCount}.0;
+      continue;
+    }
+    vec3 other = d - 2.0 * cosine * normal;
+    lost *= min(8.0 * cosine, 1.0) / ${aroundCount}.0;
+    first += lost * vec4(d + other, d.x * d.x + other.x * other.x);
+    second += lost * vec4(d.yz * d.yz + other.yz * other.yz, d.x * d.y + other.x * other.y, d.y * d.z + other.y * other.z);
+    third.x += lost * (d.z * d.x + other.z * other.x);
+  }
+}
+`;
+const lossFragment = `#version 300 es
+precision highp float;
+flat in vec4 first, second;
+flat in vec2 third;
+layout(location = 0) out vec4 moments_0;
+layout(location = 1) out vec4 moments_1;
+layout(location = 2) out vec4 moments_2;
+void main() { moments_0 = first, moments_1 = second, moments_2 = vec4(third, 0, 0); }
+`;
+// The part of its light that a place of the ground keeps. Neighbors smooth the few directions; lamps are looked up by themselves.
+const groundVertex = `${occlusionHead}${inTiles}${ofLight}
+uniform int lamps;
+uniform vec3 lamp_toward[${atOnce}], lamp_white[${atOnce}];
+flat out vec3 kept;
+void main() {
+${inTexel}
+  vec3 all = vec3(0.0);
+  kept = vec3(0.0);
+  for (int i = 0; i < ${aroundCount}; ++i) {
+    vec3 whole = 2.0 / ${aroundCount}.0 * around[i].y * shine(around[i]);
+    float hidden = 0.0;
+    for (int k = 0; k < 9; ++k) {
+      ivec2 at = clamp(texel + 2 * ivec2(k % 3 - 1, k / 3 - 1), ivec2(0), size - 1);
+      hidden += float(texelFetch(seen, at, 0)[i >> 5] >> (i & 31) & 1u) / 9.0;
+    }
+    all += whole;
+    kept += (1.0 - hidden) * whole;
+  }
+  for (int i = 0; i < lamps; ++i) {
+    vec3 whole = max(lamp_toward[i].y, 0.0) * lamp_white[i];
+    all += whole;
+    for (int k = 0; k < 9; ++k) {
+      vec3 p = position + vec3(k % 3 - 1, 0, k / 3 - 1) / (${tile}.0 * ball.w);
+      if (!is_hidden(p, lamp_toward[i], i)) kept += whole / 9.0;
+    }
+  }
+  kept /= max(all, vec3(1e-9));
+}
+`;
+const groundFragment = `#version 300 es
+precision highp float;
+flat in vec3 kept;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(kept, 1.0); }
+`;
+
+class Occlusion {
+  constructor(stage) {
+    this.stage = stage;
+    this.columns = 0;  // of the pictures of moments; 0 until they are known
+    this.busy = false;
+    this.keys = { mesh: "", ground: "" };  // the light that is taken
+    const exponents = stage.data.basis.exponents, off = (exponent) => Math.abs(Math.log(exponent / lightExponent));
+    this.sampler = `lobe_${exponents.indexOf([...exponents].sort((a, b) => off(a) - off(b))[0])}`;
+  }
+
+  // A picture of points, of so many textures.
+  picture({ columns, rows }, kind, count) {
+    const { gl } = this.stage, framebuffer = gl.createFramebuffer(), places = [...Array(count).keys()].map((i) => gl.COLOR_ATTACHMENT0 + i);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+    const filter = kind === gl.RGBA8 ? gl.LINEAR : gl.NEAREST;
+    const textures = places.map((place) => {
+      const texture = gl.createTexture();
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.texStorage2D(gl.TEXTURE_2D, 1, kind, columns, rows);
+      for (const [what, how] of [[gl.TEXTURE_MIN_FILTER, filter], [gl.TEXTURE_MAG_FILTER, filter], [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]]) gl.texParameteri(gl.TEXTURE_2D, what, how);
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, place, gl.TEXTURE_2D, texture, 0);
+      return texture;
+    });
+    gl.drawBuffers(places);
+    return { framebuffer, textures };
+  }
+  points(columns, positions, normals) {
+    const count = positions.length / 3, size = { columns, rows: Math.ceil(count / columns) };
+    return { ...size, count, vertices: this.stage.vertices(positions, normals), bits: this.picture(size, this.stage.gl.RGBA32UI, 1) };
+  }
+  // Draws points into a picture of them by a program, which reads textures [name, kind, texture]; `set` sets its other uniforms.
+  draw(program, { vertices, count, columns, rows }, picture, textures, set) {
+    const { gl } = this.stage;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, picture.framebuffer);
+    gl.viewport(0, 0, columns, rows);
+    gl.useProgram(program.program);
+    textures.forEach(([name, kind, texture], unit) => {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(kind, texture);
+      gl.uniform1i(program.at(name), unit);
+    });
+    gl.activeTexture(gl.TEXTURE0);
+    gl.uniform4fv(program.at("ball"), this.ball);
+    gl.uniform2i(program.at("size"), columns, rows);
+    set(program);
+    gl.disable(gl.BLEND);
+    gl.bindVertexArray(vertices);
+    gl.drawArrays(gl.POINTS, 0, count);
+  }
+
+  // Begins to find what is in the way of light.
+  begin() {
+    this.work = this.steps();
+    this.busy = true;
+  }
+  // Goes on with it, and returns whether there is more to be done.
+  step() { return (this.busy = !this.work.next().done); }
+  *steps() {
+    const { stage } = this, { low, high, positions, normals } = stage.mesh, size = added(high, low, -1);
+    this.ball = [...scaled(added(low, high), 0.5), 2 / (1.02 * Math.hypot(...size) || 1)];
+    this.mesh ??= this.points(vertexColumns, positions, normals);  // not turned with the light
+    const shown = stage.shownParts.map(({ first }) => first).join();
+    if (this.shown !== shown) {
+      yield* this.look(this.mesh, around);
+      [this.shown, this.columns, this.ground] = [shown, vertexColumns, null];
+      this.changed();
+    }
+    if (this.ground || stage.data.environments.every((one) => one.ground_light)) return;
+    const side = Math.max(size[0], size[2]) + 3 * size[1], corner = [0, 2].map((i) => (low[i] + high[i] - side) / 2), places = new Float32Array(3 * groundSize ** 2);
+    for (let i = 0; i < places.length; i += 3)
+      places.set([corner[0] + (side * (((i / 3) % groundSize) + 0.5)) / groundSize, low[1], corner[1] + (side * (Math.floor(i / 3 / groundSize) + 0.5)) / groundSize], i);
+    const ground = this.points(groundSize, places, places.map((_, i) => (i % 3 === 1 ? 1 : 0)));
+    yield* this.look(ground, above);
+    this.ground = { ...ground, low: corner, side, shade: this.picture(ground, stage.gl.RGBA8, 1) };
+    this.changed();
+  }
+  changed() {
+    this.keys = { mesh: "", ground: "" };
+    ++this.stage.partsVersion;
+    this.stage.gathered.drop();
+  }
+  get depths() { return this.stage.target("depths", tilesAcross * tile, tilesDown * tile, this.stage.gl.R8, true); }
+  *look(points, directions) {
+    const { gl } = this.stage, program = (this.bitsProgram ??= this.stage.program(bitsVertex, bitsFragment));
+    for (let begin = 0; begin < aroundCount; begin += atOnce) {
+      const list = directions.slice(begin, begin + atOnce);
+      for (let i = 0; i < atOnce; ++i) {
+        this.drawDepth(list[i], i);
+        if (i % 4 === 3) yield;
+      }
+      gl.colorMask(...[0, 1, 2, 3].map((channel) => channel === begin / atOnce));
+      this.draw(program, points, points.bits, [["depths", gl.TEXTURE_2D, this.depths.depth]], () => gl.uniform3fv(program.at("toward[0]"), list.flat()));
+      gl.colorMask(true, true, true, true);
+    }
+  }
+  // The depths of the mesh in a tile, as seen from far away in a direction.
+  drawDepth(toward, number) {
+    const { stage, depths } = this, { gl } = stage, program = (this.depthProgram ??= stage.program(depthVertex, depthFragment)), place = [tile * (number % tilesAcross), tile * Math.floor(number / tilesAcross), tile, tile];
+    gl.bindFramebuffer(gl.FRAMEBUFFER, depths.framebuffer);
+    gl.drawBuffers([gl.NONE]);
+    gl.useProgram(program.program);
+    gl.enable(gl.DEPTH_TEST);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(...place);
+    gl.viewport(...place);
+    gl.clearBufferfv(gl.DEPTH, 0, [1]);
+    gl.disable(gl.SCISSOR_TEST);
+    gl.uniform4fv(program.at("ball"), this.ball);
+    gl.uniform3fv(program.at("toward"), toward);
+    gl.bindVertexArray(stage.meshVertices);
+    for (const { first, count } of stage.shownParts) gl.drawElements(gl.TRIANGLES, 3 * count, gl.UNSIGNED_INT, 12 * first);
+    gl.disable(gl.DEPTH_TEST);
+  }
+
+  // Takes the light of an environment for points, unless it is taken already.
+  take(what, environment, program, points, picture, directions, textures, set) {
+    const { stage } = this, { gl } = stage, key = JSON.stringify([environment, stage.turn]);
+    if (this.keys[what] === key) return key;
+    const { texture } = stage.environment(environment).cubes.find(({ sampler }) => sampler === this.sampler);
+    this.draw(program, points, picture, [["seen", gl.TEXTURE_2D, points.bits.textures[0]], ["light", gl.TEXTURE_CUBE_MAP, texture], ...textures], () => {
+      gl.uniform3fv(program.at("around[0]"), directions.flat());
+      gl.uniformMatrix4x3fv(program.at("colors"), false, stage.data.layers.colors.flat());
+      gl.uniform2fv(program.at("turn"), stage.turnVector);
+      set();
+    });
+    return (this.keys[what] = key);
+  }
+  // The moments of the light that is lost in an environment; returns the name of their state.
+  takeLoss(environment) {
+    const { stage } = this, { gl } = stage;
+    if (this.columns === 0 || !stage.ground || !stage.data.environments[environment].cubes.some(({ sampler }) => sampler === this.sampler)) return "none";
+    const { texture, place } = stage.groundShade(environment), program = (this.lossProgram ??= stage.program(lossVertex, lossFragment));
+    this.moments ??= this.picture(this.mesh, gl.RGBA16F, 3);
+    return this.take("mesh", environment, program, this.mesh, this.moments, around, [["ground_light", gl.TEXTURE_2D, texture ?? this.depths.texture]], () => {
+      gl.uniform3fv(program.at("ground_place"), place);
+      gl.uniform3fv(program.at("seen_from"), stage.data.mesh.ground.seen_from);
+      gl.uniform1f(program.at("ground_height"), stage.mesh.low[1]);
+    });
+  }
+  // The shadow on the ground, which is known: {texture, low, side}.
+  groundLight(environment) {
+    const { stage, ground } = this, { gl } = stage, lamps = stage.data.environments[environment].lamps.slice(0, atOnce), program = (this.groundProgram ??= stage.program(groundVertex, groundFragment));
+    const toward = lamps.map(({ direction }) => turnedAgainst(direction, -stage.turn)), key = JSON.stringify([environment, stage.turn]);
+    if (this.keys.ground !== key) toward.forEach((direction, i) => this.drawDepth(direction, i));
+    this.take("ground", environment, program, ground, ground.shade, above, [["depths", gl.TEXTURE_2D, this.depths.depth]], () => {
+      gl.uniform1i(program.at("lamps"), lamps.length);
+      if (lamps.length > 0) gl.uniform3fv(program.at("lamp_toward[0]"), toward.flat());
+      if (lamps.length > 0) gl.uniform3fv(program.at("lamp_white[0]"), lamps.flatMap(({ white }) => white));
+    });
+    return { texture: ground.shade.textures[0], low: ground.low, side: ground.side };
+  }
+}
