@@ -16,7 +16,7 @@ namespace goniochrome::tool {
 // numbers of all rows and gloss readings in the layout's order. Other lines are objects of file and paint.
 class PackedLibrary {
  public:
-  // Takes a paint of a file of that name.
+  // Takes a paint of a file of that name, which is empty for a paint of the tool itself.
   void add(const std::string& file, const paint::Paint& paint);
   std::size_t size() const { return paints_.size(); }
   const std::vector<paint::Paint>& paints() const { return paints_; }

@@ -239,6 +239,13 @@ needs_browser() {
   [ "$status" -eq 0 ]
 }
 
+@test "a paint is designed and saved by the keyboard alone" {
+  needs_browser
+  run node "$code/keys.js" page.html .
+  echo "$output"
+  [ "$status" -eq 0 ]
+}
+
 @test "the stage, the picture and the design stay" {
   needs_browser
   run node "$code/stay.js" page.html .
@@ -322,6 +329,9 @@ QTX
   run node "$code/empty.js" empty.html .
   echo "$output"
   [ "$status" -eq 0 ]
+  grep -q '^# .*Save paint XML' empty-command.txt
+  sh -eu empty-command.txt
+  grep -q '<gloss[^>]*>30<' design.paints.xml
 }
 
 @test "droppers take from a picture what paint-pick takes" {

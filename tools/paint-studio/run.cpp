@@ -61,7 +61,7 @@ std::string script_text(std::string_view json) {
 Result<PackedLibrary> packed_paints(const Options& options, cli::Session& session) {
   PackedLibrary list;
   if (options.empty && options.paints.empty()) {
-    for (const paint::Paint& paint : starter_paints()) list.add("starter.paints.xml", paint);
+    for (const paint::Paint& paint : starter_paints()) list.add("", paint);
     return Result(std::move(list));
   }
   std::size_t mapped = 0;

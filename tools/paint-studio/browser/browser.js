@@ -118,8 +118,9 @@ class Browser {
   }
   async key(key, modifiers = 0) {
     const code = { ArrowUp: 38, ArrowDown: 40, ArrowLeft: 37, ArrowRight: 39, z: 90, y: 89, Tab: 9, Enter: 13, Home: 36, End: 35 }[key];
+    const text = key === "Enter" ? "\r" : undefined;
     for (const type of ["keyDown", "keyUp"])
-      await this.send("Input.dispatchKeyEvent", { type, key, modifiers, windowsVirtualKeyCode: code });
+      await this.send("Input.dispatchKeyEvent", { type, key, code: key, text, modifiers, windowsVirtualKeyCode: code });
   }
   async screenshot(file) {
     const { data } = await this.send("Page.captureScreenshot", { format: "png" });

@@ -20,6 +20,12 @@ drive("the empty page is whole", { width: 1400, height: 900 }, async ({ browser,
     check("its lobes meet it", (await value("studio.fit.de00_mean")) < 1);
   }
   check("paints differ", new Set(means.map((mean) => mean.toFixed(5))).size === paints);
+  // The commands name a file that the page saves.
+  await value("studio.commit({ gloss: 30 })");
+  await browser.click("#save-xml");
+  const name = `${await value("fileName(studio.paint.name)")}.paints.xml`;
+  fs.writeFileSync(path.join(folder, name), await browser.download(name));
+  fs.writeFileSync(path.join(folder, "empty-command.txt"), await value("document.getElementById('command').textContent"));
   fs.writeFileSync(path.join(folder, "own.csv"), "sample,geometry,illuminant,observer,L,a,b\nown,45as15,D65,10,60,20,10\nown,45as45,D65,10,40,15,8\nown,45as110,D65,10,30,12,6\n");
   fs.writeFileSync(path.join(folder, "own.obj"), "o Body\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
   const pixels = Buffer.concat(Array.from({ length: 32 * 16 }, (_, i) => Buffer.from([i % 250, 120, 90, i % 32 === 4 ? 132 : 128])));

@@ -18,6 +18,12 @@ function optionsOf(edit) {
 // the gradient; `lines` gets it.
 function editsOf(library, state, lines) {
   const { file, paint, gradient, board } = state.own ?? library.at(state.start), source = quoted(`${file}#${paint.name}`);
+  if (file === "") {
+    // A paint of the page itself is in no file but in the one that the page saves, with its edits.
+    const name = state.name ?? paint.name, saved = `${fileName(name)}.paints.xml`;
+    lines.push(`# Here "Save paint XML" has saved ${saved}.`);
+    return [quoted(`${saved}#${name}`)];
+  }
   if (board) lines.push(`paint-pick --board ${quoted(board)} -o ${quoted(file)}`);
   if (gradient) {
     // An end that was edited is written first, as a file of its own.
@@ -90,7 +96,8 @@ class Handoff {
   }
 
   write(as, lobes, ending, type, paint = this.app.paint, more = {}) {
-    const command = commandOf(this.app.data, this.app.library, this.app.history.now).replaceAll(/ \|\n {2}/g, " | ").replaceAll("\n", "; ");
+    const { data, library, history } = this.app, isOwn = this.app.origin(history.now).file === "";
+    const command = isOwn ? data.command : commandOf(data, library, history.now).replaceAll(/^#.*\n/gm, "").replaceAll(/ \|\n {2}/g, " | ").replaceAll("\n", "; ");
     const { text } = this.app.engine.ask({ do: "write", paint, as, lobes, command, ...more,
                                            version: this.app.data.version });
     save(fileName(this.app.paint.name) + ending, text, type);
