@@ -12,7 +12,7 @@ namespace goniochrome::tool {
 
 namespace {
 
-constexpr int kSize = 128;
+constexpr int kSize = 192;
 constexpr int kTurns = 8;
 constexpr std::size_t kRays = 320;  // from each point; each takes less than a step of a byte
 constexpr std::size_t kFan = 8;

@@ -1,12 +1,12 @@
 // The shadow of the mesh on itself: the light that each vertex loses, as the moments that the program of the G-buffer
 // reads; and its shadow on the ground, in lights for which the tool has not found it. Depths of the mesh are drawn from
 // directions all around, in tiles of one picture. Each vertex and each place of the ground is a texel that keeps one bit for each
-// direction, from which the light of any environment is taken. goniochrome-rendering(7), "Pages".
+// direction, from which the light of any environment is taken. goniochrome-transport(7), "Shadows of a page".
 
 const tile = 512, tilesAcross = 8, tilesDown = 4, atOnce = 32, aroundCount = 128, vertexColumns = 1024, groundSize = 192;
 const lightExponent = 60;  // a lobe about as wide as the part of the sphere that one of the directions stands for
 
-// Directions that lie evenly on the sphere, or on its part above `low`, in a spiral (Swinbank and Purser 2006).
+// Directions that lie evenly on the sphere, or on its part above `low`, in a spiral.
 const evenly = (low) => Array.from({ length: aroundCount }, (_, i) => {
   const y = 1 - ((1 - low) * (2 * i + 1)) / (2 * aroundCount), ring = Math.sqrt(1 - y * y), angle = Math.PI * (3 - Math.sqrt(5)) * i;
   return [ring * Math.cos(angle), y, ring * Math.sin(angle)];
