@@ -275,7 +275,7 @@ with open("probe.hdr", "wb") as file:
             lit = 12 if abs(x - 40) < 6 and abs(y - 20) < 6 else 0.2 + 0.3 * (y < 30)
             file.write(rgbe(lit, lit * (0.8 + 0.2 * x / 128), lit * 0.9))
 PY
-  # The same light as OpenEXR: by each packing, as halves of a crop, and as tiles and packings that a page refuses.
+  # OpenEXR holds this light in each packing, as halves of a crop, and in tiles and packings that a page refuses.
   for packing in none rle zips zip piz dwaa; do oiiotool probe.hdr -d float --compression $packing -o "probe-$packing.exr"; done
   oiiotool probe.hdr -d half --compression zip -o probe-half.exr
   oiiotool probe.hdr --cut 60x40+20+10 --fullsize 128x64+0+0 -d half --compression rle -o probe-crop.exr
