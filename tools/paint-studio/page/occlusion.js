@@ -162,7 +162,8 @@ class Occlusion {
     this.stage = stage;
     this.columns = 0;  // of the pictures of moments; 0 until they are known
     this.busy = false;
-    this.keys = { mesh: "", ground: "" };  // the light that is taken
+    this.held = false;  // whether the light that was taken stays, as while it is turned
+    this.keys = { mesh: [], ground: [] };  // environment and turn of the light that is taken
     const exponents = stage.data.basis.exponents, off = (exponent) => Math.abs(Math.log(exponent / lightExponent));
     this.sampler = `lobe_${exponents.indexOf([...exponents].sort((a, b) => off(a) - off(b))[0])}`;
   }
@@ -234,7 +235,7 @@ class Occlusion {
     this.changed();
   }
   changed() {
-    this.keys = { mesh: "", ground: "" };
+    this.keys = { mesh: [], ground: [] };
     ++this.stage.partsVersion;
     this.stage.gathered.drop();
   }
@@ -245,7 +246,7 @@ class Occlusion {
       const list = directions.slice(begin, begin + atOnce);
       for (let i = 0; i < atOnce; ++i) {
         this.drawDepth(list[i], i);
-        if (i % 4 === 3) yield;
+        if (i % 2 === 1) yield;
       }
       gl.colorMask(...[0, 1, 2, 3].map((channel) => channel === begin / atOnce));
       this.draw(program, points, points.bits, [["depths", gl.TEXTURE_2D, this.depths.depth]], () => gl.uniform3fv(program.at("toward[0]"), list.flat()));
@@ -271,10 +272,15 @@ class Occlusion {
     gl.disable(gl.DEPTH_TEST);
   }
 
-  // Takes the light of an environment for points, unless it is taken already.
+  // True if the light of an environment is taken, or that of another turn of it is held.
+  has(what, environment) {
+    const [of, turn] = this.keys[what];
+    return of === environment && (turn === this.stage.turn || this.held);
+  }
+  // Takes the light of an environment for points, unless it is there; returns the name of its state.
   take(what, environment, program, points, picture, directions, textures, set) {
-    const { stage } = this, { gl } = stage, key = JSON.stringify([environment, stage.turn]);
-    if (this.keys[what] === key) return key;
+    const { stage } = this, { gl } = stage;
+    if (this.has(what, environment)) return this.keys[what].join();
     const { texture } = stage.environment(environment).cubes.find(({ sampler }) => sampler === this.sampler);
     this.draw(program, points, picture, [["seen", gl.TEXTURE_2D, points.bits.textures[0]], ["light", gl.TEXTURE_CUBE_MAP, texture], ...textures], () => {
       gl.uniform3fv(program.at("around[0]"), directions.flat());
@@ -282,7 +288,8 @@ class Occlusion {
       gl.uniform2fv(program.at("turn"), stage.turnVector);
       set();
     });
-    return (this.keys[what] = key);
+    this.keys[what] = [environment, stage.turn];
+    return this.keys[what].join();
   }
   // The moments of the light that is lost in an environment; returns the name of their state.
   takeLoss(environment) {
@@ -299,8 +306,8 @@ class Occlusion {
   // The shadow on the ground, which is known: {texture, low, side}.
   groundLight(environment) {
     const { stage, ground } = this, { gl } = stage, lamps = stage.data.environments[environment].lamps.slice(0, atOnce), program = (this.groundProgram ??= stage.program(groundVertex, groundFragment));
-    const toward = lamps.map(({ direction }) => turnedAgainst(direction, -stage.turn)), key = JSON.stringify([environment, stage.turn]);
-    if (this.keys.ground !== key) toward.forEach((direction, i) => this.drawDepth(direction, i));
+    const toward = lamps.map(({ direction }) => turnedAgainst(direction, -stage.turn));
+    if (!this.has("ground", environment)) toward.forEach((direction, i) => this.drawDepth(direction, i));
     this.take("ground", environment, program, ground, ground.shade, above, [["depths", gl.TEXTURE_2D, this.depths.depth]], () => {
       gl.uniform1i(program.at("lamps"), lamps.length);
       if (lamps.length > 0) gl.uniform3fv(program.at("lamp_toward[0]"), toward.flat());

@@ -326,6 +326,7 @@ class StageView {
     this.drawing = undefined;
     if (this.lost) return;
     this.rest(null);
+    this.stage.occlusion.held = moving && this.full_ms > 16;
     if (moving && this.lastFrame !== undefined && now - this.lastFrame < 400) this.pace(now - this.lastFrame);
     this.lastFrame = moving ? now : undefined;
     if (this.traced !== null) {
