@@ -185,14 +185,14 @@ std::string light_left(bool shaded, double exponent, const std::string& look_up)
 }
 
 std::string ground_functions(const Effects& effects) {
-  return std::string(kProjectedGround) + (is_shaded(effects, true) ? kKeptLight : "");
+  return std::string(kProjectedGround) + (effects.lobes.size() <= kMostLobesOverShade ? kKeptLight : "");
 }
 
 std::string background_color(const Effects& effects, Product product, bool projected_ground) {
   switch (effects.background) {
     case Background::kEnvironment: {
       const std::string seen = fmt::format("textureLod(mirror, {}, 0.0)", projected_ground ? "projected(-wo)" : "-wo");
-      const char* kept = is_shaded(effects, projected_ground) ? "kept_light(-wo) * " : "";
+      const char* kept = projected_ground && effects.lobes.size() <= kMostLobesOverShade ? "kept_light(-wo) * " : "";
       return product == Product::kForms ? fmt::format("vec4({}unreflected({}), 1.0)", kept, seen)
                                         : fmt::format("vec4({}{}.rgb, 1.0)", kept, seen);
     }

@@ -55,7 +55,7 @@ vec3 projected(vec3 ray) {
 
 // The part of its light that the ground keeps beside the mesh, where a ray meets it. WebGL 2 promises 16 textures, so
 // that there is no room for it beside more lobes.
-inline constexpr std::size_t kMostLobesOverShade = 7;
+inline constexpr std::size_t kMostLobesOverShade = 8;
 inline constexpr const char* kKeptLight = R"(uniform sampler2D ground_light;
 uniform vec3 ground_place;  // where its square begins, in x and z, and squares to a unit of length; 0 for none
 uniform vec2 ground_turn;  // cosine and sine by which the environment was turned
@@ -84,9 +84,9 @@ std::array<color::Rgb, 4> map_colors(Product product, const ProductForms& forms)
 // diffuse part (kDiffusePart), less what is lost where the program is `shaded`.
 std::string light_left(bool shaded, double exponent, const std::string& look_up);
 constexpr double kDiffusePart = 0;
-// True if a page has room for textures of what is in the way of light.
+// True if a page has room for the texture of occlusion too.
 inline bool is_shaded(const Effects& effects, bool on_page) {
-  return on_page && effects.lobes.size() <= kMostLobesOverShade;
+  return on_page && effects.lobes.size() < kMostLobesOverShade;
 }
 
 // The functions of a ground on which the environment may lie.
