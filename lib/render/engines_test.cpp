@@ -137,7 +137,7 @@ TEST(Engines, DrawLobesThatStandInAViewAlone) {
   }
 }
 
-// Operators of four forms and of six, with the environment behind the mesh, which must come out of its forms again.
+// A common operator and one that no four squares make, with the environment behind the mesh.
 TEST(Engines, AgreeOnEveryOperator) {
   const mesh::Mesh mesh = sphere_mesh(96);
   const envmap::PrefilteredEnvironment env = uneven_env({1.3, 6, 40, 300, 3000}, {32, 20, 44, 100, 64});

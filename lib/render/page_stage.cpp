@@ -7,7 +7,6 @@
 #include "render/gl/shader.h"
 #include "render/gl/shader_parts.h"
 #include "render/internal/maps.h"
-#include "render/internal/product_forms.h"
 #include "render/scene_effects.h"
 
 namespace goniochrome::render {
@@ -22,10 +21,10 @@ namespace {
 PageShading shading_programs(Effects effects, const color::ReflectionOperator& op) {
   PageShading programs;
   programs.shading = for_opengl_es(shading_fragment_shader(effects, op, {}, true));
-  programs.gathering = for_opengl_es(gathering_fragment_shader(effects, op, true));
+  programs.gathering = for_opengl_es(gathering_fragment_shader(effects, true));
   effects.anisotropy = true;
   programs.brushed_shading = for_opengl_es(shading_fragment_shader(effects, op, {}, true));
-  programs.brushed_gathering = for_opengl_es(gathering_fragment_shader(effects, op, true));
+  programs.brushed_gathering = for_opengl_es(gathering_fragment_shader(effects, true));
   return programs;
 }
 
@@ -34,9 +33,7 @@ PageShading shading_programs(Effects effects, const color::ReflectionOperator& o
 PageLayers page_layers(Effects effects, const color::ReflectionOperator& op) {
   effects.lights = 1;
   effects.extent = true;
-  const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
-  return {for_opengl_es(layers_fragment_shader(effects, op)), light_layers(effects),
-          map_colors(product_of(effects, forms), forms), slots_of(effects).light_slot()};
+  return {for_opengl_es(layers_fragment_shader(effects, op)), light_layers(effects), slots_of(effects).light_slot()};
 }
 
 Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Effects& effects,
@@ -49,14 +46,10 @@ Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Ef
   scene.background = effects.background;
   scene.reflection = op;
   GONIO_ASSIGN(SceneMaps maps, scene_maps(scene, effects));
-  const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   PageLight light;
   light.programs = shading_programs(effects, op);
   const auto add = [&](std::string sampler, const envmap::CubeMap& map) {
-    const bool in_forms = forms.count == 4;
-    std::vector<float> texels =
-        in_forms ? in_four_forms(forms, map.texels.data(), map.texels.size() / 3, 3) : map.texels;
-    light.cubes.push_back({std::move(sampler), map.size, in_forms ? 4 : 3, std::move(texels)});
+    light.cubes.push_back({std::move(sampler), map.size, map.texels});
   };
   add("diffuse", *maps.diffuse.maps[0]);
   if (maps.diffuse.maps.size() > 1) add("coat_diffuse", *maps.diffuse.maps[1]);

@@ -3,7 +3,6 @@
 // goniochrome-rendering(7), "RENDERING".
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -25,15 +24,14 @@ PagePrograms page_programs();
 struct PageLayers {
   std::string layers_fragment;
   std::vector<LightLayer> layers;
-  std::array<color::Rgb, 4> colors;  // of the channels of light as maps hold it
-  int light_slot = 0;                // the fourth channel of its weights is the square of the coat's index
+  int light_slot = 0;  // the fourth channel of its weights is the square of the coat's index
 };
 PageLayers page_layers(Effects effects, const color::ReflectionOperator& op);
 
-// One cube texture, by the name of its sampler: six faces of RGB or, where products are taken in four forms, of RGBA.
+// One cube texture, by the name of its sampler: six faces of RGB.
 struct PageCube {
   std::string sampler;
-  int size = 0, channels = 3;
+  int size = 0;
   std::vector<float> texels;
 };
 

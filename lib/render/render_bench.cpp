@@ -173,8 +173,8 @@ BENCHMARK(BM_Tilts)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-// Colored light through the operator in its forms beside the component-wise product, frame by frame in turns; the least
-// of each. Argument: engine.
+// Colored light through the operator beside the component-wise product, frame by frame in turns; the least of each.
+// Argument: engine.
 void BM_Operator(benchmark::State& state) {
   const char* engine = state.range(0) == 0 ? "gl" : "cpu";
   const auto bench = bench_scene(5);

@@ -38,11 +38,7 @@ Json cube_json(const render::PageCube& cube, PackedNumbers& numbers) {
   std::vector<std::uint16_t> halves;
   halves.reserve(cube.texels.size());
   for (const float value : cube.texels) halves.push_back(Imath::half(value / scale).bits());
-  return {{"sampler", cube.sampler},
-          {"size", cube.size},
-          {"channels", cube.channels},
-          {"scale", scale},
-          {"texels", numbers.add_smooth(halves, static_cast<std::size_t>(cube.channels))}};
+  return {{"sampler", cube.sampler}, {"size", cube.size}, {"scale", scale}, {"texels", numbers.add_smooth(halves)}};
 }
 
 Json programs_json(const render::PageShading& programs) {
@@ -145,11 +141,8 @@ Json packed_layers(const formats::Basis& basis) {
                     {"lamps", layer.of_lamps},
                     {"sampler", layer.sampler},
                     {"shift", layer.shift_slot < 0 ? Json() : Json::array({layer.shift_slot, layer.shift_channel})}});
-  Json colors = Json::array();
-  for (const color::Rgb& rgb : all.colors) colors.push_back(vector_json(rgb));
-  return {{"program", all.layers_fragment}, {"list", std::move(list)},          {"light_slot", all.light_slot},
-          {"colors", std::move(colors)},    {"at_once", render::kLayersAtOnce}, {"beside", render::kBesideLayer},
-          {"none", render::kNoLayer}};
+  return {{"program", all.layers_fragment},   {"list", std::move(list)},        {"light_slot", all.light_slot},
+          {"at_once", render::kLayersAtOnce}, {"beside", render::kBesideLayer}, {"none", render::kNoLayer}};
 }
 
 Json packed_finishes(const formats::Basis& basis, PackedNumbers& numbers) {

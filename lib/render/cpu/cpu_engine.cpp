@@ -1,5 +1,4 @@
 #include "render/cpu/cpu_engine.h"
-#include "render/internal/bordered_face.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,39 +14,17 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr std::size_t kBlock = 8;  // floats of a texel: two maps of four forms, or one of six
+constexpr std::size_t kBlock = 8;  // floats of a texel: two maps
 
-std::size_t floats_of(const ProductForms& forms) {
-  return forms.count > 4 ? kBlock : kBlock / 2;
-}
-
-std::size_t blocks_of(std::size_t maps, const ProductForms& forms) {
-  return (maps * floats_of(forms) + kBlock - 1) / kBlock;
-}
-
-void put_forms(const ProductForms& forms, const float* rgb, float* to) {
-  const color::Rgb color{rgb[0], rgb[1], rgb[2]};
-  for (int form = 0; form < forms.count; ++form) to[form] = static_cast<float>(forms.of(form, color));
-}
-
-UnsetArray<float> interleaved(const std::vector<envmap::MapPointer>& maps, const ProductForms& forms,
-                              std::size_t stride) {
-  const std::size_t wide = static_cast<std::size_t>(maps.front()->size) + 2, texels = wide * wide;
-  UnsetArray<float> data(6 * texels * stride + kBlock);  // the last texel is read by the block
-  std::fill_n(&data[6 * texels * stride], kBlock, 0.0F);
-  parallel_for(6 * maps.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t job = begin; job < end; ++job) {
-      const std::size_t face = job / maps.size(), map = job % maps.size();
-      const std::vector<float> texel = bordered_face(*maps[map], static_cast<int>(face));
-      float* to = &data[face * texels * stride + floats_of(forms) * map];
-      // Floats that hold no form have the weight 0, and must be numbers for that. The last map clears those behind it.
-      const auto forms_here = static_cast<std::size_t>(forms.count);
-      const std::size_t floats = map + 1 < maps.size() ? floats_of(forms) : stride - floats_of(forms) * map;
-      for (std::size_t i = 0; i < texels; ++i) {
-        put_forms(forms, &texel[3 * i], to + i * stride);
-        std::fill_n(to + i * stride + forms_here, floats - forms_here, 0.0F);
-      }
-    }
+UnsetArray<float> interleaved(const std::vector<envmap::MapPointer>& maps, std::size_t stride) {
+  const std::size_t texels = bordered_texels(maps.front()->size);
+  UnsetArray<float> data(texels * stride + kBlock);  // the last texel is read by the block
+  // Floats that hold no map have the weight 0, and must be numbers for that.
+  std::fill_n(&data[texels * stride], kBlock, 0.0F);
+  for (std::size_t i = 0; stride > 4 * maps.size() && i < texels; ++i)
+    std::fill_n(&data[i * stride + 4 * maps.size()], 4, 0.0F);
+  parallel_for(maps.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t map = begin; map < end; ++map) put_bordered(*maps[map], stride, &data[4 * map]);
   });
   return data;
 }
@@ -114,11 +91,10 @@ InterleavedMaps CpuEngine::Stack::maps() const {
   return {shape.size, blocks, texel_floats, texels != nullptr ? texels->data() : nullptr};
 }
 
-CpuEngine::Stack CpuEngine::interleaved(const MapClass& maps, MapUse use, const ProductForms& forms) {
-  const std::size_t blocks = blocks_of(maps.maps.size(), forms);
-  const std::size_t stride = maps.maps.size() == 1 ? floats_of(forms) : blocks * kBlock;
+CpuEngine::Stack CpuEngine::interleaved(const MapClass& maps, MapUse use) {
+  const std::size_t blocks = (maps.maps.size() + 1) / 2, stride = maps.maps.size() == 1 ? kBlock / 2 : blocks * kBlock;
   return {maps, use, static_cast<int>(blocks), static_cast<int>(stride),
-          std::make_shared<const UnsetArray<float>>(render::interleaved(maps.maps, forms, stride))};
+          std::make_shared<const UnsetArray<float>>(render::interleaved(maps.maps, stride))};
 }
 
 // The maps of a scene that can be loaded, for the effects that were loaded.
@@ -128,7 +104,7 @@ void CpuEngine::stack(const SceneMaps& maps) {
     if (of.size == 0) return;
     const auto same = std::ranges::find_if(
         other_stacks_, [&](const Stack& other) { return other.use == use && other.shape.maps == of.maps; });
-    stacks_.push_back(same != other_stacks_.end() ? *same : interleaved(of, use, forms_));
+    stacks_.push_back(same != other_stacks_.end() ? *same : interleaved(of, use));
     stacks_.back().shape = of;  // lobes may have other numbers
   };
   add(maps.diffuse, MapUse::kNormal);
@@ -150,15 +126,13 @@ void CpuEngine::take_out_spots(const Scene& scene, std::size_t spots) {
 
 Result<void> CpuEngine::load(const Scene& scene, const Effects& effects) {
   GONIO_ASSIGN(const SceneMaps maps, scene_maps(scene, effects));
-  const bool keeps = std::exchange(keeps_maps_, false) && effects.reflection == effects_.reflection;
-  other_stacks_ = keeps ? std::move(stacks_) : std::vector<Stack>();
+  other_stacks_ = std::exchange(keeps_maps_, false) ? std::move(stacks_) : std::vector<Stack>();
   effects_ = effects;
   background_map_ = {};
-  forms_ = effects.reflection ? product_forms(scene.reflection) : ProductForms{};
   stack(maps);
   other_stacks_.clear();
   if (effects.background == Background::kEnvironment) {
-    background_map_ = interleaved(maps.mirror, MapUse::kMirror, {});
+    background_map_ = effects.mirror ? stacks_.back() : interleaved(maps.mirror, MapUse::kMirror);
   }
   int tilted_blocks = 0;
   for (const Stack& stack : stacks_) tilted_blocks += stack.use == MapUse::kTilted ? stack.blocks : 0;
@@ -172,15 +146,8 @@ Result<void> CpuEngine::load(const Scene& scene, const Effects& effects) {
     shading_.shifted[shading_.classes] = stack.shape.shifted;
     shading_.maps[shading_.classes++] = stack.maps();
   }
-  colors_of_forms_.assign(4 * kBlock, 0.0F);
-  for (std::size_t form = 0; form < static_cast<std::size_t>(forms_.count); ++form) {
-    for (int c = 0; c < 3; ++c)
-      colors_of_forms_[4 * form + static_cast<std::size_t>(c)] = static_cast<float>(forms_.out[form][c]);
-  }
-  shading_.map_floats = static_cast<int>(floats_of(forms_));
-  shading_.colors_of_forms = colors_of_forms_.data();
   tilt_store_ = {};
-  if (scene.env != nullptr) tilt_store_.load(*scene.env, tilt_exponents(scene, effects), forms_);
+  if (scene.env != nullptr) tilt_store_.load(*scene.env, tilt_exponents(scene, effects));
   load_paints(scene, effects);
   return {};
 }
@@ -202,10 +169,8 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
     const auto texel = [&](int slot) { return table.at(row / table.segments, row % table.segments, slot); };
     for (const Stack& stack : stacks_) {
       for (std::size_t i = 0; i < stack.shape.slots.size(); ++i) {
-        const std::size_t at = i * floats_of(forms_);
-        float* ends = to + 2 * kBlock * (at / kBlock) + at % kBlock;
-        for (const std::size_t end : {0, 1})
-          put_forms(forms_, texel(stack.shape.slots[i]) + 4 * end, ends + kBlock * end);
+        float* ends = to + 2 * kBlock * (i / 2) + 4 * (i % 2);
+        for (const std::size_t end : {0, 1}) std::copy_n(texel(stack.shape.slots[i]) + 4 * end, 4, ends + kBlock * end);
       }
       to += 2 * kBlock * static_cast<std::size_t>(stack.blocks);
     }
@@ -236,7 +201,7 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
   set_lights(scene, effects);
   set_tilts(scene, effects);
   tilt_store_.load_paints(scene, effects);
-  tilt_shading_ = tilt_store_.shading(colors_of_forms_.data());
+  tilt_shading_ = tilt_store_.shading(product_.data());
   background_ = effects.background;
   background_color_ = scene.background_color;
 }
@@ -250,16 +215,8 @@ void CpuEngine::set_lights(const Scene& scene, const Effects& effects) {
       lights_.push_back(0);
     }
   }
-  products_.clear();
-  for (const color::Rgb& channel : {color::Rgb{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
-    const color::Matrix3 product =
-        color::reflection_matrix(effects.reflection ? scene.reflection : color::component_wise(), channel);
-    for (std::size_t column = 0; column < 3; ++column) {
-      for (std::size_t row = 0; row < 3; ++row) products_.push_back(static_cast<float>(product[row][column]));
-      products_.push_back(0);
-    }
-  }
-  shading_.product = products_.data();
+  product_ = product_columns(effects.reflection ? scene.reflection : color::component_wise());
+  shading_.product = product_.data();
   for (const Effects::LobeUse& lobe : effects.lobes) exponents_.push_back(static_cast<float>(lobe.exponent));
   shading_.lights = static_cast<int>(lights_.size() / 8);
   shading_.light = lights_.data();

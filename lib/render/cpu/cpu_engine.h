@@ -13,7 +13,6 @@
 #include "render/engine.h"
 #include "render/internal/maps.h"
 #include "render/internal/placed_lamps.h"
-#include "render/internal/product_forms.h"
 #include "render/scene_effects.h"
 
 namespace goniochrome::render {
@@ -52,7 +51,7 @@ class CpuEngine : public Engine {
     int blocks = 0, texel_floats = 0;
     std::shared_ptr<const UnsetArray<float>> texels;  // maps without bright spots may be those with them
   };
-  static Stack interleaved(const MapClass& maps, MapUse use, const ProductForms& forms);
+  static Stack interleaved(const MapClass& maps, MapUse use);
   void stack(const SceneMaps& maps);
   void take_out_spots(const Scene& scene, std::size_t spots);
   void set_lights(const Scene& scene, const Effects& effects);
@@ -65,8 +64,8 @@ class CpuEngine : public Engine {
   Effects effects_;
   std::vector<Stack> stacks_, other_stacks_;  // those with other spots; none: not yet
   Stack background_map_;
-  ProductForms forms_;
-  std::vector<float> weights_, lights_, products_, exponents_, tilts_, colors_of_forms_;
+  ProductColumns product_{};
+  std::vector<float> weights_, lights_, exponents_, tilts_;
   std::vector<int> first_tilt_;
   std::vector<std::uint64_t> lit_lobes_;
   std::vector<bool> bare_;  // parts whose paint shows nothing, as it lies under a texture

@@ -18,12 +18,6 @@ namespace goniochrome::render {
 namespace HWY_NAMESPACE {
 
 using Block = Pack<8>;  // one texel's block: two maps, R G B 0 each
-HWY_INLINE Block load(const float* from) {
-  return Block::load(from);
-}
-HWY_INLINE Block filled(float value) {
-  return Block::filled(value);
-}
 
 // Four texels and the share of each.
 struct Corners {
@@ -36,17 +30,17 @@ struct Corners {
 HWY_INLINE Corners corners_of(const InterleavedMaps& maps, const Taps& taps, int i, float scale = 1) {
   const std::size_t texel = static_cast<std::size_t>(maps.texel_floats);
   const float* upper = maps.texels + static_cast<std::size_t>(taps.offset[i]) * texel;
-  const float u = taps.across[i], lower = scale * taps.down[i], upper_share = scale - lower;
-  return {upper,
-          upper + static_cast<std::size_t>(maps.size + 2) * texel,
-          texel,
-          {filled((1 - u) * upper_share), filled(u * upper_share), filled((1 - u) * lower), filled(u * lower)}};
+  const auto share = [&](int corner) HWY_ATTR { return Block::filled(scale * taps.share[corner][i]); };
+  const float* lower = upper + static_cast<std::size_t>(maps.size + 2) * texel;
+  return {upper, lower, texel, {share(0), share(1), share(2), share(3)}};
 }
 
 // Adds one block of a texel, between the four, to `sum`.
 HWY_INLINE Block add_between(const Corners& c, std::size_t at, const Block& sum) {
-  const Block upper = mul_add(c.share[0], load(c.upper + at), mul_add(c.share[1], load(c.upper + c.right + at), sum));
-  return mul_add(c.share[2], load(c.lower + at), mul_add(c.share[3], load(c.lower + c.right + at), upper));
+  const auto add = [&](int corner, const float* texel, const Block& to) HWY_ATTR {
+    return mul_add(c.share[corner], Block::load(texel + at), to);
+  };
+  return add(2, c.lower, add(3, c.lower + c.right, add(0, c.upper, add(1, c.upper + c.right, sum))));
 }
 
 // The view of every point, and where its weights are.
@@ -118,25 +112,10 @@ struct Shifts {
   }
 };
 
-// The color that the forms' products stand for.
-HWY_INLINE void store_color(const CpuShading& s, const Block& products, float* rgba) {
-  float lanes[8];
-  products.store(lanes);
-  if (s.map_floats == 4) {
-    for (int c = 0; c < 4; ++c) lanes[c] += lanes[4 + c];
-  }
-  Quad color = Quad::filled(0);
-  for (int c = 0; c < s.map_floats; ++c) {
-    color = mul_add(Quad::filled(lanes[c]), Quad::load(s.colors_of_forms + 4 * c), color);
-  }
-  color.store(rgba);
-}
-
-// Adds what one block of the maps shows to `sum`, and steps to the weights of the next.
-HWY_INLINE Block add_weighted(const Block& t, const Block& maps, const float*& weight, Block sum) {
-  sum = mul_add(mul_add(t, load(weight + 8), load(weight)), maps, sum);
+// Adds what one block of the maps shows, and steps to the weights of the next.
+HWY_INLINE void add_weighted(const Block& t, const Block& maps, const float*& weight, Products<8>& sums) {
+  sums.add(maps, mul_add(t, Block::load(weight + 8), Block::load(weight)));
   weight += 16;
-  return sum;
 }
 
 // The tilted normals of every point, one at a time.
@@ -204,7 +183,7 @@ HWY_INLINE void gather_tilted(const CpuShading& s, const PointArrays& points, co
         const Corners corners = corners_of(s.maps[k], taps, i, tilted.share[i]);
         float* sums = gathered + (i * kMostBlocks + first) * 8;
         for (int block = 0; block < s.maps[k].blocks; ++block, sums += 8) {
-          const Block before = which > 0 ? load(sums) : filled(0);
+          const Block before = which > 0 ? Block::load(sums) : Block::filled(0);
           add_between(corners, static_cast<std::size_t>(block) * 8, before).store(sums);
         }
       }
@@ -234,23 +213,22 @@ HWY_INLINE void add_environment(const CpuShading& s, const PointArrays& points, 
   // 3. Point by point, each block of texels is interpolated and weighed, and the sum is turned into a color.
   for (int i = 0; i < count; ++i) {
     const float* weight = frame.weights(s, points, i);
-    const Block t = filled(frame.t[i]);
+    const Block t = Block::filled(frame.t[i]);
     const float* tilted = gathered + i * kMostBlocks * 8;
-    Block sum = filled(0);
+    Products<8> sums;
     for (int k = 0; k < s.classes; ++k) {
       if (s.use[k] == MapUse::kTilted && s.tilts != nullptr) {
         for (int block = 0; block < s.maps[k].blocks; ++block, tilted += 8) {
-          sum = add_weighted(t, load(tilted), weight, sum);
+          add_weighted(t, Block::load(tilted), weight, sums);
         }
         continue;
       }
       const Corners corners = corners_of(s.maps[k], taps[k], i);
       for (int block = 0; block < s.maps[k].blocks; ++block) {
-        const Block maps = add_between(corners, static_cast<std::size_t>(block) * 8, filled(0));
-        sum = add_weighted(t, maps, weight, sum);
+        add_weighted(t, add_between(corners, static_cast<std::size_t>(block) * 8, Block::filled(0)), weight, sums);
       }
     }
-    store_color(s, sum, rgba + 4 * i);
+    sums.on(Quad::filled(0), s.product).store(rgba + 4 * i);
   }
 }
 
@@ -298,27 +276,19 @@ class Lit {
     }
   }
 
-  // Adds what the points show of it: for each channel of the light the sum over the slots, times the product's matrix.
+  // Adds what the points show of it.
   HWY_INLINE void show(const CpuShading& s, const PointArrays& points, const Frame& frame, int count,
                        float* rgba) const {
     for (int i = 0; i < count; ++i) {
       const float* weights = frame.weights(s, points, i) + s.light_offset;
       const Quad t = Quad::filled(frame.t[i]);
-      Quad sums[3] = {Quad::filled(0), Quad::filled(0), Quad::filled(0)};
+      Products<4> sums;
       for (int k = 0; k < slots_; ++k) {
         const float *weight = weights + 8 * slot_[k], *light = light_ + 3 * slot_[k] * kPointsAtOnce + i;
         const Quad shown = mul_add(t, Quad::load(weight + 4), Quad::load(weight));
-        for (int c = 0; c < 3; ++c) sums[c] = mul_add(Quad::filled(light[c * kPointsAtOnce]), shown, sums[c]);
+        for (int c = 0; c < 3; ++c) sums.of[c] = mul_add(Quad::filled(light[c * kPointsAtOnce]), shown, sums.of[c]);
       }
-      float* pixel = rgba + 4 * i;
-      Quad color = Quad::load(pixel);
-      for (int c = 0; c < 3; ++c) {
-        float by_channel[4];
-        sums[c].store(by_channel);
-        for (int k = 0; k < 3; ++k)
-          color = mul_add(Quad::filled(by_channel[k]), Quad::load(s.product + 12 * c + 4 * k), color);
-      }
-      color.store(pixel);
+      sums.on(Quad::load(rgba + 4 * i), s.product).store(rgba + 4 * i);
     }
   }
 
@@ -518,11 +488,7 @@ void LookUpBackground(const InterleavedMaps& map, PointArrays& points, int count
     const Direction v = viewer_of(points, i);
     address({hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)}, map.size, i, taps);
   }
-  for (int i = 0; i < count; ++i) {
-    float lanes[8];
-    add_between(corners_of(map, taps, i), 0, filled(0)).store(lanes);
-    std::copy_n(lanes, 4, rgba + 4 * i);
-  }
+  for (int i = 0; i < count; ++i) fetched(map.size, map.texels, taps, static_cast<std::size_t>(i)).store(rgba + 4 * i);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -20,15 +20,14 @@ constexpr int kMostLobes = 2 * kMostBlocks;
 static_assert(kMostLobes <= 64, "CpuShading::lit_lobes has a bit for each");
 
 // Data that the kernel shades with. Weights of a part and segment: for each class of maps in order, for each block, 8
-// floats a and 8 floats b (W = a + b t), in the forms of the maps. Then, for each light slot, 4 floats a and 4 floats
+// floats a and 8 floats b (W = a + b t). Then, for each light slot, 4 floats a and 4 floats
 // b. Then, for each class, a and b of the shift s of its direction, r + s n.
 struct CpuShading {
   int classes = 0;
   InterleavedMaps maps[kMostClasses];
   MapUse use[kMostClasses] = {};
   bool shifted[kMostClasses] = {};
-  int map_floats = 4;                      // of a texel of one map, 4 or 8
-  const float* colors_of_forms = nullptr;  // R G B 0 of each
+  const float* product = nullptr;  // product_columns()
   int segments = 1;
   const float* weights = nullptr;
   std::size_t segment_floats = 0;
@@ -43,7 +42,6 @@ struct CpuShading {
 
   int lights = 0;
   const float* light = nullptr;    // 8 a light: direction, 0, pi times its white, 0
-  const float* product = nullptr;  // the columns (4 floats) of the matrices by which red, green and blue light multiply
   const PlacedLamp* placed = nullptr;  // of each light; null: all are far away
   int lobes = 0;
   const float* exponents = nullptr;

@@ -31,7 +31,7 @@ HWY_INLINE V dot(const Direction& a, const Direction& b) {
 // Four texels and their shares, for each point.
 struct Taps {
   HWY_ALIGN std::int32_t offset[kPointsAtOnce];  // of the upper left texel, in texels
-  HWY_ALIGN float across[kPointsAtOnce], down[kPointsAtOnce];
+  HWY_ALIGN float share[4][kPointsAtOnce];       // upper left and right, lower left and right
 };
 
 // The face that a direction meets, its coordinates s and t there, and the length of the direction's largest component:
@@ -71,14 +71,16 @@ HWY_INLINE void address(const OnFace& at, hn::Vec<hn::RebindToSigned<D>> size, s
   const auto wide = hn::Add(size, hn::Set(n, 2));
   const auto offset = hn::Add(hn::Mul(hn::Add(hn::Mul(hn::ConvertTo(n, at.face), wide), i_row), wide), i_column);
   hn::Store(offset, n, taps.offset + i);
-  hn::Store(hn::Sub(column, hn::ConvertTo(f, i_column)), f, taps.across + i);
-  hn::Store(hn::Sub(row, hn::ConvertTo(f, i_row)), f, taps.down + i);
+  const V right = hn::Sub(column, hn::ConvertTo(f, i_column)), lower = hn::Sub(row, hn::ConvertTo(f, i_row));
+  const V left = hn::Sub(hn::Set(f, 1.0F), right), both = hn::Mul(right, lower), lower_left = hn::Mul(left, lower);
+  hn::Store(hn::Sub(left, lower_left), f, taps.share[0] + i), hn::Store(hn::Sub(right, both), f, taps.share[1] + i);
+  hn::Store(lower_left, f, taps.share[2] + i), hn::Store(both, f, taps.share[3] + i);
 }
 HWY_INLINE void address(const Direction& d, int size, std::size_t i, Taps& taps) {
   address(on_face(d), hn::Set(hn::RebindToSigned<D>(), size), i, taps);
 }
 
-// n floats, in as many registers as they need.
+// n floats, fours of R G B 0, in as many registers as they need.
 template <std::size_t n>
 struct Pack {
   using Tag = hn::CappedTag<float, n>;
@@ -98,6 +100,19 @@ struct Pack {
   HWY_INLINE void store(float* to) const {
     for (std::size_t i = 0; i < kRegisters; ++i) hn::StoreU(v[i], Tag(), to + i * kLanes);
   }
+  // One channel of each four, in all of it.
+  template <int c>
+  HWY_INLINE Pack channel() const {
+    Pack pack;
+    for (std::size_t i = 0; i < kRegisters; ++i) {
+      if constexpr (kLanes > 1) {
+        pack.v[i] = hn::Broadcast<c>(v[i]);
+      } else {
+        pack.v[i] = v[i / 4 * 4 + c];
+      }
+    }
+    return pack;
+  }
 };
 template <std::size_t n>
 HWY_INLINE Pack<n> mul_add(const Pack<n>& a, const Pack<n>& b, const Pack<n>& c) {
@@ -107,6 +122,45 @@ HWY_INLINE Pack<n> mul_add(const Pack<n>& a, const Pack<n>& b, const Pack<n>& c)
 }
 
 using Quad = Pack<4>;  // one R G B 0
+
+// The light of one map at point i, between its four texels.
+HWY_INLINE Quad fetched(int size, const float* texels, const Taps& taps, std::size_t i) {
+  const float* upper = texels + 4 * static_cast<std::size_t>(taps.offset[i]);
+  const float* lower = upper + 4 * static_cast<std::size_t>(size + 2);
+  Quad light = mul_add(Quad::filled(taps.share[0][i]), Quad::load(upper), Quad::filled(0));
+  light = mul_add(Quad::filled(taps.share[1][i]), Quad::load(upper + 4), light);
+  light = mul_add(Quad::filled(taps.share[2][i]), Quad::load(lower), light);
+  return mul_add(Quad::filled(taps.share[3][i]), Quad::load(lower + 4), light);
+}
+
+// Sums of light times weights. Each channel of the light multiplies by a matrix of its own, which is left for the end.
+template <std::size_t n>
+struct Products {
+  Pack<n> of[3];
+
+  HWY_INLINE Products() {
+    for (Pack<n>& sums : of) sums = Pack<n>::filled(0);
+  }
+  HWY_INLINE void add(const Pack<n>& light, const Pack<n>& weight) {
+    of[0] = mul_add(light.template channel<0>(), weight, of[0]);
+    of[1] = mul_add(light.template channel<1>(), weight, of[1]);
+    of[2] = mul_add(light.template channel<2>(), weight, of[2]);
+  }
+  // `color` and the color of the sums, by product_columns().
+  HWY_INLINE Quad on(Quad color, const float* columns) const {
+    for (const Pack<n>& sums : of) {
+      float fours[n];
+      sums.store(fours);
+      Quad sum = Quad::load(fours);
+      if constexpr (n > 4) sum = mul_add(Quad::filled(1), Quad::load(fours + 4), sum);
+      color = mul_add(sum.template channel<0>(), Quad::load(columns), color);
+      color = mul_add(sum.template channel<1>(), Quad::load(columns + 4), color);
+      color = mul_add(sum.template channel<2>(), Quad::load(columns + 8), color);
+      columns += 12;
+    }
+    return color;
+  }
+};
 
 // log cos from 1 - cos, which is exact where cos is 1 but for the last digits.
 HWY_INLINE V log_cos_of(V versine) {

@@ -1,5 +1,4 @@
 #include "render/cpu/tilt_kernel.h"
-#include "render/internal/bordered_face.h"
 
 #include <algorithm>
 #include <array>
@@ -62,46 +61,27 @@ HWY_INLINE void tilt_address(const TiltShading& s, const TiltPoint& p, std::size
   hn::Store(hn::Add(hn::Load(whole, taps.offset + lane), first), whole, taps.offset + lane);
 }
 
-template <std::size_t kFloats>
 HWY_INLINE void add_point(const TiltShading& s, const TiltPoint& p, float* rgba) {
-  using Texel = Pack<kFloats>;
   const D f;
   Taps taps;
-  Texel sum = Texel::filled(0);
-  const Texel t = Texel::filled(p.t);
+  Products<4> sums;
+  const Quad t = Quad::filled(p.t);
   for (std::size_t group = p.first; group < p.end; group += kTiltLanes) {
     for (std::size_t lane = 0; lane < kTiltLanes; lane += hn::Lanes(f)) tilt_address(s, p, group, lane, taps);
     for (std::size_t lane = 0; lane < kTiltLanes; ++lane) {
       const std::int32_t size = s.places[2 * group + lane];
       if (size == 0) break;  // the rest is padding
-      const float u = taps.across[lane], v = taps.down[lane];
-      const float* upper = s.texels + static_cast<std::size_t>(taps.offset[lane]) * kFloats;
-      const float* lower = upper + static_cast<std::size_t>(size + 2) * kFloats;
-      Texel light = mul_add(Texel::filled((1 - u) * (1 - v)), Texel::load(upper), Texel::filled(0));
-      light = mul_add(Texel::filled(u * (1 - v)), Texel::load(upper + kFloats), light);
-      light = mul_add(Texel::filled((1 - u) * v), Texel::load(lower), light);
-      light = mul_add(Texel::filled(u * v), Texel::load(lower + kFloats), light);
-      const float* weight = s.weights + 2 * (group + lane) * kFloats;
-      sum = mul_add(mul_add(t, Texel::load(weight + kFloats), Texel::load(weight)), light, sum);
+      const float* weight = s.weights + 8 * (group + lane);
+      sums.add(fetched(size, s.texels, taps, lane), mul_add(t, Quad::load(weight + 4), Quad::load(weight)));
     }
   }
-  float lanes[kFloats];
-  sum.store(lanes);
-  Quad color = Quad::load(rgba);
-  for (std::size_t c = 0; c < kFloats; ++c)
-    color = mul_add(Quad::filled(lanes[c]), Quad::load(s.colors_of_forms + 4 * c), color);
-  color.store(rgba);
+  sums.on(Quad::load(rgba), s.product).store(rgba);
 }
 
 void AddTilted(const TiltShading& s, const PointArrays& points, int count, float* rgba) {
   for (int i = 0; i < count; ++i) {
     const TiltPoint point = tilt_point(s, points, i);
-    if (point.first == point.end) continue;
-    if (s.map_floats == 4) {
-      add_point<4>(s, point, rgba + 4 * i);
-    } else {
-      add_point<8>(s, point, rgba + 4 * i);
-    }
+    if (point.first != point.end) add_point(s, point, rgba + 4 * i);
   }
 }
 
@@ -118,35 +98,16 @@ void add_tilted(const TiltShading& shading, const PointArrays& points, int count
   HWY_DYNAMIC_DISPATCH(AddTilted)(shading, points, count, rgba);
 }
 
-namespace {
-
-std::size_t floats_of(const ProductForms& forms) {
-  return forms.count > 4 ? 8 : 4;
-}
-
-void put_forms(const ProductForms& forms, const std::array<float, 3>& rgb, float* to) {
-  const color::Rgb color{rgb[0], rgb[1], rgb[2]};
-  for (int form = 0; form < forms.count; ++form) to[form] = static_cast<float>(forms.of(form, color));
-}
-
-}  // namespace
-
-void TiltStore::load(const envmap::PrefilteredEnvironment& env, const std::vector<double>& exponents,
-                     const ProductForms& forms) {
-  exponents_ = exponents, forms_ = forms;
-  const std::size_t floats = floats_of(forms);
+void TiltStore::load(const envmap::PrefilteredEnvironment& env, const std::vector<double>& exponents) {
+  exponents_ = exponents;
   sizes_.clear(), firsts_.clear(), texels_.clear();
   for (const double exponent : exponents) {
     const envmap::CubeMap& map = env.lobe(exponent)->map;
     sizes_.push_back(map.size);
-    firsts_.push_back(static_cast<std::int32_t>(texels_.size() / floats));
-    for (int face = 0; face < 6; ++face) {
-      const std::vector<float> rgb = bordered_face(map, face);
-      const std::size_t from = texels_.size();
-      texels_.resize(from + rgb.size() / 3 * floats, 0.0F);
-      for (std::size_t i = 0; i < rgb.size() / 3; ++i)
-        put_forms(forms, {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]}, &texels_[from + i * floats]);
-    }
+    firsts_.push_back(static_cast<std::int32_t>(texels_.size() / 4));
+    const std::size_t from = texels_.size();
+    texels_.resize(from + 4 * bordered_texels(map.size));
+    put_bordered(map, 4, &texels_[from]);
   }
 }
 
@@ -156,10 +117,9 @@ void TiltStore::load_paints(const Scene& scene, const Effects& effects) {
   if (exponents_.empty()) return;
   const TiltTable table = tilt_table(scene, effects, exponents_);
   groups_.assign(table.group_of_part.begin(), table.group_of_part.end());
-  const std::size_t floats = floats_of(forms_);
   for (const std::vector<TiltLookup>& row : table.rows) {
     const std::size_t first = rows_.back(), end = first + (row.size() + kTiltLanes - 1) / kTiltLanes * kTiltLanes;
-    axes_.resize(6 * end, 0.0F), places_.resize(2 * end, 0), weights_.resize(2 * floats * end, 0.0F);
+    axes_.resize(6 * end, 0.0F), places_.resize(2 * end, 0), weights_.resize(8 * end, 0.0F);
     for (std::size_t i = 0; i < row.size(); ++i) {
       const TiltLookup& of = row[i];
       const std::size_t at = first + i, group = at / kTiltLanes * kTiltLanes, lane = at % kTiltLanes;
@@ -169,19 +129,17 @@ void TiltStore::load_paints(const Scene& scene, const Effects& effects) {
       }
       places_[2 * group + lane] = sizes_[of.map];
       places_[2 * group + kTiltLanes + lane] = firsts_[of.map];
-      put_forms(forms_, of.weight, &weights_[2 * floats * at]);
-      put_forms(forms_, of.weight_step, &weights_[2 * floats * at + floats]);
+      std::ranges::copy(of.weight, &weights_[8 * at]), std::ranges::copy(of.weight_step, &weights_[8 * at + 4]);
     }
     any_ = any_ || !row.empty();
     rows_.push_back(static_cast<std::uint32_t>(end));
   }
 }
 
-TiltShading TiltStore::shading(const float* colors_of_forms) const {
+TiltShading TiltStore::shading(const float* product) const {
   if (!any_) return {};
-  return {kViewSegments,  groups_.data(),  rows_.data(),   axes_.data(),
-          places_.data(), weights_.data(), texels_.data(), static_cast<int>(floats_of(forms_)),
-          colors_of_forms};
+  return {kViewSegments,   groups_.data(), rows_.data(), axes_.data(), places_.data(), weights_.data(),
+          texels_.data(), product};
 }
 
 }  // namespace goniochrome::render

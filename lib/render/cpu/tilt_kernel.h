@@ -8,7 +8,6 @@
 
 #include "render/cpu/cpu_kernel.h"
 #include "render/internal/maps.h"
-#include "render/internal/product_forms.h"
 #include "render/internal/tilt_table.h"
 
 namespace goniochrome::render {
@@ -22,10 +21,9 @@ struct TiltShading {
   const std::uint32_t* rows = nullptr;   // of a group and segment: where its look-ups begin; and one more for the end
   const float* axes = nullptr;           // 6 of each look-up in groups of kTiltLanes: a, s, c, and their steps
   const std::int32_t* places = nullptr;  // 2 of each look-up in such groups: size of the map, first texel
-  const float* weights = nullptr;        // of each look-up: the forms of the weight, and of its step
-  const float* texels = nullptr;         // of all maps, `map_floats` each, faces with their border
-  int map_floats = 4;                    // 4 or 8
-  const float* colors_of_forms = nullptr;
+  const float* weights = nullptr;        // of each look-up: R G B 0, and its step
+  const float* texels = nullptr;         // of all maps, R G B 0 each, faces with their border
+  const float* product = nullptr;        // product_columns()
 };
 
 // Adds what the tilted lobes show to the colors of points. Their directions to the viewer must be unit.
@@ -35,14 +33,13 @@ void add_tilted(const TiltShading& shading, const PointArrays& points, int count
 class TiltStore {
  public:
   // Interleaves the maps of these exponents. All of them must be there.
-  void load(const envmap::PrefilteredEnvironment& env, const std::vector<double>& exponents, const ProductForms& forms);
+  void load(const envmap::PrefilteredEnvironment& env, const std::vector<double>& exponents);
   void load_paints(const Scene& scene, const Effects& effects);
-  // With the colors that the forms stand for. It holds until the store is loaded again.
-  TiltShading shading(const float* colors_of_forms) const;
+  // It holds until the store is loaded again.
+  TiltShading shading(const float* product) const;
 
  private:
   std::vector<double> exponents_;
-  ProductForms forms_;
   std::vector<std::int32_t> sizes_, firsts_;  // of the maps
   std::vector<float> texels_, axes_, weights_;
   std::vector<std::uint32_t> rows_;

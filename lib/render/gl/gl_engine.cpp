@@ -6,7 +6,6 @@
 #include "base/parallel.h"
 #include "render/gl/disc_texture.h"
 #include "render/gl/exact_lookups.h"
-#include "render/gl/gl_weights.h"
 #include "render/gl/shader.h"
 #include "render/gl/shader_parts.h"
 #include "render/gl/tilt_shader.h"
@@ -38,15 +37,9 @@ void GlEngine::upload(const envmap::CubeMap& map, const std::string& sampler) {
   GLuint texture = 0;
   gl_->GenTextures(1, &texture);
   gl_->BindTexture(GL_TEXTURE_CUBE_MAP, texture);
-  const auto texels = static_cast<std::size_t>(map.size) * static_cast<std::size_t>(map.size);
   for (int face = 0; face < 6; ++face) {
     const GLenum target = GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face);
-    if (forms_.count == 4) {
-      gl_->TexImage2D(target, 0, GL_RGBA32F, map.size, map.size, 0, GL_RGBA, GL_FLOAT,
-                      in_four_forms(forms_, map.at(face, 0, 0), texels, 3).data());
-    } else {
-      gl_->TexImage2D(target, 0, GL_RGB32F, map.size, map.size, 0, GL_RGB, GL_FLOAT, map.at(face, 0, 0));
-    }
+    gl_->TexImage2D(target, 0, GL_RGB32F, map.size, map.size, 0, GL_RGB, GL_FLOAT, map.at(face, 0, 0));
   }
   const GLint filter = gl_->on_gpu() ? GL_NEAREST : GL_LINEAR;  // with_exact_lookups() interpolates
   gl_->TexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, filter);
@@ -63,7 +56,6 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
     GONIO_ASSIGN(program_, gl_->program(shading_vertex_shader(), text));
     text_ = text;
   }
-  forms_ = effects.reflection ? product_forms(scene.reflection) : ProductForms{};
   if (no_vertices_ == 0) gl_->GenVertexArrays(1, &no_vertices_);
   gl_->BlendFunc(GL_ONE, GL_ONE);
   for (const auto& [sampler, texture] : cubes_) gl_->DeleteTextures(1, &texture);
@@ -101,10 +93,7 @@ void GlEngine::upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts) {
 }
 
 void GlEngine::upload_tilted(const Scene& scene) {
-  const TiltTexture texture =
-      tilt_texture(tilt_table(scene, effects_, tilt_exponents_), tilt_exponents_.size(), [&](const float* rgb) {
-        return forms_.count == 4 ? in_four_forms(forms_, rgb, 1, 3) : std::vector<float>{rgb[0], rgb[1], rgb[2]};
-      });
+  const TiltTexture texture = tilt_texture(tilt_table(scene, effects_, tilt_exponents_), tilt_exponents_.size());
   tilt_stride_ = static_cast<int>(texture.stride);
   tilted_ = gl_->float_texture(static_cast<int>(kTiltTexels), static_cast<int>(texture.rgba.size() / (4 * kTiltTexels)),
                                texture.rgba.data());
@@ -148,8 +137,7 @@ void GlEngine::set_lamps() {
 void GlEngine::load_paints(const Scene& scene) {
   const WeightTable table = weight_table(scene, effects_, stretched_parts(scene, effects_));
   gl_->DeleteTextures(1, &weights_);
-  const std::vector<float> weights = gl_weights(table, forms_);
-  weights_ = gl_->float_texture(2 * table.slots * table.segments, table.parts, weights.data());
+  weights_ = gl_->float_texture(2 * table.slots * table.segments, table.parts, table.rgba.data());
   gl_->DeleteTextures(1, &tilts_);
   tilts_ = 0;
   if (effects_.anisotropy) upload_tilts(tilts_of(scene, effects_));

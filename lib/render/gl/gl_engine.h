@@ -10,7 +10,6 @@
 #include "render/gl/gl.h"
 #include "render/internal/maps.h"
 #include "render/internal/placed_lamps.h"
-#include "render/internal/product_forms.h"
 
 namespace goniochrome::render {
 
@@ -44,7 +43,6 @@ class GlEngine : public Engine {
 
   const GlContext* gl_;
   Effects effects_;
-  ProductForms forms_;
   std::string text_;
   GLuint program_ = 0, weights_ = 0, tilts_ = 0, tilted_ = 0, discs_ = 0, no_vertices_ = 0, texture_ = 0, target_ = 0;
   std::vector<std::pair<std::string, GLuint>> cubes_;  // by the name of their sampler

@@ -10,16 +10,16 @@ namespace {
 
 // The light of a slot from the maps in a mirror direction.
 std::string map_light_function(const Effects& effects, bool shaded) {
-  std::string text = "\nvec4 map_light(vec3 r, int slot, vec3 n) {\n  vec4 light = vec4(0.0);\n";
+  std::string text = "\nvec4 map_light(vec3 r, int slot, vec3 n) {\n  vec3 light = vec3(0.0);\n";
   for (const LightLayer& layer : light_layers(effects)) {
     if (layer.of_lamps) continue;
     std::string toward = layer.sampler == "diffuse" || layer.sampler == "coat_diffuse" ? "n" : "r";
     if (layer.shift_slot >= 0) toward = fmt::format("r + W({}).{} * n", layer.shift_slot, "rgba"[layer.shift_channel]);
-    text +=
-        fmt::format("  if (slot == {}) light = {};\n", layer.slot,
-                    light_left(shaded, layer.exponent, fmt::format("textureLod({}, {}, 0.0)", layer.sampler, toward)));
+    text += fmt::format(
+        "  if (slot == {}) light = {};\n", layer.slot,
+        light_left(shaded, layer.exponent, fmt::format("textureLod({}, {}, 0.0).rgb", layer.sampler, toward)));
   }
-  return text + "  return light;\n}\n";
+  return text + "  return vec4(light, 0.0);\n}\n";
 }
 
 // The light of a disc by the flakes or the gloss of a lobe: the sums of the shading program, without weights.
@@ -90,18 +90,14 @@ std::vector<LightLayer> light_layers(const Effects& effects) {
   return layers;
 }
 
-std::string gathering_fragment_shader(const Effects& effects, const color::ReflectionOperator& op, bool on_page) {
+std::string gathering_fragment_shader(const Effects& effects, bool on_page) {
   const bool lamps = effects.single_lights() > 0, shaded = is_shaded(effects, on_page);
-  const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
-  const Product product = product_of(effects, forms);
   const bool projected_ground = on_page && effects.background == Background::kEnvironment;
   std::string text = std::string(kHead) + "// goniochrome-rendering(7), \"Layers\"\n" + uniforms(effects) + kRays;
   text +=
       fmt::format("uniform int slots[{0}];\nuniform float scales[{0}];\nlayout(location = 0) out vec4 layers[{0}];\n",
                   kLayersAtOnce);
-  text += kWeight + (shaded ? occlusion_functions(product, forms) : "");
-  if (product == Product::kForms && effects.environment)
-    text += forms_functions(forms, effects.background == Background::kEnvironment);
+  text += kWeight + (shaded ? occlusion_functions() : "");
   if (lit_gloss(effects)) text += fresnel_function();
   if (effects.coat && lamps) text += kLetIn;
   if (lamps) text += disc_functions(effects.lobes.size()) + "float index2;  // of the coat, squared\n";
@@ -115,9 +111,8 @@ std::string gathering_fragment_shader(const Effects& effects, const color::Refle
     sums += fmt::format("{}vec4(0.0)", o == 0 ? "" : ", ");
     written += fmt::format("  layers[{0}] = sums[{0}] / scales[{0}];\n", o);
   }
-  text += start_of_main(
-      effects, "",
-      fmt::format("    vec4 shown = {};\n", background_color(effects, product, projected_ground)) + beside);
+  text += start_of_main(effects, "",
+                        fmt::format("    vec4 shown = {};\n", background_color(effects, projected_ground)) + beside);
   if (shaded) text += occlusion_start(effects);
   text += tilt_frame(effects) + fmt::format("  vec4 sums[{0}] = vec4[{0}]({1});\n", kLayersAtOnce, sums);
   if (effects.environment) {
@@ -137,8 +132,6 @@ std::string gathering_fragment_shader(const Effects& effects, const color::Refle
 }
 
 std::string layers_fragment_shader(const Effects& effects, const color::ReflectionOperator& op) {
-  const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
-  const Product product = product_of(effects, forms);
   std::string text = std::string(kHead) + "// goniochrome-rendering(7), \"Layers\"\n";
   text += fmt::format(
       R"(uniform sampler2D gbuffer;  // normal, part + 1 (negative: seen from inside)
@@ -152,22 +145,19 @@ layout(location = 0) out vec4 color;
       kMostLayers);
   text += std::string(kRays) + kWeight;
   if (effects.reflection) text += reflection_function(op);
-  if (product == Product::kForms) text += forms_functions(forms, false);
   text += start_of_main(effects, "  ivec2 at = ivec2(gl_FragCoord.xy);\n",
                         "    vec4 shown = texelFetch(layers, ivec3(at, 0), 0);\n"
                         "    color = vec4(beside_scale * shown.rgb, shown.a);\n");
-  const std::string by_color = "radiance += " + times(effects, "light.rgb", "W(slot).rgb") + ";\n";
-  text += fmt::format(R"(  vec4 products = vec4(0.0);
-  vec3 radiance = vec3(0.0);
+  return text + fmt::format(R"(  {0} products = {0}(0.0);
   for (int o = 0; o < count; ++o) {{
-    int slot = used[o].x;
-    vec4 light = scales[o] * texelFetch(layers, ivec3(at, used[o].y), 0);
-    if (slot < {}) {}    else {}  }}
+    vec3 light = scales[o] * texelFetch(layers, ivec3(at, used[o].y), 0).rgb;
+    products += {1};
+  }}
+  color = vec4({2}, 1.0);
+}}
 )",
-                      slots_of(effects).light_slot(),
-                      product == Product::kForms ? "products += W(slot) * light;\n" : by_color, by_color);
-  if (product == Product::kForms) text += "  radiance += color_of(products);\n";
-  return text + "  color = vec4(radiance, 1.0);\n}\n";
+                            sum_type(effects), product(effects, "light", "W(used[o].x).rgb"),
+                            color_of(effects, "products"));
 }
 
 }  // namespace goniochrome::render

@@ -14,7 +14,7 @@ namespace goniochrome::render {
 // A layer keeps the light that one slot of weights meets, see WeightTable.
 struct LightLayer {
   int slot = 0;
-  bool of_lamps = false;  // light of lamps as RGB; else that of a map, as the map has it
+  bool of_lamps = false;  // light of lamps; else that of a map
   std::string sampler;    // the map
   double exponent = 0;    // of its lobe, kDiffusePart or infinite
   // Where the slot has the shift by which a lobe looks beside its mirror direction; -1 where there is none.
@@ -34,7 +34,7 @@ constexpr int kMostLayers = 32;
 
 // Draws the layers of uniform slots[4], each divided by scales[4], at the points of a G-buffer. It reads what the
 // shading program of these effects reads.
-std::string gathering_fragment_shader(const Effects& effects, const color::ReflectionOperator& op, bool on_page);
+std::string gathering_fragment_shader(const Effects& effects, bool on_page);
 
 // The picture from layers: `layers` has the one of kBesideLayer first; `count` others have their slot and place in
 // uniform used[], and what they were divided by in scales[].

@@ -22,13 +22,10 @@ float cos_power(float versine, float exponent) {
 )";
 
 // One term of what the environment shows.
-std::string product_with_map(Product product, int slot, const std::string& map, const std::string& direction,
+std::string product_with_map(const Effects& effects, int slot, const std::string& map, const std::string& direction,
                              double exponent, bool shaded) {
-  const std::string weight = fmt::format("W({})", slot),
-                    light = light_left(shaded, exponent, fmt::format("textureLod({}, {}, 0.0)", map, direction));
-  if (product == Product::kForms) return weight + " * " + light;
-  if (product == Product::kPlain) return weight + ".rgb * " + light + ".rgb";
-  return fmt::format("times({}.rgb, {}.rgb)", weight, light);
+  return product(effects, fmt::format("W({}).rgb", slot),
+                 light_left(shaded, exponent, fmt::format("textureLod({}, {}, 0.0).rgb", map, direction)));
 }
 
 // The weights that discs meet are fetched once for a point, and not again for each of its discs.
@@ -69,18 +66,18 @@ std::string disc_lobes(const Effects& effects) {
 }
 
 // The light of the lobes from the environment in a mirror direction, and from a light.
-std::string lobe_functions(const Effects& effects, Product product, bool shaded) {
+std::string lobe_functions(const Effects& effects, bool shaded) {
   std::string text;
   if (effects.environment) {
     text += fmt::format(
         "\n{0} lobes(vec3 r, vec3 n) {{  // the light that a lobe gathers comes from r + s n\n  {0} sum = {0}(0.0);\n",
-        sum_type(product));
+        sum_type(effects));
     const WeightTable slots = slots_of(effects);
     for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
       const bool shifted = is_shifted(effects, effects.lobes[j].exponent);
       const std::string toward = shifted ? fmt::format("r + W({}).{} * n", slots.shift_slot(j), "rgba"[j % 4]) : "r";
       text +=
-          fmt::format("  sum += {};\n", product_with_map(product, WeightTable::lobe_slot(j), fmt::format("lobe_{}", j),
+          fmt::format("  sum += {};\n", product_with_map(effects, WeightTable::lobe_slot(j), fmt::format("lobe_{}", j),
                                                          toward, effects.lobes[j].exponent, shaded));
     }
     text += "  return sum;\n}\n";
@@ -101,20 +98,23 @@ std::string lobe_functions(const Effects& effects, Product product, bool shaded)
 }
 
 // L = K_D pi P_1(n) + sum W_j P_Ej(r) + K_M F P_inf(r)
-std::string environment_terms(const Effects& effects, Product product, bool tilted, bool shaded) {
+std::string environment_terms(const Effects& effects, bool tilted, bool shaded) {
   std::string text = "\n  // the environment\n";
-  const std::string sum = product == Product::kForms ? "products" : "radiance";
-  if (product == Product::kForms) text += "  vec4 products = vec4(0.0);\n";
   const auto term = [&](int slot, const char* map, const char* direction, double exponent) {
-    text += fmt::format("  {} += {};\n", sum, product_with_map(product, slot, map, direction, exponent, shaded));
+    text += fmt::format("  products += {};\n", product_with_map(effects, slot, map, direction, exponent, shaded));
   };
   if (effects.diffuse) term(WeightTable::diffuse_slot(), "diffuse", "n", kDiffusePart);
   if (effects.diffuse && effects.coat) term(slots_of(effects).coat_diffuse_slot(), "coat_diffuse", "n", kDiffusePart);
-  if (!effects.lobes.empty()) text += over_tilts(effects, sum, "lobes", ", n");
+  if (!effects.lobes.empty()) text += over_tilts(effects, "products", "lobes", ", n");
   if (effects.mirror) term(slots_of(effects).mirror_slot(), "mirror", "r", paint::kMirrorExponent);
-  if (tilted) text += fmt::format("  {} += tilted_lobes(r, n, wo);\n", sum);
-  if (product == Product::kForms) text += "  radiance += color_of(products);\n";
+  if (tilted) text += "  products += tilted_lobes(r, n, wo);\n";
   return text;
+}
+
+// The end of a loop over lamps.
+std::string lit_sum(const Effects& effects) {
+  return fmt::format("    products += {};\n  }}\n",
+                     product(effects, fmt::format("{} * {}", glsl(kPi), lamp_white(effects)), "reflected"));
 }
 
 // The terms of discs, with their mirror images.
@@ -133,8 +133,7 @@ std::string disc_terms(const Effects& effects) {
   if (effects.mirror)
     text += fmt::format("    if (distance(r, l) <= disc.y) reflected += disc.z * W({}).rgb;\n",
                         slots_of(effects).lamp_mirror_slot());
-  return text +
-         fmt::format("    radiance += {} * {};\n  }}\n", glsl(kPi), times(effects, lamp_white(effects), "reflected"));
+  return text + lit_sum(effects);
 }
 
 // The exact BRDF times cos_i, so that the gloss term's 1/cos_i is gone.
@@ -157,8 +156,7 @@ std::string light_terms(const Effects& effects) {
     const char* fresnel = lit_gloss(effects) ? "fresnel(sqrt(0.5 + 0.5 * dot(l, wo)))" : "1.0";
     text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, base, {}", fresnel));
   }
-  return text +
-         fmt::format("    radiance += {} * {};\n  }}\n", glsl(kPi), times(effects, lamp_white(effects), "reflected"));
+  return text + lit_sum(effects);
 }
 
 }  // namespace
@@ -173,35 +171,29 @@ std::string shading_vertex_shader() {
 std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
                                     const std::vector<double>& tilted, bool on_page) {
   const bool lit_lobes = effects.single_lights() > 0 && !effects.lobes.empty(), shaded = is_shaded(effects, on_page);
-  const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
-  const Product product = product_of(effects, forms);
   // 1. What the program is given, and the functions that it needs.
   std::string text = std::string(kHead) + "// goniochrome-rendering(7), \"RENDERING\"\n";
   text += uniforms(effects) + tilt_uniforms(effects, tilted) + kRays + "layout(location = 0) out vec4 color;\n" +
-          kWeight + (shaded ? occlusion_functions(product, forms) : "") + placed_lamp_functions(effects);
-  if (effects.reflection && (product == Product::kOperator || effects.single_lights() > 0))
-    text += reflection_function(op);
-  if (effects.environment && product == Product::kForms)
-    text += forms_functions(forms, effects.background == Background::kEnvironment);
+          kWeight + (shaded ? occlusion_functions() : "") + placed_lamp_functions(effects);
+  if (effects.reflection) text += reflection_function(op);
   if (lit_gloss(effects)) text += fresnel_function();
   if (effects.coat && effects.single_lights() > 0) text += kLetIn;
   if (lit_lobes && !effects.discs()) text += kCosPower;
   if (effects.single_lights() > 0 && effects.discs())
     text += disc_functions(effects.lobes.size()) + disc_weights(effects);
-  if (!effects.lobes.empty()) text += lobe_functions(effects, product, shaded);
-  text += tilt_function(effects, tilted, product);
+  if (!effects.lobes.empty()) text += lobe_functions(effects, shaded);
+  text += tilt_function(effects, tilted);
   const bool projected_ground = on_page && effects.background == Background::kEnvironment;
   if (projected_ground) text += ground_functions(effects);
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
-  text += start_of_main(effects, "",
-                        fmt::format("    color = {};\n", background_color(effects, product, projected_ground)));
-  text += "  vec3 radiance = vec3(0.0);\n";
+  text += start_of_main(effects, "", fmt::format("    color = {};\n", background_color(effects, projected_ground)));
+  text += fmt::format("  {0} products = {0}(0.0);\n", sum_type(effects));
   if (shaded) text += occlusion_start(effects);
   // 3. The sum of what the environment and the lights show.
   text += tilt_frame(effects);
-  if (effects.environment) text += environment_terms(effects, product, !tilted.empty(), shaded);
+  if (effects.environment) text += environment_terms(effects, !tilted.empty(), shaded);
   if (effects.single_lights() > 0) text += light_terms(effects);
-  return text + "  color = vec4(radiance, 1.0);\n}\n";
+  return text + fmt::format("  color = vec4({}, 1.0);\n}}\n", color_of(effects, "products"));
 }
 
 std::string shading_fragment_shader(const Scene& scene, const Effects& effects) {

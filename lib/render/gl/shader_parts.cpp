@@ -22,11 +22,6 @@ std::string glsl(double value) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
-Product product_of(const Effects& effects, const ProductForms& forms) {
-  if (!effects.reflection) return Product::kPlain;
-  return forms.count == 4 ? Product::kForms : Product::kOperator;
-}
-
 std::string uniforms(const Effects& effects) {
   std::string text = R"(uniform sampler2D gbuffer;  // normal, part + 1 (negative: seen from inside)
 uniform sampler2D weights;  // a row for each part; two texels for each slot of each segment of the view
@@ -101,40 +96,27 @@ bool lit_gloss(const Effects& effects) {
          std::any_of(effects.lobes.begin(), effects.lobes.end(), [](const Effects::LobeUse& use) { return use.gloss; });
 }
 
-std::string times(const Effects& effects, const std::string& a, const std::string& b) {
-  return effects.reflection ? fmt::format("times({}, {})", a, b) : fmt::format("{} * {}", a, b);
+const char* sum_type(const Effects& effects) {
+  return effects.reflection ? "mat3" : "vec3";
+}
+
+std::string product(const Effects& effects, const std::string& a, const std::string& b) {
+  return effects.reflection ? fmt::format("outerProduct({}, {})", a, b) : fmt::format("{} * {}", a, b);
+}
+
+std::string color_of(const Effects& effects, const std::string& products) {
+  return effects.reflection ? fmt::format("color_of({})", products) : products;
 }
 
 std::string reflection_function(const color::ReflectionOperator& op) {
-  std::string text = "\nvec3 times(vec3 a, vec3 b) {  // bilinear reflection\n  return vec3(";
-  for (std::size_t c = 0; c < 3; ++c) {
-    text += fmt::format("{}dot(a, mat3(", c == 0 ? "" : "              ");
-    for (std::size_t e = 0; e < 3; ++e) {
-      for (std::size_t d = 0; d < 3; ++d) text += fmt::format("{}{}", e + d == 0 ? "" : ", ", glsl(op.k[c][d][e]));
-    }
-    text += c == 2 ? ") * b));\n}\n" : ") * b),\n";
+  std::string text = "\nvec3 color_of(mat3 products) {  // bilinear reflection\n  return ";
+  for (std::size_t e = 0; e < 3; ++e) {
+    text += e == 0 ? "mat3(" : " +\n         mat3(";
+    for (std::size_t d = 0; d < 3; ++d)
+      for (std::size_t c = 0; c < 3; ++c) text += fmt::format("{}{}", d + c == 0 ? "" : ", ", glsl(op.k[c][d][e]));
+    text += fmt::format(") * products[{}]", e);
   }
-  return text;
-}
-
-std::string forms_functions(const ProductForms& forms, bool background) {
-  std::string columns, white;
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (int c = 0; c < 3; ++c) columns += (columns.empty() ? "" : ", ") + glsl(forms.out[i][c]);
-    white += (white.empty() ? "" : ", ") + glsl(forms.of(static_cast<int>(i), {1, 1, 1}));
-  }
-  std::string text = fmt::format(
-      "\nvec3 color_of(vec4 products) {{  // of weights and maps, both in the four forms of bilinear reflection\n"
-      "  return mat4x3({}) * products;\n}}\n",
-      columns);
-  if (background) {
-    text += fmt::format("vec3 unreflected(vec4 forms) {{ return color_of(forms * vec4({})); }}  // by white\n", white);
-  }
-  return text;
-}
-
-const char* sum_type(Product product) {
-  return product == Product::kForms ? "vec4" : "vec3";
+  return text + ";\n}\n";
 }
 
 std::string over_tilts(const Effects& effects, const std::string& sum, const std::string& function,
@@ -152,18 +134,11 @@ std::string over_tilts(const Effects& effects, const std::string& sum, const std
                      sum, function, more);
 }
 
-std::array<color::Rgb, 4> map_colors(Product product, const ProductForms& forms) {
-  if (product != Product::kForms) return {color::Rgb{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {}};
-  std::array<color::Rgb, 4> colors;
-  for (std::size_t i = 0; i < colors.size(); ++i) colors[i] = forms.of(static_cast<int>(i), {1, 1, 1}) * forms.out[i];
-  return colors;
-}
-
-std::string occlusion_functions(Product product, const ProductForms& forms) {
+std::string occlusion_functions() {
   std::string luminance;
-  for (const color::Rgb& rgb : map_colors(product, forms))
+  for (const color::Rgb& rgb : {color::Rgb{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
     luminance += (luminance.empty() ? "" : ", ") + glsl(color::xyz_d65_from_rgb(rgb).Y);
-  return fmt::format("const vec4 luminance = vec4({});\n", luminance) + kOcclusion;
+  return fmt::format("const vec3 luminance = vec3({});\n", luminance) + kOcclusion;
 }
 
 std::string occlusion_start(const Effects& effects) {
@@ -171,8 +146,8 @@ std::string occlusion_start(const Effects& effects) {
   const auto off = [](const Effects::LobeUse& lobe) { return std::abs(std::log(lobe.exponent / kSharpestBands)); };
   const auto wide = std::ranges::min_element(effects.lobes, {}, off);
   if (wide == effects.lobes.end()) return text;
-  const std::string map = fmt::format("textureLod(lobe_{}, r, 0.0)", wide - effects.lobes.begin());
-  return text + fmt::format("  vec4 wide = {};\n  sharp = dot(luminance, {}) / max(dot(luminance, wide), 1e-6);\n", map,
+  const std::string map = fmt::format("textureLod(lobe_{}, r, 0.0).rgb", wide - effects.lobes.begin());
+  return text + fmt::format("  vec3 wide = {};\n  sharp = dot(luminance, {}) / max(dot(luminance, wide), 1e-6);\n", map,
                             light_left(true, wide->exponent, "wide"));
 }
 
@@ -188,13 +163,12 @@ std::string ground_functions(const Effects& effects) {
   return std::string(kProjectedGround) + (effects.lobes.size() <= kMostLobesOverShade ? kKeptLight : "");
 }
 
-std::string background_color(const Effects& effects, Product product, bool projected_ground) {
+std::string background_color(const Effects& effects, bool projected_ground) {
   switch (effects.background) {
     case Background::kEnvironment: {
       const std::string seen = fmt::format("textureLod(mirror, {}, 0.0)", projected_ground ? "projected(-wo)" : "-wo");
       const char* kept = projected_ground && effects.lobes.size() <= kMostLobesOverShade ? "kept_light(-wo) * " : "";
-      return product == Product::kForms ? fmt::format("vec4({}unreflected({}), 1.0)", kept, seen)
-                                        : fmt::format("vec4({}{}.rgb, 1.0)", kept, seen);
+      return fmt::format("vec4({}{}.rgb, 1.0)", kept, seen);
     }
     case Background::kColor:
       return "vec4(background, 1.0)";

@@ -1,23 +1,13 @@
 // Pieces of shading programs that several of them have in common. goniochrome-rendering(7), "RENDERING".
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string>
 
 #include "render/effects.h"
 #include "render/gl/gbuffer_shader.h"
-#include "render/gl/tilt_shader.h"
-#include "render/internal/product_forms.h"
 
 namespace goniochrome::render {
-
-// How products with the environment's maps are taken: in plain RGB, in the four forms of the operator (which the maps
-// and their weights hold already), or by the operator itself.
-using Product = TiltProduct;
-Product product_of(const Effects& effects, const ProductForms& forms);
-// The type of a sum of such products.
-const char* sum_type(Product product);
 
 // A GLSL constant, which needs a point or an exponent to be a float.
 std::string glsl(double value);
@@ -72,14 +62,12 @@ vec3 kept_light(vec3 ray) {
 inline constexpr const char* kOcclusion = R"(uniform sampler2D occlusion;
 vec4 occluded;
 float sharp = 1.0;
-vec4 left(vec4 light, float lost) { return light * clamp(1.0 - lost / max(dot(luminance, light), 1e-6), 0.0, 1.5); }
-vec4 left(vec4 light, vec2 bands) { return left(light, occluded.y + dot(bands, occluded.zw)); }
+vec3 left(vec3 light, float lost) { return light * clamp(1.0 - lost / max(dot(luminance, light), 1e-6), 0.0, 1.5); }
+vec3 left(vec3 light, vec2 bands) { return left(light, occluded.y + dot(bands, occluded.zw)); }
 )";
-std::string occlusion_functions(Product product, const ProductForms& forms);
+std::string occlusion_functions();
 // A statement that takes the occlusion of a point, where r is known.
 std::string occlusion_start(const Effects& effects);
-// The colors of the channels of light as maps hold it.
-std::array<color::Rgb, 4> map_colors(Product product, const ProductForms& forms);
 // A look-up of the light of a lobe cos^E, whose bands are (E+1)/(E+2) and E/(E+3), of the mirror (infinite), or of the
 // diffuse part (kDiffusePart), less what is lost where the program is `shaded`.
 std::string light_left(bool shaded, double exponent, const std::string& look_up);
@@ -125,12 +113,13 @@ std::string disc_loop(const Effects& effects, const std::string& index2);
 // The Fresnel reflectance of gloss toward a disc, or "1.0".
 std::string disc_fresnel(const Effects& effects);
 
-// The product of two colors: each channel by itself, or by the operator.
-std::string times(const Effects& effects, const std::string& a, const std::string& b);
+// Products of two colors are summed channel by channel or, for the operator, each channel of one with each of the
+// other: the type of such a sum, one product, and the color of the sum, for which the program needs
+// reflection_function().
+const char* sum_type(const Effects& effects);
+std::string product(const Effects& effects, const std::string& a, const std::string& b);
+std::string color_of(const Effects& effects, const std::string& products);
 std::string reflection_function(const color::ReflectionOperator& op);
-
-// The color that products of the four forms stand for, and the environment itself again.
-std::string forms_functions(const ProductForms& forms, bool background);
 
 // The start of main(): at points beside the mesh the program does what `beside` says and returns; of others it finds n,
 // c = n.wo, r, and where the weights are. `more` stands before both.
@@ -143,6 +132,6 @@ std::string over_tilts(const Effects& effects, const std::string& sum, const std
                        const std::string& more);
 
 // The color of a ray that meets nothing.
-std::string background_color(const Effects& effects, Product product, bool projected_ground);
+std::string background_color(const Effects& effects, bool projected_ground);
 
 }  // namespace goniochrome::render

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "render/gl/shader_parts.h"
 
 namespace goniochrome::render {
 
@@ -14,8 +15,7 @@ std::size_t header_texels(std::size_t maps) {
 
 }  // namespace
 
-TiltTexture tilt_texture(const TiltTable& table, std::size_t maps,
-                         const std::function<std::vector<float>(const float* rgb)>& forms) {
+TiltTexture tilt_texture(const TiltTable& table, std::size_t maps) {
   TiltTexture texture;
   const std::size_t header = header_texels(maps), parts = table.group_of_part.size();
   texture.stride = header + 4 * table.most();
@@ -35,7 +35,7 @@ TiltTexture tilt_texture(const TiltTable& table, std::size_t maps,
     to += 4 * header;
     for (const TiltLookup& of : table.rows[row]) {
       std::ranges::copy(of.axis, to), std::ranges::copy(of.axis_step, to + 4);
-      std::ranges::copy(forms(of.weight.data()), to + 8), std::ranges::copy(forms(of.weight_step.data()), to + 12);
+      std::ranges::copy(of.weight, to + 8), std::ranges::copy(of.weight_step, to + 12);
       to += 16;
     }
   }
@@ -60,9 +60,8 @@ std::string tilt_uniforms(const Effects& effects, const std::vector<double>& exp
   return text;
 }
 
-std::string tilt_function(const Effects& effects, const std::vector<double>& exponents, TiltProduct product) {
+std::string tilt_function(const Effects& effects, const std::vector<double>& exponents) {
   if (exponents.empty()) return "";
-  const char* type = product == TiltProduct::kForms ? "vec4" : "vec3";
   std::string text = fmt::format(R"(
 vec4 tilt_texel(int at) {{ return texelFetch(tilted, ivec2(at % {0}, at / {0}), 0); }}
 
@@ -74,16 +73,14 @@ vec4 tilt_texel(int at) {{ return texelFetch(tilted, ivec2(at % {0}, at / {0}), 
   float share = view - float(segment);
   int base = int(tilt_texel(row).x) + segment * tilt_stride;
 )",
-                                 kTiltTexels, type, kViewSegments, kViewSegments - 1);
+                                 kTiltTexels, sum_type(effects), kViewSegments, kViewSegments - 1);
   for (std::size_t map = 0; map < exponents.size(); ++map) {
     const auto bound = [](std::size_t number) {
       return fmt::format("int(tilt_texel(base + {}).{})", number / 4, "rgba"[number % 4]);
     };
-    const std::string light = fmt::format("textureLod({}, d, 0.0)", tilt_sampler(effects, exponents, exponents[map]));
-    const std::string weight = "(tilt_texel(at + 2) + share * tilt_texel(at + 3))";
-    const std::string term = product == TiltProduct::kForms   ? weight + " * " + light
-                             : product == TiltProduct::kPlain ? weight + ".rgb * " + light + ".rgb"
-                                                              : "times(" + weight + ".rgb, " + light + ".rgb)";
+    const std::string light =
+        fmt::format("textureLod({}, d, 0.0).rgb", tilt_sampler(effects, exponents, exponents[map]));
+    const std::string term = product(effects, "(tilt_texel(at + 2) + share * tilt_texel(at + 3)).rgb", light);
     text += fmt::format(R"(  for (int k = {}, end = {}; k < end; ++k) {{
     int at = base + {} + 4 * k;
     vec3 axis = tilt_texel(at).xyz + share * tilt_texel(at + 1).xyz;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,9 +10,6 @@
 #include "render/internal/tilt_table.h"
 
 namespace goniochrome::render {
-
-// How weights and maps are multiplied in the program: as RGB, in the four forms of the operator, or by times().
-enum class TiltProduct { kPlain, kForms, kOperator };
 
 // The texture "tilted", texel by texel in rows of kTiltTexels: first, for each part, where the rows of its paint begin.
 // Then a row for each paint and segment of the view: for each map the number of its first look-up, and one more for the
@@ -23,9 +19,7 @@ struct TiltTexture {
   std::size_t stride = 0;   // texels of a row
   std::vector<float> rgba;  // of whole rows of kTiltTexels
 };
-// `forms` puts n weights of three channels, one behind the other, into four.
-TiltTexture tilt_texture(const TiltTable& table, std::size_t maps,
-                         const std::function<std::vector<float>(const float* rgb)>& forms);
+TiltTexture tilt_texture(const TiltTable& table, std::size_t maps);
 
 // The sampler of the map of one of the exponents. Lobes that are drawn anyhow share theirs.
 std::string tilt_sampler(const Effects& effects, const std::vector<double>& exponents, double exponent);
@@ -33,6 +27,6 @@ std::string tilt_sampler(const Effects& effects, const std::vector<double>& expo
 // The uniforms, and the function `tilted_lobes(r, n, wo)` that sums the look-ups of this point. Both are empty where
 // there are no exponents.
 std::string tilt_uniforms(const Effects& effects, const std::vector<double>& exponents);
-std::string tilt_function(const Effects& effects, const std::vector<double>& exponents, TiltProduct product);
+std::string tilt_function(const Effects& effects, const std::vector<double>& exponents);
 
 }  // namespace goniochrome::render

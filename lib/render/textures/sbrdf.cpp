@@ -10,7 +10,6 @@
 
 #include "base/angles.h"
 #include "base/parallel.h"
-#include "render/internal/bordered_face.h"
 #include "render/internal/lobe_curves.h"
 
 namespace goniochrome::render {
@@ -23,14 +22,8 @@ constexpr double kWider = 4;
 
 // The faces with their borders, R G B 0 a texel.
 std::vector<float> quads(const envmap::CubeMap& map) {
-  const std::size_t wide = static_cast<std::size_t>(map.size) + 2, texels = wide * wide;
-  std::vector<float> data(6 * texels * 4, 0.0F);
-  parallel_for(6, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t face = begin; face < end; ++face) {
-      const std::vector<float> texel = bordered_face(map, static_cast<int>(face));
-      for (std::size_t i = 0; i < texels; ++i) std::copy_n(&texel[3 * i], 3, &data[4 * (face * texels + i)]);
-    }
-  });
+  std::vector<float> data(4 * bordered_texels(map.size));
+  put_bordered(map, 4, data.data());
   return data;
 }
 
@@ -357,12 +350,8 @@ SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const 
   shading_.light = lights_.data();
   placed_ = placed_lamps(light.lights, light.origin);
   if (!placed_.empty()) shading_.placed = placed_.data();
-  if (light.reflection.k != color::component_wise().k) {
-    for (const auto& plane : light.reflection.k)
-      for (const auto& row : plane)
-        for (const double k : row) reflection_.push_back(static_cast<float>(k));
-    shading_.reflection = reflection_.data();
-  }
+  product_ = product_columns(light.reflection);
+  shading_.product = product_.data();
   constexpr float kUp[3] = {0, 0, 1};
   while (!full()) put(kUp, kUp, {}, kUp, {}, {});
   count_ = 0;

@@ -119,7 +119,8 @@ class SbrdfShader {
    private:
     const PackedTexture& packed_;
     SbrdfShading shading_;
-    std::vector<float> lights_, reflection_;
+    std::vector<float> lights_;
+    ProductColumns product_;
     std::vector<PlacedLamp> placed_;
     SbrdfPoints points_;
     int count_ = 0;

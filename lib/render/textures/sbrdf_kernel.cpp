@@ -180,26 +180,7 @@ HWY_INLINE V bounded_exp(V x) {
 }
 
 HWY_INLINE Quad fetched(const LobeMap& map, const Taps& taps, int i) {
-  const std::size_t row = 4 * static_cast<std::size_t>(map.size + 2);
-  const float* upper = map.texels + 4 * static_cast<std::size_t>(taps.offset[i]);
-  const float u = taps.across[i], lower = taps.down[i];
-  const Quad left = mul_add(Quad::filled(1 - lower), Quad::load(upper),
-                            mul_add(Quad::filled(lower), Quad::load(upper + row), Quad::filled(0)));
-  const Quad right = mul_add(Quad::filled(1 - lower), Quad::load(upper + 4),
-                             mul_add(Quad::filled(lower), Quad::load(upper + row + 4), Quad::filled(0)));
-  return mul_add(Quad::filled(1 - u), left, mul_add(Quad::filled(u), right, Quad::filled(0)));
-}
-
-// Sums of light times color: channel by channel, or each channel of the light with all of the color's.
-template <bool reflection>
-HWY_INLINE void add_product(const Quad& light, const Quad& color, float* sums) {
-  if constexpr (!reflection) {
-    mul_add(light, color, Quad::load(sums)).store(sums);
-  } else {
-    float lanes[4];
-    light.store(lanes);
-    for (int d = 0; d < 3; ++d) mul_add(Quad::filled(lanes[d]), color, Quad::load(sums + 4 * d)).store(sums + 4 * d);
-  }
+  return fetched(map.size, map.texels, taps, static_cast<std::size_t>(i));
 }
 
 // The cosine of a lobe's middle, or the mean cosine of what lies above the surface and the shift of the direction.
@@ -221,9 +202,8 @@ HWY_INLINE Seen seen_of(const SbrdfShading& s, const float* lobe, float cosine) 
 }
 
 // Adds what one lobe shows of the environment.
-template <bool reflection>
 HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const SurfaceFrames& frames,
-                             const LobeValues& l, const LobeMiddles& middles, int count, float* sums) {
+                             const LobeValues& l, const LobeMiddles& middles, int count, Products<4>* sums) {
   const D f;
   const hn::RebindToSigned<D> whole;
   HWY_ALIGN std::int32_t sizes[2][kPointsAtOnce];
@@ -271,17 +251,15 @@ HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const 
       light = mul_add(Quad::filled(1 - upper), light,
                       mul_add(Quad::filled(upper), fetched(s.maps[map + 1], taps[1], i), Quad::filled(0)));
     }
-    add_product<reflection>(light, mul_add(Quad::filled(w), Quad::load(l.color + 4 * i), Quad::filled(0)),
-                            sums + 12 * i);
+    sums[i].add(light, mul_add(Quad::filled(w), Quad::load(l.color + 4 * i), Quad::filled(0)));
   }
 }
 
 // Adds what one lobe sends of a light to the viewer: the exact BRDF. With m the middle of the lobe,
 // (p.wi)^n = |p|^n (m.wi)^n, the second from 1 - m.wi = |m - wi|^2/2. The disc of a lamp is taken as a Gaussian of the
 // same variance, which makes the lobe wider and lower by one factor.
-template <bool reflection>
 HWY_INLINE void add_lit(const float* light, const LampInFrames& lamp, const SurfaceFrames& frames, const LobeValues& l,
-                        const LobeMiddles& middles, int count, float* sums) {
+                        const LobeMiddles& middles, int count, Products<4>* sums) {
   const D f;
   HWY_ALIGN float weight[kPointsAtOnce];
   const V zero = hn::Zero(f), half = hn::Set(f, 0.5F), one = hn::Set(f, 1.0F);
@@ -305,9 +283,7 @@ HWY_INLINE void add_lit(const float* light, const LampInFrames& lamp, const Surf
   }
   for (int i = 0; i < count; ++i) {
     if (!(weight[i] > 0)) continue;
-    add_product<reflection>(Quad::load(light + 4),
-                            mul_add(Quad::filled(weight[i]), Quad::load(l.color + 4 * i), Quad::filled(0)),
-                            sums + 12 * i);
+    sums[i].add(Quad::load(light + 4), mul_add(Quad::filled(weight[i]), Quad::load(l.color + 4 * i), Quad::filled(0)));
   }
 }
 
@@ -319,9 +295,8 @@ struct Lamps {
 };
 
 // The diffuse part: the texels' colors blended, in the irradiance and in these lamps.
-template <bool reflection>
 HWY_INLINE void add_diffuse(const SbrdfShading& s, const SbrdfPoints& p, const SurfaceFrames& frames,
-                            bool with_environment, const Lamps& lamps, int count, float* sums) {
+                            bool with_environment, const Lamps& lamps, int count, Products<4>* sums) {
   const D f;
   Taps taps;
   if (with_environment) {
@@ -337,7 +312,7 @@ HWY_INLINE void add_diffuse(const SbrdfShading& s, const SbrdfPoints& p, const S
       const float cos_i = lamps.seen[k].n[i] * lamps.seen[k].strength[i];
       if (cos_i > 0) light = mul_add(Quad::filled(cos_i), Quad::load(s.light + 8 * (lamps.first + k) + 4), light);
     }
-    add_product<reflection>(light, color, sums + 12 * i);
+    sums[i].add(light, color);
   }
 }
 
@@ -352,8 +327,7 @@ HWY_INLINE void find_lit(const SurfaceFrames& frames, bool with_environment, con
 }
 
 // The diffuse part, and then each lobe under the environment and under the lights.
-template <bool reflection>
-HWY_INLINE void add_all(const SbrdfShading& s, const SbrdfPoints& p, int count, float* sums) {
+HWY_INLINE void add_all(const SbrdfShading& s, const SbrdfPoints& p, int count, Products<4>* sums) {
   SurfaceFrames frames;
   LobeValues values;
   LobeMiddles middles;
@@ -364,35 +338,23 @@ HWY_INLINE void add_all(const SbrdfShading& s, const SbrdfPoints& p, int count, 
     const bool with_environment = s.diffuse.texels != nullptr && lamps.first == 0;
     lamps.count = std::min(kLampsAtOnce, s.lights - lamps.first);
     for (int k = 0; k < lamps.count; ++k) find_lamp(s, lamps.first + k, p, frames, lamps.seen[k]);
-    add_diffuse<reflection>(s, p, frames, with_environment, lamps, count, sums);
+    add_diffuse(s, p, frames, with_environment, lamps, count, sums);
     find_lit(frames, with_environment, lamps, lit);
     for (int lobe = 0; lobe < s.lobes; ++lobe) {
       if ((s.lobes_on >> lobe & 1U) == 0) continue;
       gather_lobe(s, p, lobe, count, values);
       find_middles(frames, lit, values, middles);
-      if (with_environment) add_filtered<reflection>(s, p, frames, values, middles, count, sums);
+      if (with_environment) add_filtered(s, p, frames, values, middles, count, sums);
       for (int k = 0; k < lamps.count; ++k)
-        add_lit<reflection>(s.light + 8 * (lamps.first + k), lamps.seen[k], frames, values, middles, count, sums);
+        add_lit(s.light + 8 * (lamps.first + k), lamps.seen[k], frames, values, middles, count, sums);
     }
   }
 }
 
 void ShadeTexels(const SbrdfShading& s, const SbrdfPoints& p, int count, float* rgba) {
-  HWY_ALIGN float sums[12 * kPointsAtOnce] = {};
-  if (s.reflection == nullptr) {
-    add_all<false>(s, p, count, sums);
-    for (int i = 0; i < count; ++i) std::copy_n(sums + 12 * i, 4, rgba + 4 * i);
-    return;
-  }
-  add_all<true>(s, p, count, sums);
-  for (int i = 0; i < count; ++i) {
-    for (int c = 0; c < 3; ++c) {
-      float sum = 0;
-      for (int d = 0; d < 3; ++d)
-        for (int e = 0; e < 3; ++e) sum += s.reflection[9 * c + 3 * d + e] * sums[12 * i + 4 * d + e];
-      rgba[4 * i + c] = sum;
-    }
-  }
+  Products<4> sums[kPointsAtOnce];
+  add_all(s, p, count, sums);
+  for (int i = 0; i < count; ++i) sums[i].on(Quad::filled(0), s.product).store(rgba + 4 * i);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -40,7 +40,7 @@ struct SbrdfShading {
   int lights = 0;
   const float* light = nullptr;        // 8 a light: direction, variance of its disc; pi times its white, 0
   const PlacedLamp* placed = nullptr;  // of each light; null: all are far away
-  const float* reflection = nullptr;   // k[c][d][e]; null: the component-wise product
+  const float* product = nullptr;      // product_columns()
 };
 
 // A texel and the part that it has of what a pixel shows.

@@ -68,10 +68,9 @@ const ofLight = `
 uniform vec3 around[${aroundCount}];
 uniform usampler2D seen;
 uniform samplerCube light;
-uniform mat4x3 colors;
 uniform vec2 turn;
 vec3 shine(vec3 d) {
-  return colors * textureLod(light, vec3(turn.x * d.x - turn.y * d.z, d.y, turn.y * d.x + turn.x * d.z), 0.0);
+  return textureLod(light, vec3(turn.x * d.x - turn.y * d.z, d.y, turn.y * d.x + turn.x * d.z), 0.0).rgb;
 }
 `;
 const lossVertex = `${occlusionHead}${ofLight}
@@ -284,7 +283,6 @@ class Occlusion {
     const { texture } = stage.environment(environment).cubes.find(({ sampler }) => sampler === this.sampler);
     this.draw(program, points, picture, [["seen", gl.TEXTURE_2D, points.bits.textures[0]], ["light", gl.TEXTURE_CUBE_MAP, texture], ...textures], () => {
       gl.uniform3fv(program.at("around[0]"), directions.flat());
-      gl.uniformMatrix4x3fv(program.at("colors"), false, stage.data.layers.colors.flat());
       gl.uniform2fv(program.at("turn"), stage.turnVector);
       set();
     });

@@ -127,19 +127,20 @@ class Stage {
   }
 
   cube(packed) {
-    const gl = this.gl, texture = gl.createTexture(), halves = smoothNumbersOf(packed.texels, packed.channels);
-    const most = packed.channels * packed.size * packed.size, format = packed.channels === 4 ? gl.RGBA : gl.RGB;
+    const gl = this.gl, texture = gl.createTexture(), halves = smoothNumbersOf(packed.texels);
+    const most = 3 * packed.size * packed.size;
     // Maps brighter than halves can be are floats, where those can be interpolated; else the brightest of halves.
-    let values = halves, kind = packed.channels === 4 ? gl.RGBA16F : gl.RGB16F, type = gl.HALF_FLOAT;
+    let values = halves, kind = gl.RGB16F, type = gl.HALF_FLOAT;
     if (packed.scale !== 1) {
       values = Float32Array.from(halves, (half) => numberOfHalf(half) * packed.scale);
       type = gl.FLOAT;
-      if (this.floatLinear) kind = packed.channels === 4 ? gl.RGBA32F : gl.RGB32F;
+      if (this.floatLinear) kind = gl.RGB32F;
       else values = values.map((value) => Math.min(value, 65504));
     }
     gl.bindTexture(gl.TEXTURE_CUBE_MAP, texture);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 2);  // rows of an odd number of halves
     for (let face = 0; face < 6; ++face)
-      gl.texImage2D(gl.TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, kind, packed.size, packed.size, 0, format, type,
+      gl.texImage2D(gl.TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, kind, packed.size, packed.size, 0, gl.RGB, type,
                     values.subarray(face * most, (face + 1) * most));
     gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
     gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
