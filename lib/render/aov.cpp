@@ -51,6 +51,19 @@ const std::vector<Aov>& aovs() {
   return table;
 }
 
+// Calls put(x, y, to) for the values of the channels at each pixel.
+template <class Put>
+void add_channels(image::Image& picture, const std::vector<std::string>& names, const Put& put) {
+  const int channels = picture.channels + static_cast<int>(names.size());
+  image::Image wider{picture.width, picture.height, channels, {}, picture.channel_names};
+  wider.channel_names.insert(wider.channel_names.end(), names.begin(), names.end());
+  wider.data.resize(static_cast<std::size_t>(wider.width) * wider.height * channels);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x)
+      put(x, y, std::copy_n(picture.pixel(x, y), picture.channels, wider.pixel(x, y)));
+  picture = std::move(wider);
+}
+
 }  // namespace
 
 std::string aov_names() {
@@ -64,32 +77,18 @@ Result<void> add_aov(image::Image& picture, const Gbuffer& gbuffer, const std::s
   if (aov == aovs().end()) {
     return usage_error("there is no buffer \"{}\": there are {}, error and transport", name, aov_names());
   }
-  const int old_channels = picture.channels, added = static_cast<int>(aov->channels.size());
-  image::Image wider{picture.width, picture.height, old_channels + added, {}, picture.channel_names};
-  wider.channel_names.insert(wider.channel_names.end(), aov->channels.begin(), aov->channels.end());
-  wider.data.resize(static_cast<std::size_t>(wider.width) * wider.height * wider.channels);
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
-      float* pixel = std::copy_n(picture.pixel(x, y), old_channels, wider.pixel(x, y));
-      if (gbuffer.part(x, y) >= 0) {
-        aov->evaluate(gbuffer, x, y, to_light, pixel);
-      } else {
-        std::fill_n(pixel, added, aov->nothing);
-      }
+  add_channels(picture, aov->channels, [&](int x, int y, float* to) {
+    if (gbuffer.part(x, y) >= 0) {
+      aov->evaluate(gbuffer, x, y, to_light, to);
+    } else {
+      std::fill_n(to, aov->channels.size(), aov->nothing);
     }
-  }
-  picture = std::move(wider);
+  });
   return {};
 }
 
 void add_error(image::Image& picture, const Noise& noise) {
-  image::Image wider{picture.width, picture.height, picture.channels + 1, {}, picture.channel_names};
-  wider.channel_names.emplace_back("error");
-  wider.data.resize(static_cast<std::size_t>(wider.width) * wider.height * wider.channels);
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x)
-      *std::copy_n(picture.pixel(x, y), picture.channels, wider.pixel(x, y)) = *noise.de00.pixel(x, y);
-  picture = std::move(wider);
+  add_channels(picture, {"error"}, [&](int x, int y, float* to) { *to = *noise.de00.pixel(x, y); });
 }
 
 Result<Gbuffer> gbuffer_of(const image::AovFile& buffers) {

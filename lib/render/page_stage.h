@@ -1,5 +1,5 @@
 // The data that a page in a browser needs to draw paints in prefiltered light by WebGL 2, as the engine gl draws them:
-// the same programs, and the maps and lamps that they read. Weights come from page_weights().
+// the same programs, and the maps and lamps that they read. Weights are those of weight_table().
 // goniochrome-rendering(7), "RENDERING".
 #pragma once
 

@@ -24,6 +24,9 @@ std::vector<Light> single_lights(const Scene& scene, const Effects& effects);
 // The tilted normals that each part's lobes are drawn about; a single one where the part is isotropic.
 std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects& effects);
 brdf::TiltSet tilts_of(const Scene& scene, const Effects& effects, std::size_t part);
+// RGBA texels of them: a row for each part, all as long as the longest, of a normal in the frame of the surface and its
+// share; what is left of a row is 0.
+std::vector<float> tilt_texels(const std::vector<std::vector<brdf::Tilt>>& tilts);
 
 // Error: a paint that is seen shows the extent of a lamp at a place. What its lobes gather of a disc is tabulated for
 // one radius, and the lamp has another at each point. `engine` is the name of the engine that asks.

@@ -9,8 +9,8 @@
 #include "base/text.h"
 #include "render/camera.h"
 #include "render/page_stage.h"
-#include "render/page_weights.h"
 #include "render/scene.h"
+#include "render/scene_effects.h"
 #include "render/trim.h"
 #include "studio/studio.h"
 
@@ -156,7 +156,7 @@ Json packed_finishes(const formats::Basis& basis, PackedNumbers& numbers) {
   return {{"columns", 2 * slots.slots * slots.segments},
           {"slots", slots.slots},
           {"rows", scene.paints.size()},
-          {"texels", numbers.add(render::page_weights(scene, effects))}};
+          {"texels", numbers.add(render::weight_table(scene, effects).rgba)}};
 }
 
 }  // namespace goniochrome::studio

@@ -12,7 +12,6 @@
 #include "library/search.h"
 #include "library/verdict.h"
 #include "paint/curve.h"
-#include "render/page_weights.h"
 #include "render/scene_effects.h"
 #include "sketch/dropper.h"
 #include "studio/internal/describe.h"
@@ -159,7 +158,7 @@ Result<Json> Studio::State::fit(JsonReader& request) {
   scene.paints = {fit.lobes};
   scene.gloss_deg = {gloss_angle_deg(paint)};
   scene.reflection = page_operator();
-  weights = render::page_weights(scene, effects);
+  weights = render::weight_table(scene, effects).rgba;
   tilts.clear();
   if (paint.anisotropy) {
     scene.anisotropy = {*paint.anisotropy};

@@ -65,7 +65,7 @@ class Studio {
 
   Json answer(const Json& request);
 
-  // The row of weights of the paint that was fitted last, see render/page_weights.h.
+  // The row of weights of the paint that was fitted last, as render::WeightTable has it.
   const std::vector<float>& weights() const;
 
   // The lists that answers fill, in the machine's own number format: floats of weights, tilts, clouds and pictures,

@@ -16,7 +16,6 @@
 #include "library/index.h"
 #include "paint/curve.h"
 #include "paint/edit.h"
-#include "render/page_weights.h"
 #include "render/scene_effects.h"
 #include "studio/paint_json.h"
 
@@ -155,7 +154,7 @@ TEST(Studio, FitsAsTheLibraryDoesAndFillsTheWeights) {
   scene.paints = {fit->lobes};
   scene.gloss_deg = {60};
   scene.reflection = page_operator();
-  EXPECT_EQ(studio.weights(), render::page_weights(scene, page_effects(kExponents, true, 3)));
+  EXPECT_EQ(studio.weights(), render::weight_table(scene, page_effects(kExponents, true, 3)).rgba);
   // White light shows the color of the weights: the operator's forms of white, brought back, are what the table has.
   EXPECT_EQ(studio.weights().size(), render::weight_table(scene, page_effects(kExponents, true, 3)).rgba.size());
 }

@@ -44,10 +44,9 @@ class OpenViews : public PaintViews {
         others_(std::move(others)),
         wardrobe_(stage.dresses.front()) {
     stops = others_->stops, automatic_stops = others_->automatic_stops, white_luminance = others_->white_luminance;
-    auto plan = std::make_shared<render::Plan>();
-    plan->engine = "cpu";
-    plan->engine_reason = "the light of each lobe is looked up once for all paints";
-    plan_ = std::move(plan);
+    render::Plan looked_up;
+    looked_up.engine = "cpu", looked_up.engine_reason = "the light of each lobe is looked up once for all paints";
+    plan = std::make_shared<render::Plan>(std::move(looked_up));
   }
 
   Result<void> draw(const SourcePaint& paint, PaintView& view) override {
@@ -74,10 +73,6 @@ class OpenViews : public PaintViews {
     view.shading_ms = 1000 * shading.elapsed_s(), view.bounced_de00_p95 = 0;
     return {};
   }
-
-  std::string engine() const override { return plan_->engine; }
-  std::string engine_reason() const override { return plan_->engine_reason; }
-  std::shared_ptr<const render::Plan> plan() const override { return plan_; }
 
  private:
   // The samples of all pixels are looked up.
@@ -172,7 +167,6 @@ class OpenViews : public PaintViews {
   std::vector<std::shared_ptr<const render::Gbuffer>> samples_;
   std::list<OpenView> kept_;  // the one used last is the first
   image::Image stacked_;
-  std::shared_ptr<const render::Plan> plan_;
 };
 
 }  // namespace

@@ -41,9 +41,9 @@ class TransportViews : public PaintViews {
     automatic_stops = stage.transport->automatic_stops;
     stops = request.stops.value_or(request.png ? automatic_stops : 0);
     white_luminance = stage.transport->white_luminance;
-    auto plan = std::make_shared<render::Plan>();
-    plan->engine = "transport", plan->engine_reason = options.gbuffer + " holds the light by lobes";
-    plan_ = std::move(plan);
+    render::Plan kept;
+    kept.engine = "transport", kept.engine_reason = options.gbuffer + " holds the light by lobes";
+    plan = std::make_shared<render::Plan>(std::move(kept));
   }
 
   Result<void> draw(const SourcePaint& paint, PaintView& view) override {
@@ -57,17 +57,12 @@ class TransportViews : public PaintViews {
     return {};
   }
 
-  std::string engine() const override { return plan_->engine; }
-  std::string engine_reason() const override { return plan_->engine_reason; }
-  std::shared_ptr<const render::Plan> plan() const override { return plan_; }
-
  private:
   cli::Session& session_;
   int points_across_;
   Wardrobe wardrobe_;
   ViewShader shader_;
   image::Image points_;  // what all points show, where pixels are squares of them
-  std::shared_ptr<const render::Plan> plan_;
   bool is_coat_told_ = false;
 };
 
@@ -115,40 +110,36 @@ class EngineViews : public PaintViews {
     return {};
   }
 
-  std::string engine() const override { return plan_ ? plan_->engine : ""; }
-  std::string engine_reason() const override { return plan_ ? plan_->engine_reason : ""; }
-  std::shared_ptr<const render::Plan> plan() const override { return plan_; }
-
  private:
   render::View view() const { return {camera_, request_.size.width, request_.size.height, request_.samples, false}; }
 
   // Loads what the paint that is worn calls for, unless that is loaded.
   Result<void> load() {
     const render::Effects wanted = render::effects_of(stage_.scene);
-    if (plan_ && render::covers(covered_, wanted)) {
+    if (is_loaded_ && render::covers(covered_, wanted)) {
       renderer_.load_paints(stage_.scene);
       return {};
     }
-    GONIO_ASSIGN(render::Plan plan, renderer_.load(stage_.scene, looks_, request_.plan));
-    const bool is_first = plan_ == nullptr;
-    if (is_first) tell(plan);
+    GONIO_ASSIGN(render::Plan made, renderer_.load(stage_.scene, looks_, request_.plan));
+    const bool is_first = !std::exchange(is_loaded_, true);
+    if (is_first) tell(made);
     // Every paint of the environment's basis is drawn without loading again.
     const bool all_lobes = is_first && stage_.scene.env != nullptr && options_.effects == stream_effects();
     covered_ = is_first ? wanted : render::united(covered_, wanted);
-    if (!is_first) plan.effects = render::united(plan_->effects, plan.effects);
+    if (!is_first) made.effects = render::united(plan->effects, made.effects);
     if (all_lobes) {
       covered_ = render::with_all_lobes(covered_, *stage_.scene.env);
-      plan.effects = render::with_all_lobes(plan.effects, *stage_.scene.env);
+      made.effects = render::with_all_lobes(made.effects, *stage_.scene.env);
     }
-    if (!is_first || all_lobes) GONIO_TRY(renderer_.load(stage_.scene, plan.effects, plan.engine));
-    request_.plan.engine = plan.engine;
-    plan_ = std::make_shared<render::Plan>(std::move(plan));
+    if (!is_first || all_lobes) GONIO_TRY(renderer_.load(stage_.scene, made.effects, made.engine));
+    request_.plan.engine = made.engine;
+    plan = std::make_shared<render::Plan>(std::move(made));
     return {};
   }
 
-  void tell(const render::Plan& plan) {
-    for (Json& row : plan_rows(plan)) session_.results()["plan"].push_back(std::move(row));
-    session_.explain(plan_table(plan));
+  void tell(const render::Plan& first) {
+    for (Json& row : plan_rows(first)) session_.results()["plan"].push_back(std::move(row));
+    session_.explain(plan_table(first));
     for (const std::string& remark : renderer_.remarks()) session_.warn(remark);
   }
 
@@ -161,7 +152,7 @@ class EngineViews : public PaintViews {
   render::Camera camera_;
   std::vector<std::shared_ptr<const render::Gbuffer>> looks_;
   render::Effects covered_;  // what the paints so far call for
-  std::shared_ptr<const render::Plan> plan_;
+  bool is_loaded_ = false;
   render::Frame frame_;  // without its picture
 };
 

@@ -44,12 +44,7 @@ class PaintViews {
   // the paint cannot be shown.
   virtual Result<void> draw(const SourcePaint& paint, PaintView& view) = 0;
 
-  // The engine, and the reason for it, as the report has it.
-  virtual std::string engine() const = 0;
-  virtual std::string engine_reason() const = 0;
-  // The plan of the picture that was drawn last.
-  virtual std::shared_ptr<const render::Plan> plan() const = 0;
-
+  std::shared_ptr<const render::Plan> plan = std::make_shared<render::Plan>();  // of the picture that was drawn last
   double stops = 0, automatic_stops = 0;  // exposure in force, and that of a PNG
   double white_luminance = 0;
   double gbuffer_ms = 0;

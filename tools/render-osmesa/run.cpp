@@ -33,9 +33,8 @@ constexpr int kMostTruth = 100;
 cli::Verdict check(const Options& options, const render::Frame& frame, const render::Scene& scene, const Source& source,
                    double white, cli::Session& session) {
   session.progress(fmt::format("checking {} pixels", options.check));
-  const envmap::Environment* environment = source.environment ? &*source.environment : nullptr;
   const render::PictureError error =
-      render::picture_error(frame, scene, environment, white, options.check, session.common().seed);
+      render::picture_error(frame, scene, source.image(), white, options.check, session.common().seed);
   session.results()["error"] = error_json(error, "model", source.name);
   session.say(fmt::format("dE00 to the reference: mean {:.2f}, p95 {}, max {:.2f} at {},{} ({} pixels, {:.1f} s)",
                           error.de00_mean, told_p95(error), error.de00_max, error.worst_x, error.worst_y,
@@ -193,10 +192,10 @@ Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool f
     if (stage_.dresses.size() > 1 || first) {
       GONIO_ASSIGN(render::Plan plan, load(renderer, stage_.dresses[i]));
       if (first && options_.check > 0 && session_.common().explain) {
-        const envmap::Environment* environment = stage_.source.environment ? &*stage_.source.environment : nullptr;
         const auto sample = render::sampled_pixels(*looks_.front(), stage_.scene, std::min(options_.check, kMostTruth),
                                                    session_.common().seed);
-        render::add_truth(plan, render::seen_scene(stage_.scene, looks_), sample.points, environment, white_.luminance);
+        render::add_truth(plan, render::seen_scene(stage_.scene, looks_), sample.points, stage_.source.image(),
+                          white_.luminance);
       }
       if (first) {
         tell_plan(std::move(plan), renderer.shader());
@@ -218,9 +217,8 @@ Result<void> Shooting::write(const Shot& shot, const std::optional<display::Disp
     const render::Scene drawn = over_floor(plan_.effects.rays.floor || by_rays());
     std::optional<TracedView> traced;
     if (request_.transport) {
-      const envmap::Environment* environment = stage_.source.environment ? &*stage_.source.environment : nullptr;
       const bool with_maps = !by_rays() && (request_.engine == nullptr || request_.engine->is_planned);
-      GONIO_ASSIGN(traced, traced_view(drawn, environment, with_maps, *frame_.gbuffer, request_.samples,
+      GONIO_ASSIGN(traced, traced_view(drawn, stage_.source.image(), with_maps, *frame_.gbuffer, request_.samples,
                                        white_.luminance, options_.bounces, session_));
       frame_.gbuffer = traced->gbuffer;
       stopped_ |= !traced->reached;
@@ -397,7 +395,7 @@ Result<cli::Verdict> Shooting::check_picture() {
     return check(options_, open_frame(frame_), stage_.scene, stage_.source, white_.luminance, session_);
   session_.progress(fmt::format("checking {} pixels", options_.check));
   render::TruthRequest request;
-  request.environment = stage_.source.environment ? &*stage_.source.environment : nullptr;
+  request.environment = stage_.source.image();
   request.white_luminance =
       frame_.noise && frame_.noise->white_luminance > 0 ? frame_.noise->white_luminance : white_.luminance;
   request.count = options_.check;

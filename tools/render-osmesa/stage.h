@@ -24,6 +24,7 @@ namespace goniochrome::tool {
 struct Source {
   std::optional<envmap::Environment> environment;
   std::string name;
+  const envmap::Environment* image() const { return environment ? &*environment : nullptr; }
 };
 
 // The scene points into the rest, so that a stage stays where it is.

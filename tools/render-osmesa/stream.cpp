@@ -102,7 +102,7 @@ class Streaming {
     if (!slot.source.failure) {
       const Result<void> drawn = views_.draw(slot.source, slot.view);
       if (!drawn.ok()) slot.source.failure = about_paint(drawn.error(), slot.source.paint.name);
-      slot.plan = views_.plan();
+      slot.plan = views_.plan;
     }
     return sink_.place(slot);
   }
@@ -125,7 +125,7 @@ class Streaming {
       Json picture = {{"name", slot.source.paint.name}, {"status", "done"}, {"time_ms", ms}};
       if (!slot.file.empty()) picture["file"] = slot.file;
       if (!options_.sheet.empty()) picture["sheet"] = slot.place.sheet + 1, picture["cell"] = slot.place.cell + 1;
-      if (views_.engine() == "transport") picture["bounced_de00_p95"] = json_number(slot.view.bounced_de00_p95);
+      if (views_.plan->engine == "transport") picture["bounced_de00_p95"] = json_number(slot.view.bounced_de00_p95);
       return picture;
     });
     session_.progress(fmt::format("{}: {} pictures", session_.tool(), done_));
@@ -150,7 +150,7 @@ void report(const Options& options, const Request& request, const Streaming& str
   const auto count = static_cast<double>(streaming.done());
   const double rate = seconds > 0 ? count / seconds : 0;
   Json& results = session.results();
-  results["engine"] = views.engine(), results["engine_reason"] = views.engine_reason();
+  results["engine"] = views.plan->engine, results["engine_reason"] = views.plan->engine_reason;
   results["frames"] = streaming.done(), results["failed"] = streaming.failed(), results["files"] = sink.files();
   results["pictures_per_s"] = rate;
   results["picture_ms"] = {{"p50", streaming.times().quantile_ms(0.5)},
@@ -163,7 +163,7 @@ void report(const Options& options, const Request& request, const Streaming& str
   if (!options.sheet.empty())
     line += fmt::format(" on {} sheet{} of {}", sink.files(), sink.files() == 1 ? "" : "s", options.sheet);
   line += fmt::format(", {} x {}, shaded in {:.1f} ms each by {}, {:.0f} pictures/s, exposure {:+.2f}{}",
-                      request.size.width, request.size.height, streaming.shading_ms(), views.engine(), rate,
+                      request.size.width, request.size.height, streaming.shading_ms(), views.plan->engine, rate,
                       views.stops, display ? ", " + display->name() : "");
   if (streaming.failed() > 0)
     line += fmt::format(", {} paint{} failed", streaming.failed(), streaming.failed() == 1 ? "" : "s");

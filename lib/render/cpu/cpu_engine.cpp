@@ -33,14 +33,7 @@ UnsetArray<float> interleaved(const std::vector<envmap::MapPointer>& maps, std::
 class Batch {
  public:
   Batch(const CpuShading& shading, const TiltShading& tilted) : shading_(shading), tilted_(tilted) {
-    PointArrays& p = points_;
-    std::fill_n(p.nx, kPointsAtOnce, 0.0F), std::fill_n(p.ny, kPointsAtOnce, 0.0F),
-        std::fill_n(p.nz, kPointsAtOnce, 1.0F);
-    std::fill_n(p.vx, kPointsAtOnce, 0.0F), std::fill_n(p.vy, kPointsAtOnce, 0.0F),
-        std::fill_n(p.vz, kPointsAtOnce, 1.0F);
-    std::fill_n(p.part, kPointsAtOnce, 0);
-    std::fill_n(p.px, kPointsAtOnce, 0.0F), std::fill_n(p.py, kPointsAtOnce, 0.0F),
-        std::fill_n(p.pz, kPointsAtOnce, 0.0F);
+    std::ranges::fill(points_.nz, 1.0F), std::ranges::fill(points_.vz, 1.0F);
   }
 
   bool full() const { return count_ == kPointsAtOnce; }
@@ -67,7 +60,7 @@ class Batch {
  private:
   const CpuShading& shading_;
   const TiltShading& tilted_;
-  PointArrays points_;
+  PointArrays points_{};
   std::size_t index_[kPointsAtOnce];
   int count_ = 0;
   alignas(64) float rgba_[4 * kPointsAtOnce];

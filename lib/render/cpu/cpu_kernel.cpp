@@ -45,27 +45,21 @@ HWY_INLINE Block add_between(const Corners& c, std::size_t at, const Block& sum)
 
 // The view of every point, and where its weights are.
 struct Frame {
-  HWY_ALIGN float cos_o[kPointsAtOnce];
   HWY_ALIGN float rx[kPointsAtOnce], ry[kPointsAtOnce], rz[kPointsAtOnce];
   HWY_ALIGN float t[kPointsAtOnce];
   HWY_ALIGN std::int32_t segment[kPointsAtOnce];
 
-  Direction r(std::size_t i) const {
-    const D f;
-    return {hn::Load(f, rx + i), hn::Load(f, ry + i), hn::Load(f, rz + i)};
-  }
+  HWY_INLINE Direction r(std::size_t i) const { return loaded(rx, ry, rz, i); }
   const float* weights(const CpuShading& s, const PointArrays& points, int i) const {
     return s.weights + static_cast<std::size_t>(points.part[i] * s.segments + segment[i]) * s.segment_floats;
   }
 };
 
 HWY_INLINE Direction normal_of(const PointArrays& p, std::size_t i) {
-  const D f;
-  return {hn::LoadU(f, p.nx + i), hn::LoadU(f, p.ny + i), hn::LoadU(f, p.nz + i)};
+  return loaded(p.nx, p.ny, p.nz, i);
 }
 HWY_INLINE Direction viewer_of(const PointArrays& p, std::size_t i) {
-  const D f;
-  return {hn::LoadU(f, p.vx + i), hn::LoadU(f, p.vy + i), hn::LoadU(f, p.vz + i)};
+  return loaded(p.vx, p.vy, p.vz, i);
 }
 
 // Makes the directions to the viewer unit, mirrors them, and finds the segments of the weights.
@@ -74,15 +68,11 @@ HWY_INLINE void set_up(const CpuShading& s, PointArrays& points, Frame& frame) {
   const hn::RebindToSigned<D> whole;
   for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
     Direction v = viewer_of(points, i);
-    const V scale = hn::Div(hn::Set(f, 1.0F), hn::Sqrt(dot(v, v)));
-    v = {hn::Mul(v.x, scale), hn::Mul(v.y, scale), hn::Mul(v.z, scale)};
-    hn::StoreU(v.x, f, points.vx + i), hn::StoreU(v.y, f, points.vy + i), hn::StoreU(v.z, f, points.vz + i);
+    v = scaled(hn::Div(hn::Set(f, 1.0F), hn::Sqrt(dot(v, v))), v);
+    store(v, points.vx, points.vy, points.vz, i);
     const Direction n = normal_of(points, i);
-    const V c = dot(n, v), two_c = hn::Add(c, c);
-    hn::Store(c, f, frame.cos_o + i);
-    hn::Store(hn::MulSub(two_c, n.x, v.x), f, frame.rx + i);
-    hn::Store(hn::MulSub(two_c, n.y, v.y), f, frame.ry + i);
-    hn::Store(hn::MulSub(two_c, n.z, v.z), f, frame.rz + i);
+    const V c = dot(n, v);
+    store(mirrored(c, n, v), frame.rx, frame.ry, frame.rz, i);
     V t = c;
     auto segment = hn::Zero(whole);
     if (s.segments > 1) {
@@ -107,8 +97,7 @@ struct Shifts {
   }
   HWY_INLINE Direction of(const Direction& r, const Direction& n, std::size_t i) const {
     const D f;
-    const V by = hn::Load(f, shift + i);
-    return {hn::MulAdd(by, n.x, r.x), hn::MulAdd(by, n.y, r.y), hn::MulAdd(by, n.z, r.z)};
+    return mul_add(hn::Load(f, shift + i), n, r);
   }
 };
 
@@ -123,10 +112,7 @@ struct Tilted {
   HWY_ALIGN float rx[kPointsAtOnce], ry[kPointsAtOnce], rz[kPointsAtOnce];
   HWY_ALIGN float share[kPointsAtOnce];  // 0 where a point has no such tilt, or sees nothing by it
 
-  Direction r(std::size_t i) const {
-    const D f;
-    return {hn::Load(f, rx + i), hn::Load(f, ry + i), hn::Load(f, rz + i)};
-  }
+  HWY_INLINE Direction r(std::size_t i) const { return loaded(rx, ry, rz, i); }
 };
 
 // The tangent runs level around the vertical axis; on a level surface along +X.
@@ -151,11 +137,10 @@ HWY_INLINE void tilt(const CpuShading& s, const PointArrays& points, int which, 
                          hn::IfThenElse(steep, hn::Neg(hn::Mul(n.x, scale)), zero)};
     const Direction y = {hn::Mul(n.y, x.z), hn::MulSub(n.z, x.x, hn::Mul(n.x, x.z)), hn::Neg(hn::Mul(n.y, x.x))};
     const V a = hn::Load(f, tx + i), b = hn::Load(f, ty + i), c = hn::Load(f, tz + i);
-    const Direction m = {hn::MulAdd(a, x.x, hn::MulAdd(b, y.x, hn::Mul(c, n.x))), hn::MulAdd(b, y.y, hn::Mul(c, n.y)),
-                         hn::MulAdd(a, x.z, hn::MulAdd(b, y.z, hn::Mul(c, n.z)))};
-    const V cos_m = dot(m, v), two = hn::Add(cos_m, cos_m);
-    const Direction r = {hn::MulSub(two, m.x, v.x), hn::MulSub(two, m.y, v.y), hn::MulSub(two, m.z, v.z)};
-    hn::Store(r.x, f, tilted.rx + i), hn::Store(r.y, f, tilted.ry + i), hn::Store(r.z, f, tilted.rz + i);
+    const Direction m = mul_add(a, x, mul_add(b, y, scaled(c, n)));
+    const V cos_m = dot(m, v);
+    const Direction r = mirrored(cos_m, m, v);
+    store(r, tilted.rx, tilted.ry, tilted.rz, i);
     const auto seen = hn::And(hn::Gt(cos_m, zero), hn::Gt(dot(r, n), zero));
     hn::Store(hn::IfThenElseZero(seen, hn::Load(f, tilted.share + i)), f, tilted.share + i);
   }
@@ -338,7 +323,7 @@ HWY_INLINE void add_light(const CpuShading& s, int number, const PointArrays& po
               by_coat = hn::Mul(strength, hn::Load(f, fresnel + i));
       if (which == 0 && s.lit_diffuse) lit.add(0, i, by_cosine, light + 4);
       const Direction r = s.tilts != nullptr ? tilted.r(i) : frame.r(i), l = lamp.toward(i);
-      const Direction apart = {hn::Sub(r.x, l.x), hn::Sub(r.y, l.y), hn::Sub(r.z, l.z)};
+      const Direction apart = minus(r, l);
       const V versine = hn::Mul(hn::Set(f, 0.5F), dot(apart, apart)), log_cos = log_cos_of(versine);
       const auto reached = hn::And(hn::Lt(versine, hn::Set(f, 1.0F)), hn::Gt(hn::Load(f, base + i), hn::Zero(f)));
       const V share = s.tilts != nullptr ? hn::Load(f, tilted.share + i) : hn::Set(f, 1.0F);
@@ -402,7 +387,7 @@ HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& poi
     const V strength = hn::Load(f, seen + i);
     if (s.lit_diffuse) lit.add(0, i, hn::Mul(strength, hn::Load(f, irradiance + i)), light + 4);
     const Direction r = frame.r(i), l = lamp.toward(i);
-    const Direction apart = {hn::Sub(r.x, l.x), hn::Sub(r.y, l.y), hn::Sub(r.z, l.z)};
+    const Direction apart = minus(r, l);
     const auto within = hn::Le(hn::Sqrt(dot(apart, apart)), hn::Set(f, disc.chord));
     if (!hn::AllFalse(f, within))
       lit.add(Lit::mirror(s), i, hn::IfThenElseZero(within, hn::Mul(strength, hn::Set(f, disc.mirrored))), light + 4);
@@ -414,7 +399,7 @@ HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& poi
     if (s.tilts != nullptr) tilt(s, points, which, tilted);
     for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
       const Direction r = s.tilts != nullptr ? tilted.r(i) : frame.r(i), l = lamp.toward(i);
-      const Direction apart = {hn::Sub(r.x, l.x), hn::Sub(r.y, l.y), hn::Sub(r.z, l.z)};
+      const Direction apart = minus(r, l);
       hn::Store(hn::Sqrt(dot(apart, apart)), f, chord + i);
       hn::Store(hn::Max(dot(normal_of(points, i), r), zero), f, cos_r + i);
       const V cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), r), half);
@@ -488,7 +473,7 @@ void LookUpBackground(const InterleavedMaps& map, PointArrays& points, int count
     const Direction v = viewer_of(points, i);
     address({hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)}, map.size, i, taps);
   }
-  for (int i = 0; i < count; ++i) fetched(map.size, map.texels, taps, static_cast<std::size_t>(i)).store(rgba + 4 * i);
+  for (int i = 0; i < count; ++i) fetched({map.size, map.texels}, taps, i).store(rgba + 4 * i);
 }
 
 }  // namespace HWY_NAMESPACE

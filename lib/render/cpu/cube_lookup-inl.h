@@ -24,6 +24,24 @@ struct Direction {
   V x, y, z;
 };
 
+HWY_INLINE Direction loaded(const float* x, const float* y, const float* z, std::size_t i) {
+  const D f;
+  return {hn::LoadU(f, x + i), hn::LoadU(f, y + i), hn::LoadU(f, z + i)};
+}
+HWY_INLINE void store(const Direction& d, float* x, float* y, float* z, std::size_t i) {
+  const D f;
+  hn::StoreU(d.x, f, x + i), hn::StoreU(d.y, f, y + i), hn::StoreU(d.z, f, z + i);
+}
+HWY_INLINE Direction scaled(V s, const Direction& d) {
+  return {hn::Mul(s, d.x), hn::Mul(s, d.y), hn::Mul(s, d.z)};
+}
+HWY_INLINE Direction minus(const Direction& a, const Direction& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+// s a + b
+HWY_INLINE Direction mul_add(V s, const Direction& a, const Direction& b) {
+  return {hn::MulAdd(s, a.x, b.x), hn::MulAdd(s, a.y, b.y), hn::MulAdd(s, a.z, b.z)};
+}
 HWY_INLINE V dot(const Direction& a, const Direction& b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
@@ -121,12 +139,18 @@ HWY_INLINE Pack<n> mul_add(const Pack<n>& a, const Pack<n>& b, const Pack<n>& c)
   return pack;
 }
 
+// The mirror image of v about n, where c = n.v.
+HWY_INLINE Direction mirrored(V c, const Direction& n, const Direction& v) {
+  const V two = hn::Add(c, c);
+  return {hn::MulSub(two, n.x, v.x), hn::MulSub(two, n.y, v.y), hn::MulSub(two, n.z, v.z)};
+}
+
 using Quad = Pack<4>;  // one R G B 0
 
 // The light of one map at point i, between its four texels.
-HWY_INLINE Quad fetched(int size, const float* texels, const Taps& taps, std::size_t i) {
-  const float* upper = texels + 4 * static_cast<std::size_t>(taps.offset[i]);
-  const float* lower = upper + 4 * static_cast<std::size_t>(size + 2);
+HWY_INLINE Quad fetched(const SingleMap& map, const Taps& taps, int i) {
+  const float* upper = map.texels + 4 * static_cast<std::size_t>(taps.offset[i]);
+  const float* lower = upper + 4 * static_cast<std::size_t>(map.size + 2);
   Quad light = mul_add(Quad::filled(taps.share[0][i]), Quad::load(upper), Quad::filled(0));
   light = mul_add(Quad::filled(taps.share[1][i]), Quad::load(upper + 4), light);
   light = mul_add(Quad::filled(taps.share[2][i]), Quad::load(lower), light);

@@ -22,6 +22,12 @@ struct InterleavedMaps {
   const float* texels = nullptr;
 };
 
+// One map, R G B 0 of each texel.
+struct SingleMap {
+  int size = 0;
+  const float* texels = nullptr;
+};
+
 // Texels of six faces with a border of one texel, which has the neighbors of the other faces.
 inline std::size_t bordered_texels(int size) {
   return 6 * static_cast<std::size_t>(size + 2) * static_cast<std::size_t>(size + 2);

@@ -20,10 +20,7 @@ struct LampSeen {
   HWY_ALIGN float strength[kPointsAtOnce];
   HWY_ALIGN float distance2[kPointsAtOnce];
 
-  HWY_INLINE Direction toward(std::size_t i) const {
-    const D f;
-    return {hn::Load(f, x + i), hn::Load(f, y + i), hn::Load(f, z + i)};
-  }
+  HWY_INLINE Direction toward(std::size_t i) const { return loaded(x, y, z, i); }
 };
 
 // Light as light_at() has it. `direction` is that of a lamp that is far away; `placed` may be null. `points` has px,
@@ -34,17 +31,15 @@ HWY_INLINE void see_lamp(const float* direction, const PlacedLamp* placed, const
   const bool far = placed == nullptr || placed->reach2 == 0;
   for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
     if (far) {
-      hn::Store(hn::Set(f, direction[0]), f, seen.x + i), hn::Store(hn::Set(f, direction[1]), f, seen.y + i);
-      hn::Store(hn::Set(f, direction[2]), f, seen.z + i);
+      store({hn::Set(f, direction[0]), hn::Set(f, direction[1]), hn::Set(f, direction[2])}, seen.x, seen.y, seen.z, i);
       hn::Store(hn::Set(f, 1.0F), f, seen.strength + i), hn::Store(hn::Set(f, 1.0F), f, seen.distance2 + i);
       continue;
     }
-    const Direction to = {hn::Sub(hn::Set(f, placed->position[0]), hn::LoadU(f, points.px + i)),
-                          hn::Sub(hn::Set(f, placed->position[1]), hn::LoadU(f, points.py + i)),
-                          hn::Sub(hn::Set(f, placed->position[2]), hn::LoadU(f, points.pz + i))};
+    const auto& at = placed->position;
+    const Direction to = minus({hn::Set(f, at[0]), hn::Set(f, at[1]), hn::Set(f, at[2])},
+                               loaded(points.px, points.py, points.pz, i));
     const V squared = dot(to, to), unit = hn::Div(hn::Set(f, 1.0F), hn::Sqrt(hn::Max(squared, hn::Set(f, 1e-30F))));
-    hn::Store(hn::Mul(unit, to.x), f, seen.x + i), hn::Store(hn::Mul(unit, to.y), f, seen.y + i);
-    hn::Store(hn::Mul(unit, to.z), f, seen.z + i);
+    store(scaled(unit, to), seen.x, seen.y, seen.z, i);
     const V distance2 = hn::Max(squared, hn::Set(f, placed->least2));
     hn::Store(distance2, f, seen.distance2 + i);
     hn::Store(hn::Div(hn::Set(f, placed->reach2), distance2), f, seen.strength + i);

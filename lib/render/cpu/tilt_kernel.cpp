@@ -72,7 +72,8 @@ HWY_INLINE void add_point(const TiltShading& s, const TiltPoint& p, float* rgba)
       const std::int32_t size = s.places[2 * group + lane];
       if (size == 0) break;  // the rest is padding
       const float* weight = s.weights + 8 * (group + lane);
-      sums.add(fetched(size, s.texels, taps, lane), mul_add(t, Quad::load(weight + 4), Quad::load(weight)));
+      const Quad light = fetched({size, s.texels}, taps, static_cast<int>(lane));
+      sums.add(light, mul_add(t, Quad::load(weight + 4), Quad::load(weight)));
     }
   }
   sums.on(Quad::load(rgba), s.product).store(rgba);

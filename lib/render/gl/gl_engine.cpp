@@ -10,7 +10,6 @@
 #include "render/gl/shader_parts.h"
 #include "render/gl/tilt_shader.h"
 #include "render/internal/coat_stretch.h"
-#include "render/page_weights.h"
 #include "render/scene_effects.h"
 
 namespace goniochrome::render {

@@ -31,7 +31,7 @@ double brightness(const color::Rgb& c) {
 
 struct LobePoint::Ray {
   Float3 direction;
-  bool above = false, occluded = false, from_light = false;
+  bool above = false, occluded = false;
 };
 
 // The light that a surface on a ray sends back along it, by class; apart from them, the light off a floor that no paint

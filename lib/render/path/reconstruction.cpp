@@ -36,12 +36,12 @@ constexpr float kSurprise = 25;
 // The own variance of a point, divided by this, bounds its error from below: the mean over a neighborhood dilutes rare
 // bright samples.
 constexpr float kSpike = 4;
-constexpr std::size_t kPointsAtOnce = 4096;
+constexpr std::size_t kPiecesAtOnce = 4096;
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
 
 template <class Visit>
 void each_point(std::size_t count, const Visit& visit) {
-  parallel_for(count, kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(count, kPiecesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) visit(n);
   });
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "math/statistics.h"
 #include "render/path/path_estimate.h"
 #include "render/path/path_tracer.h"
 
@@ -41,8 +42,7 @@ double visible_white(const Transport& transport, const VisibleSurface& surface, 
       luminance[k] = color::xyz_d65_from_rgb(white).Y;
     }
   });
-  std::ranges::nth_element(luminance, luminance.begin() + static_cast<std::ptrdiff_t>(count / 2));
-  return luminance[count / 2];
+  return math::median(std::move(luminance));
 }
 
 }  // namespace goniochrome::render

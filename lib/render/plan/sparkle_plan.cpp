@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/text.h"
+#include "math/statistics.h"
 #include "mesh/unit.h"
 #include "render/internal/seen.h"
 #include "render/internal/sparkle.h"
@@ -29,8 +30,7 @@ std::string seen_from(const Scene& scene, const std::vector<SparklePixel>& pixel
   for (const SparklePixel& pixel : pixels)
     distances.push_back(
         length(mesh_point(*scene.mesh, *pixel.gbuffer, pixel.x, pixel.y).position - pixel.gbuffer->rays.eye));
-  std::ranges::nth_element(distances, distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2));
-  const double distance_m = mesh::length_unit(*scene.mesh).meters * distances[distances.size() / 2];
+  const double distance_m = mesh::length_unit(*scene.mesh).meters * math::median(std::move(distances));
   return fmt::format("seen up to some {:.2g} m away, and this is {:.2g} m", part * distance_m, distance_m);
 }
 

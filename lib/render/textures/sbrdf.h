@@ -146,8 +146,8 @@ class SbrdfShader {
   mutable std::deque<Levels> levels_;
   std::string missing_;            // see has_all_maps()
   std::vector<double> exponents_;  // of the maps, ascending
-  std::vector<LobeMap> maps_;
-  LobeMap diffuse_;
+  std::vector<SingleMap> maps_;
+  SingleMap diffuse_;
   std::vector<std::vector<float>> texels_;  // of the maps and of the diffuse one
   std::vector<double> horizon_exponents_;
   std::vector<float> horizon_;

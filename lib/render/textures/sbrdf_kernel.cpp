@@ -23,13 +23,6 @@ struct SurfaceFrames {
   HWY_ALIGN float vt[kPointsAtOnce], vb[kPointsAtOnce], vn[kPointsAtOnce];
 };
 
-HWY_INLINE Direction scaled(V s, const Direction& d) {
-  return {hn::Mul(s, d.x), hn::Mul(s, d.y), hn::Mul(s, d.z)};
-}
-HWY_INLINE Direction loaded(const float* x, const float* y, const float* z, std::size_t i) {
-  const D f;
-  return {hn::LoadU(f, x + i), hn::LoadU(f, y + i), hn::LoadU(f, z + i)};
-}
 HWY_INLINE Direction cross_product(const Direction& a, const Direction& b) {
   return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
           hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
@@ -39,10 +32,7 @@ HWY_INLINE Direction cross_product(const Direction& a, const Direction& b) {
 // surface will do.
 HWY_INLINE Direction level_tangent(const Direction& n, const Direction& t) {
   const D f;
-  const auto level = [&](const Direction& d) HWY_ATTR {
-    const V along = hn::Neg(dot(d, n));
-    return Direction{hn::MulAdd(along, n.x, d.x), hn::MulAdd(along, n.y, d.y), hn::MulAdd(along, n.z, d.z)};
-  };
+  const auto level = [&](const Direction& d) HWY_ATTR { return mul_add(hn::Neg(dot(d, n)), n, d); };
   const V zero = hn::Zero(f), one = hn::Set(f, 1.0F);
   const auto on_x = hn::Lt(hn::Abs(n.x), hn::Set(f, 0.7F));
   const Direction other = level({hn::IfThenElse(on_x, one, zero), hn::IfThenElse(on_x, zero, one), zero});
@@ -58,8 +48,7 @@ HWY_INLINE void set_up_frames(const SbrdfPoints& p, SurfaceFrames& frames) {
     const Direction n = loaded(p.nx, p.ny, p.nz, i), toward = loaded(p.vx, p.vy, p.vz, i);
     const Direction v = scaled(hn::Div(hn::Set(f, 1.0F), hn::Sqrt(dot(toward, toward))), toward);
     const Direction t = level_tangent(n, loaded(p.tx, p.ty, p.tz, i)), b = cross_product(n, t);
-    hn::Store(t.x, f, frames.tx + i), hn::Store(t.y, f, frames.ty + i), hn::Store(t.z, f, frames.tz + i);
-    hn::Store(b.x, f, frames.bx + i), hn::Store(b.y, f, frames.by + i), hn::Store(b.z, f, frames.bz + i);
+    store(t, frames.tx, frames.ty, frames.tz, i), store(b, frames.bx, frames.by, frames.bz, i);
     hn::Store(dot(v, t), f, frames.vt + i), hn::Store(dot(v, b), f, frames.vb + i);
     hn::Store(dot(v, n), f, frames.vn + i);
   }
@@ -165,9 +154,7 @@ HWY_INLINE void find_middles(const SurfaceFrames& frames, const float* lit, cons
     const V excess = hn::Add(beyond_one(axes.x, v.x), hn::Add(beyond_one(axes.y, v.y), beyond_one(axes.z, v.z)));
     const V size2 = hn::Max(dot(p, p), hn::Set(f, 1e-30F)), half = hn::Set(f, 0.5F);
     const V log_size2 = log_beside_one(excess, size2);
-    const V inverse = hn::Div(one, hn::Sqrt(size2));
-    hn::Store(hn::Mul(p.x, inverse), f, middles.x + i), hn::Store(hn::Mul(p.y, inverse), f, middles.y + i);
-    hn::Store(hn::Mul(p.z, inverse), f, middles.z + i);
+    store(scaled(hn::Div(one, hn::Sqrt(size2)), p), middles.x, middles.y, middles.z, i);
     hn::Store(hn::Mul(hn::Mul(half, hn::Load(f, l.exponent + i)), log_size2), f, middles.log_power + i);
   }
 }
@@ -177,10 +164,6 @@ HWY_INLINE V bounded_exp(V x) {
   const D f;
   const V least = hn::Set(f, -80.0F);
   return hn::IfThenElseZero(hn::Gt(x, least), hn::Exp(f, hn::Min(hn::Max(x, least), hn::Set(f, 87.0F))));
-}
-
-HWY_INLINE Quad fetched(const LobeMap& map, const Taps& taps, int i) {
-  return fetched(map.size, map.texels, taps, static_cast<std::size_t>(i));
 }
 
 // The cosine of a lobe's middle, or the mean cosine of what lies above the surface and the shift of the direction.
@@ -269,8 +252,8 @@ HWY_INLINE void add_lit(const float* light, const LampInFrames& lamp, const Surf
     const V lt = hn::Load(f, lamp.t + i), lb = hn::Load(f, lamp.b + i), cos_i = hn::Load(f, lamp.n + i);
     const V c = hn::Load(f, l.cos_x + i), q = hn::Load(f, l.sin_x + i);
     const Direction m = loaded(middles.x, middles.y, middles.z, i);
-    const Direction apart = {hn::Sub(m.x, hn::MulAdd(c, lt, hn::Mul(q, lb))),
-                             hn::Sub(m.y, hn::MulSub(c, lb, hn::Mul(q, lt))), hn::Sub(m.z, cos_i)};
+    const Direction apart =
+        minus(m, {hn::MulAdd(c, lt, hn::Mul(q, lb)), hn::MulSub(c, lb, hn::Mul(q, lt)), cos_i});
     const V versine = hn::Mul(half, dot(apart, apart));
     const auto seen =
         hn::And(hn::And(hn::Gt(cos_i, zero), hn::Gt(hn::Load(f, frames.vn + i), zero)), hn::Lt(versine, one));

@@ -20,15 +20,9 @@ constexpr std::size_t kLobeAxes = 0, kLobeExponent = 3, kLobeEnergy = 4, kLobeAl
                       kLobeHorizon = 8, kLobeTurn = 10;
 constexpr float kNoLobe = -1e4F;  // the logarithm of an albedo of 0
 
-// P_n on a cube, faces with a border of one texel, R G B 0 a texel.
-struct LobeMap {
-  int size = 0;
-  const float* texels = nullptr;
-};
-
 struct SbrdfShading {
-  LobeMap diffuse;                // P_1; null where there is no environment
-  const LobeMap* maps = nullptr;  // ascending exponents
+  SingleMap diffuse;                // P_1; null where there is no environment
+  const SingleMap* maps = nullptr;  // P_n, ascending exponents
   // Rows of so many segments, and one pair more: the mean cosine above the surface over a lobe whose middle m is at the
   // cosine (i/segments)^2, and s, where m + s n is the mean direction of the light that it gathers there. Null: the
   // cosine of the middle itself, and 0.
