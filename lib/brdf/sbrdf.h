@@ -21,6 +21,9 @@ struct SbrdfTexture {
   // For each lobe of each texel, cos and sin of twice the angle from the tangent to an x axis of its own, which then
   // takes the place of the texel's; empty where the texel's serves all of its lobes.
   std::vector<float> turns = {};
+  // The unit normal of each texel's frame along tangent, bitangent and the normal of the surface; empty where the
+  // surface is flat. Pictures leave it out: they take the normal of the surface.
+  std::vector<float> normals = {};
 
   int stride() const { return 5 + 7 * lobes; }
   const float* texel(int column, int row) const {

@@ -52,6 +52,10 @@ class Job {
   std::size_t texel(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(stack_.width()) + static_cast<std::size_t>(column);
   }
+  Vec3 normal_of(int column, int row) const {
+    const float* n = options_.normals->pixel(column, row);
+    return normalized(Vec3{n[0], n[1], n[2]});
+  }
   bool inside(int column, int row) const { return !options_.mask || options_.mask->pixel(column, row)[0] > 0.5F; }
   void put_samples(const Band& band, int column, int row, TexelSamples& samples) const;
   void hold_out(TexelSamples& samples) const;
@@ -108,10 +112,7 @@ void Job::put_samples(const Band& band, int column, int row, TexelSamples& sampl
   const double size = texel_size();
   const Vec3 at = {(column + 0.5) * size - options_.width / 2, (0.5 * stack_.height() - row - 0.5) * size, 0};
   brdf::SurfaceFrame frame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  if (options_.normals) {
-    const float* n = options_.normals->pixel(column, row);
-    frame = brdf::surface_frame({}, normalized(Vec3{n[0], n[1], n[2]}), {1, 0, 0});
-  }
+  if (options_.normals) frame = brdf::surface_frame({}, normal_of(column, row), {1, 0, 0});
   samples.resize(stack_.count());
   const std::size_t in_band = static_cast<std::size_t>(row - band.first) * static_cast<std::size_t>(stack_.width()) +
                               static_cast<std::size_t>(column);
@@ -430,6 +431,12 @@ Result<MapFit> Job::run() {
   out.alpha.assign(texels, 0), out.certainty.assign(texels, 0), out.error.assign(texels, 0);
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) out.alpha[texel(column, row)] = inside(column, row) ? 1.0F : 0.0F;
+  if (options_.normals)
+    for (int row = 0; row < height; ++row)
+      for (int column = 0; column < width; ++column) {
+        const Vec3 n = normal_of(column, row);
+        for (int k = 0; k < 3; ++k) out.map.normals.push_back(static_cast<float>(n[k]));
+      }
   first_.assign(texels, {});
   GONIO_TRY(fit_alone(out));
   GONIO_TRY(fit_together(out));

@@ -188,7 +188,9 @@ TEST(MapFit, NormalsOfTheTexelsCount) {
   }
   MapFitOptions with = kChecked;
   with.normals = &normals;
-  EXPECT_LE(fitted(tilted, with).holdout_rel_error, 0.03);
+  const MapFit fit = fitted(tilted, with);
+  EXPECT_LE(fit.holdout_rel_error, 0.03);
+  EXPECT_EQ(fit.map.normals, normals.data) << "unit normals are those that were given";
   EXPECT_GT(fitted(tilted, kChecked).holdout_rel_error, 0.05);
 }
 

@@ -100,6 +100,9 @@ std::vector<std::string> turns_of(int lobes) {
   return names;
 }
 
+// The normal of a texel, in the order of SbrdfTexture::normals.
+const std::vector<std::string> kNormal = {"normal.x", "normal.y", "normal.z"};
+
 // Channels of a fitted texture besides the surface of its texels.
 constexpr std::array<std::string_view, 3> kBeside = {"alpha", "certainty", "error"};
 
@@ -147,7 +150,7 @@ Result<std::vector<int>> sources(const std::vector<std::string>& wanted, const s
     return std::ranges::find(names, name) != names.end();
   };
   for (const std::string& name : given)
-    if (!is_among(wanted, name) && !is_among(turns, name) && !is_among(kBeside, name))
+    if (!is_among(wanted, name) && !is_among(turns, name) && !is_among(kNormal, name) && !is_among(kBeside, name))
       return input_error("{}: channel {} is not known: there are diffuse, frame and lobe0 to lobe15", path, name);
   return result;
 }
@@ -169,30 +172,40 @@ Result<std::vector<float>> alpha_of(const Image& image, const std::string& path)
   return alpha;
 }
 
-// The frames of all lobes; nothing where the texels' serve.
-Result<std::vector<float>> turns_of(const Image& image, int lobes, const std::string& path) {
-  const std::vector<std::string> names = turns_of(lobes);
+// The values of channels that a texture has all of, or none; `missing` says what to do where some are missing.
+Result<std::vector<float>> values_of(const Image& image, const std::vector<std::string>& names, const char* missing,
+                                     const std::string& path) {
   std::vector<std::ptrdiff_t> from;
   for (const std::string& name : names) {
     const auto found = std::ranges::find(image.channel_names, name);
     if (found != image.channel_names.end()) from.push_back(found - image.channel_names.begin());
   }
-  std::vector<float> turns;
-  if (from.empty()) return turns;
-  if (from.size() != names.size())
-    return input_error("{}: give c and s of every lobe, or of none: the texel's frame serves lobes that lack them",
-                       path);
+  std::vector<float> values;
+  if (from.empty()) return values;
+  if (from.size() != names.size()) return input_error("{}: {}", path, missing);
   for (int row = 0; row < image.height; ++row) {
     for (int column = 0; column < image.width; ++column) {
       for (std::size_t k = 0; k < from.size(); ++k) {
         const float value = image.pixel(column, row)[from[k]];
         if (!std::isfinite(value))
           return input_error("{}: {} of texel ({},{}) is {}: give a finite number", path, names[k], column, row, value);
-        turns.push_back(value);
+        values.push_back(value);
       }
     }
   }
-  return turns;
+  return values;
+}
+
+Result<void> check_normals(const brdf::SbrdfTexture& texture, const std::string& path) {
+  for (std::size_t i = 0; i < texture.normals.size(); i += 3) {
+    const float* n = &texture.normals[i];
+    constexpr double kFromUnit = 0.01;
+    if (!(n[2] > 0 && std::abs(std::hypot(n[0], n[1], n[2]) - 1) < kFromUnit))
+      return input_error("{}: the normal of texel ({},{}) is {} {} {}: give a unit vector whose z is above 0", path,
+                         i / 3 % static_cast<std::size_t>(texture.width),
+                         i / 3 / static_cast<std::size_t>(texture.width), n[0], n[1], n[2]);
+  }
+  return {};
 }
 
 Result<void> check_axes(const brdf::SbrdfTexture& texture, const std::string& path) {
@@ -266,7 +279,12 @@ Result<brdf::SbrdfTexture> read_sbrdf(InputFile input) {
   }
   GONIO_TRY(check_axes(texture, path));
   GONIO_ASSIGN(texture.alpha, alpha_of(image, path));
-  GONIO_ASSIGN(texture.turns, turns_of(image, texture.lobes, path));
+  GONIO_ASSIGN(
+      texture.turns,
+      values_of(image, turns_of(texture.lobes),
+                "give c and s of every lobe, or of none: the texel's frame serves lobes that lack them", path));
+  GONIO_ASSIGN(texture.normals, values_of(image, kNormal, "give normal.x, normal.y and normal.z, or none", path));
+  GONIO_TRY(check_normals(texture, path));
   return texture;
 }
 
@@ -275,9 +293,10 @@ Result<void> write_sbrdf(const std::string& path, const brdf::SbrdfTexture& text
   std::vector<std::string> names = channels_of(texture.lobes);
   const auto stride = static_cast<std::size_t>(texture.stride());
   std::vector<float> values = texture.values;
-  if (!texture.alpha.empty() || !texture.turns.empty()) {
+  if (!texture.alpha.empty() || !texture.turns.empty() || !texture.normals.empty()) {
     const std::vector<std::string> turns = turns_of(texture.turns.empty() ? 0 : texture.lobes);
     names.insert(names.end(), turns.begin(), turns.end());
+    if (!texture.normals.empty()) names.insert(names.end(), kNormal.begin(), kNormal.end());
     if (!texture.alpha.empty()) names.emplace_back("alpha");
     values.clear();
     const auto put = [&](const std::vector<float>& of, std::size_t texel, std::size_t count) {
@@ -286,6 +305,7 @@ Result<void> write_sbrdf(const std::string& path, const brdf::SbrdfTexture& text
     };
     for (std::size_t i = 0; i * stride < texture.values.size(); ++i) {
       put(texture.values, i, stride), put(texture.turns, i, turns.size());
+      if (!texture.normals.empty()) put(texture.normals, i, kNormal.size());
       if (!texture.alpha.empty()) values.push_back(texture.alpha[i]);
     }
   }

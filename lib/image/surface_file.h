@@ -22,11 +22,11 @@ Result<void> write_color_map(const std::string& path, const brdf::ColorMap& map,
 
 // Reads a texture (`*.sbrdf.exr`) from one part, or from several parts of one size. Its channels are diffuse.R .G
 // .B; for each lobe k from 0, lobe<k>.R .G .B (albedo), .x .y .z (axes) and .n (exponent); and frame.c and frame.s
-// where lobes turn, or lobe<k>.c and .s where each lobe turns by itself. Colors are linear working space, in 1/sr,
-// and multiplied by the channel alpha where there is one. The channels certainty and error, which a fitted texture
-// has besides, are passed over. Error: a channel that is missing or not known, or a texel whose albedo or exponent
-// is negative, whose alpha is not 0 to 1 or which holds a value that is not finite; a lobe that reflects but has
-// axes of length 0.
+// where lobes turn, or lobe<k>.c and .s where each lobe turns by itself; and normal.x .y .z where texels have normals
+// of their own. Colors are linear working space, in 1/sr, and multiplied by the channel alpha where there is one. The
+// channels certainty and error, which a fitted texture has besides, are passed over. Error: a channel that is missing
+// or not known, or a texel whose albedo or exponent is negative, whose alpha is not 0 to 1 or which holds a value that
+// is not finite; a lobe that reflects but has axes of length 0; a normal that is not a unit vector to the front.
 Result<brdf::SbrdfTexture> read_sbrdf(const std::string& path);
 Result<brdf::SbrdfTexture> read_sbrdf(InputFile input);
 

@@ -129,6 +129,22 @@ TEST_F(SbrdfFile, FramesOfLobesAreReadBackBesideAlpha) {
   EXPECT_EQ(read_exr(path_)->front().image.channels, 19) << "no channels of frames where the texel's serves";
 }
 
+TEST_F(SbrdfFile, NormalsAreReadBackAndChecked) {
+  brdf::SbrdfTexture texture{1, 2, 0, {0.1F, 0.2F, 0.3F, 1, 0, 0.1F, 0.2F, 0.3F, 1, 0}};
+  texture.normals = {0.6F, 0, 0.8F, 0, 0, 1};
+  ASSERT_TRUE(write_sbrdf(path_, texture, {}).ok());
+  const auto back = read_sbrdf(path_);
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  ASSERT_EQ(back->normals.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(back->normals[i], texture.normals[i], 5e-4) << "half precision";
+  texture.normals[5] = -1;
+  ASSERT_TRUE(write_sbrdf(path_, texture, {}).ok());
+  const std::string told = read_sbrdf(path_).error().message;
+  EXPECT_NE(told.find("the normal of texel (0,1) is 0 0 -1: give a unit vector"), std::string::npos) << told;
+  const std::string some = read({"diffuse.R", "diffuse.G", "diffuse.B", "normal.x"}, {1, 1, 1, 0}).error().message;
+  EXPECT_NE(some.find("give normal.x, normal.y and normal.z, or none"), std::string::npos) << some;
+}
+
 // A file that another program had converted was read as if it had not been.
 TEST_F(SbrdfFile, ColorsOfAnotherSpaceAreRefused) {
   const Image image{1, 1, 10, {0.1F, 0.2F, 0.3F, 1, 2, 3, -1, -0.5F, 1, 40}, kChannels};

@@ -162,6 +162,7 @@ Result<Surfaces> read_surfaces(const Options& options, cli::Session& session) {
       GONIO_TRY(add_paints(std::move(opened), names, result, slots, session));
     } else {
       GONIO_ASSIGN(brdf::SbrdfTexture map, image::read_sbrdf(std::move(opened)));
+      if (!map.normals.empty()) session.warn(fmt::format("{}: its normals are left out: the new map has none", file));
       slots.push_back({{file, "map", {}, std::make_shared<brdf::SbrdfTexture>(std::move(map)), nullptr, 0}, {}});
     }
   }
