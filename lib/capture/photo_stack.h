@@ -19,17 +19,24 @@ struct PhotoPixel {
   float r = 0, g = 0, b = 0, rounding = 0;
 };
 
+// The size of a map.
+struct MapSize {
+  int columns = 0, rows = 0;
+};
+
 struct PhotoShares {
   double saturated = 0, black = 0;  // of the pixels
 };
 
 class PhotoStack {
  public:
-  // Reads all images of a table into a temporary file without a name. `saturated` is the value from which a pixel of
-  // floats is taken for saturated; whole numbers are at the largest one. `progress` is called after each image with
-  // their number so far. Error: an image that cannot be read, that is not finite or of another size; no image in which
-  // enough pixels are neither saturated nor black; or the temporary file cannot be written.
-  static Result<PhotoStack> open(const PhotoTable& table, double saturated,
+  // Reads all images of a table into a temporary file without a name. Photographs with corners are rectified to `size`,
+  // which all others have already; without it none has corners, and all have one size. `saturated` is the value from
+  // which a pixel of floats is taken for saturated; whole numbers are at the largest one. `progress` is called after
+  // each image with their number so far. Error: an image that cannot be read, that is not finite or of another size;
+  // corners that no plate has, or no size for them; no image in which enough pixels are neither saturated nor black; or
+  // the temporary file cannot be written.
+  static Result<PhotoStack> open(const PhotoTable& table, double saturated, const MapSize& size = {},
                                  const std::function<void(int)>& progress = {});
 
   int width() const { return width_; }

@@ -15,12 +15,13 @@ namespace goniochrome::capture {
 
 namespace {
 
-constexpr std::array<const char*, 10> kColumns = {"image",          "light_x",        "light_y",  "light_z",
-                                                  "camera_x",       "camera_y",       "camera_z", "exposure",
-                                                  "light_distance", "camera_distance"};
-enum Column { kImage, kLight, kCamera = 4, kExposure = 7, kLightDistance = 8, kCameraDistance = 9 };
+constexpr std::array<const char*, 19> kColumns = {
+    "image",     "light_x",        "light_y",         "light_z",   "camera_x",  "camera_y",  "camera_z",
+    "exposure",  "light_distance", "camera_distance", "corner1_x", "corner1_y", "corner2_x", "corner2_y",
+    "corner3_x", "corner3_y",      "corner4_x",       "corner4_y", "k1"};
+enum Column { kImage, kLight, kCamera = 4, kExposure = 7, kLightDistance, kCameraDistance, kCorners, kLens = 18 };
 
-// Where each of kColumns stands in a row; none for a distance that is not there.
+// Where each of kColumns stands in a row; none for one that is not there.
 using Places = std::array<std::optional<std::size_t>, kColumns.size()>;
 
 Result<Places> places_of(const std::vector<std::string>& header, const std::string& where) {
@@ -31,7 +32,7 @@ Result<Places> places_of(const std::vector<std::string>& header, const std::stri
     if (known == kColumns.end())
       return input_error(
           "{}: the column \"{}\" is not known: there are image, light_x, light_y, light_z, camera_x, "
-          "camera_y, camera_z, exposure, light_distance and camera_distance",
+          "camera_y, camera_z, exposure, light_distance, camera_distance, corner1_x, corner1_y to corner4_y and k1",
           where, shown(name));
     auto& place = places[static_cast<std::size_t>(known - kColumns.begin())];
     if (place) return input_error("{}: the column {} is there twice: leave one out", where, name);
@@ -43,6 +44,12 @@ Result<Places> places_of(const std::vector<std::string>& header, const std::stri
           "{}: the column {} is missing: the first row names image, light_x, light_y, light_z, camera_x, "
           "camera_y, camera_z and exposure",
           where, kColumns[k]);
+  for (std::size_t k = kCorners; k < kLens; ++k)
+    if (places[k].has_value() != places[kCorners].has_value())
+      return input_error("{}: there are some columns of corners: give corner1_x and corner1_y to corner4_y, or none",
+                         where);
+  if (places[kLens] && !places[kCorners])
+    return input_error("{}: k1 is for photographs with corners: give corner1_x and corner1_y to corner4_y", where);
   return places;
 }
 
@@ -85,6 +92,26 @@ class Row {
     return station;
   }
 
+  // Nothing where the row has no corners.
+  Result<std::optional<Corners>> corners() const {
+    std::optional<Corners> corners;
+    if (!places_[kCorners]) return corners;
+    std::size_t empty = 0;
+    for (std::size_t k = kCorners; k < kLens; ++k) empty += text(k).empty();
+    if (empty == kLens - kCorners) return corners;
+    corners.emplace();
+    for (std::size_t k = 0; k < corners->at.size(); ++k) {
+      GONIO_ASSIGN(corners->at[k].x, number(kCorners + 2 * k));
+      GONIO_ASSIGN(corners->at[k].y, number(kCorners + 2 * k + 1));
+    }
+    if (!places_[kLens] || text(kLens).empty()) return corners;
+    GONIO_ASSIGN(corners->k1, number(kLens));
+    constexpr double kMost = 0.3;  // from 1/3 on, a lens folds the corners of its picture in
+    if (!(std::abs(corners->k1) <= kMost))
+      return input_error("{}: k1 is {}: give a number from -.3 to .3", where_, shortest(corners->k1));
+    return corners;
+  }
+
  private:
   const std::vector<std::string>& cells_;
   const Places& places_;
@@ -103,6 +130,7 @@ Result<Photo> photo_of(const Row& row, const std::string& where, const std::file
         "{}: exposure is {}: give the linear value, above 0, of a white matte surface that faces a light "
         "at distance 1",
         where, shortest(photo.exposure));
+  GONIO_ASSIGN(photo.corners, row.corners());
   return photo;
 }
 

@@ -63,6 +63,26 @@ TEST(PhotoTable, NamesTheLineAndTheRemedy) {
   EXPECT_NE(told(far + "1,a.png,0,0,0,0,0,1,1\n").find("which is no direction"), std::string::npos);
 }
 
+TEST(PhotoTable, CornersAreOfARowThatHasThem) {
+  const ScratchFolder folder;
+  const std::string head =
+      "corner1_x,corner1_y,corner2_x,corner2_y,corner3_x,corner3_y,corner4_x,corner4_y,k1," + kHead;
+  const auto table = read_photo_table(
+      folder.file("photos.csv", head + "1,2,9,3,8,7,0.5,6,-0.1,a.png,0,0,1,0,0,1,1\n,,,,,,,,,b.png,0,0,1,0,0,1,1\n"));
+  ASSERT_TRUE(table.ok()) << table.error().message;
+  ASSERT_TRUE(table->photos[0].corners.has_value());
+  EXPECT_EQ(table->photos[0].corners->at[3].x, 0.5);
+  EXPECT_EQ(table->photos[0].corners->at[1].y, 3);
+  EXPECT_EQ(table->photos[0].corners->k1, -0.1);
+  EXPECT_FALSE(table->photos[1].corners.has_value());
+  EXPECT_NE(told(head + "1,2,9,3,8,7,0.5,,0,a.png,0,0,1,0,0,1,1\n").find(":2: corner4_y is \"\": write a number"),
+            std::string::npos);
+  EXPECT_NE(told(head + "1,2,9,3,8,7,0.5,6,0.5,a.png,0,0,1,0,0,1,1\n").find(":2: k1 is 0.5: give a number from -.3"),
+            std::string::npos);
+  EXPECT_NE(told("corner1_x," + kHead).find("there are some columns of corners"), std::string::npos);
+  EXPECT_NE(told("k1," + kHead).find("k1 is for photographs with corners"), std::string::npos);
+}
+
 TEST(PhotoTable, StationsThatTellNothingAreRefused) {
   const auto check = [](const std::string& rows, int least) {
     const ScratchFolder folder;

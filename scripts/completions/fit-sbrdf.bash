@@ -2,6 +2,7 @@ _fit_sbrdf() {
   local word=${COMP_WORDS[COMP_CWORD]}
   case ${COMP_WORDS[COMP_CWORD-1]} in
     --width) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --texels) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --mask) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --normals) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --lobes|-n) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -18,7 +19,7 @@ _fit_sbrdf() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--width --mask --normals --lobes --method --noise --saturated --mend-exposures --tile --holdout --tolerance --error-map --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--width --texels --mask --normals --lobes --method --noise --saturated --mend-exposures --tile --holdout --tolerance --error-map --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -53,6 +53,90 @@ EOF
   render-osmesa -q --engine cpu --mesh "$TESTDATA/box.obj" --env sky.env.exr --texture White=map.sbrdf.exr --size 32x24 --samples 1 -o seen.exr
 }
 
+# perspective: every photograph becomes one that another camera took of the plate, and c.csv has the corners.
+perspective() {
+  /usr/bin/python3 - <<'EOF'
+import math, OpenImageIO as o
+rows = open("photos.csv").read().splitlines()
+first = next(i for i, row in enumerate(rows) if row.startswith("image,"))
+rows[first] += "".join(f",corner{k}_{c}" for k in (1, 2, 3, 4) for c in "xy")
+for i in range(first + 1, len(rows)):
+    name = rows[i].split(",")[0]
+    plate = o.ImageBuf(name)
+    spec = plate.spec()
+    width, height = 280 + 4 * (i % 5), 200 + 6 * (i % 3)
+    turn, tilt, distance = 0.3 * math.sin(i), 0.5 * math.cos(1.7 * i), 6.0
+    def seen(u, v):  # of the plate, 2.4 x 1.6, by a pinhole
+        x, y = 2.4 * (u - 0.5), 1.6 * (v - 0.5)
+        x, y = x * math.cos(turn) - y * math.sin(turn), x * math.sin(turn) + y * math.cos(turn)
+        far = distance + x * math.sin(tilt)
+        return width / 2 + 480 * x * math.cos(tilt) / far, height / 2 + 480 * y / far
+    def plate_at(px, py):
+        a, b = (px - width / 2) / 480, (py - height / 2) / 480
+        x = a * distance / (math.cos(tilt) - a * math.sin(tilt))
+        y = b * (distance + x * math.sin(tilt))
+        x, y = x * math.cos(turn) + y * math.sin(turn), y * math.cos(turn) - x * math.sin(turn)
+        return x / 2.4 + 0.5, y / 1.6 + 0.5
+    picture = o.ImageBuf(o.ImageSpec(width, height, 3, "uint16"))
+    stored = plate.get_pixels(o.FLOAT)
+    for py in range(height):
+        for px in range(width):
+            u, v = plate_at(px + 0.5, py + 0.5)
+            if 0 <= u < 1 and 0 <= v < 1:
+                picture.setpixel(px, py, [float(c) for c in stored[int(v * spec.height)][int(u * spec.width)]])
+    picture.write(name)
+    rows[i] += "".join(f",{c:.4f}" for corner in ((0, 0), (1, 0), (1, 1), (0, 1)) for c in seen(*corner))
+open("c.csv", "w").write("\n".join(rows) + "\n")
+EOF
+}
+
+@test "photographs in perspective are rectified from four corners" {
+  perspective
+  fit-sbrdf -q -n 1 --width 2 -k 4 -m dictionary --texels 24x16 --report r.json -o map.sbrdf.exr c.csv
+  jq -e '.results | .width == 24 and .height == 16 and .holdout_rel_error < 0.01' r.json || { jq .results.holdout_rel_error r.json; false; }
+  # The control: corners that are two texels to the right or to the left.
+  awk -F, -v OFS=, '/^#/ || /^image/ { print; next } { for (k = 9; k < 17; k += 2) $k += NR % 2 ? 16 : -16; print }' c.csv >p.csv
+  fit-sbrdf -q -n 1 --width 2 -k 4 -m dictionary --texels 24x16 --tolerance 1 --report r.json -o wrong.exr p.csv
+  jq -e '.results.holdout_rel_error > 0.03' r.json || { jq .results.holdout_rel_error r.json; false; }
+}
+
+@test "corners that no plate has are one error" {
+  perspective
+  refused "has corners: give the texels of the map, as --texels 512x256" c.csv
+  cp "$TESTDATA"/capture/stripes-*.png .
+  refused "but the map is 12 x 8: mark the corners of the surface" --texels 12x8 photos.csv
+  corners() { # corners AWK: of a photograph as large as the plate
+    awk -F, -v OFS=, '/^#/ { print; next } /^image/ { print $0 ",corner1_x,corner1_y,corner2_x,corner2_y,corner3_x,corner3_y,corner4_x,corner4_y"; next }
+      /^stripes-03/ { print $0, '"$1"'; next } { print $0, ",,,,,,," }' "$TESTDATA/capture/photos.csv" >p.csv
+  }
+  corners '"0,0,24,0,24,16,0,16"'
+  fit-sbrdf -q -n 1 --width 2 --texels 24x16 -o map.sbrdf.exr p.csv
+  corners '"2,2,8,5,14,8,0,16"'
+  refused "stripes-03.png: the upper right corner is on the line through its neighbors" --texels 24x16 p.csv
+  corners '"24,0,0,0,24,16,0,16"'
+  refused "sides that cross or a dent: give them with the clock" --texels 24x16 p.csv
+  corners '"-4,0,24,0,24,16,0,16"'
+  refused "p.csv:6: " --texels 24x16 p.csv
+  refused "stripes-03.png: the upper left corner is at -4,0, outside of the photograph of 24 x 16 pixels" --texels 24x16 p.csv
+  run -2 fit-sbrdf --texels 24 -o none.exr p.csv
+  [[ "$output" = *"--texels is \"24\""* ]]
+}
+
+@test "normals stay in the map, and a picture says that it leaves them out" {
+  oiiotool --pattern constant:color=0.5,0.5,1 24x16 3 -d uint8 -o normals.png
+  fit --normals normals.png
+  [[ "$(oiiotool --info -v map.sbrdf.exr)" = *normal.x*normal.y*normal.z* ]]
+  draw() { render-osmesa --engine cpu --mesh "$TESTDATA/box.obj" --light 30,50 --texture White=$1 --size 32x24 --samples 1 -o seen.exr; }
+  run draw map.sbrdf.exr
+  [ "$status" -eq 0 ] && [[ "$output" = *"map.sbrdf.exr: its normals are left out"* ]]
+  run paint-sbrdf map.sbrdf.exr -o laid.sbrdf.exr
+  [ "$status" -eq 0 ] && [[ "$output" = *"map.sbrdf.exr: its normals are left out"* ]]
+  # The control: a flat map.
+  fit
+  run draw map.sbrdf.exr
+  [ "$status" -eq 0 ] && [[ "$output" != *normals* ]]
+}
+
 @test "the report tells all, and the summary tells error and time of both methods" {
   run --separate-stderr fit-sbrdf -n 1 --width 2 -k 2 --explain --report r.json -o map.sbrdf.exr photos.csv
   [ "$status" -eq 0 ]

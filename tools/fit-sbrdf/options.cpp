@@ -12,19 +12,20 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .more(
           "The height follows from the number of rows. The middle of the surface is the origin of the table, x runs "
           "right, y runs up, and z is the normal.");
+  spec.option("texels", "WxH", "512x256", &o.texels, "texels of the map, for photographs with marked corners")
+      .more("They are squares, so that W and H are in the proportion of the plate. See Photographs in perspective.");
   spec.option("mask", "FILE", "mask.png", &o.mask, "fit only where this image is white")
       .more("The alpha of the map is 1 there, and elsewhere it is 0 and the texels are black.");
   spec.option("normals", "FILE", "normals.png", &o.normals, "normal of each texel, where the surface is not flat")
       .more(
           "An image of whole numbers holds (n + 1)/2 of the unit normal, with y up, as normal maps of games do; one of "
-          "floats holds the normal itself. The map is then for the frame whose z is that normal, and a picture of it "
-          "needs the same normals.");
+          "floats holds the normal itself. The map is then for the frame whose z is that normal, which it keeps; "
+          "pictures leave it out and say so.");
   spec.heading = "how it is fitted";
   spec.option("lobes,n", "N", "1", &o.lobes, "lobes of each texel").from(1, 4);
   spec.option("method,m", "METHOD", "dictionary", &o.method, "how the lobes are found")
       .one_of({"best", "dictionary", "nonlinear"})
-      .more(
-          "See Methods.");
+      .more("See Methods.");
   spec.option("noise", "SHARE", "0.01", &o.noise, "relative standard deviation of a value, besides its rounding")
       .from(1e-4, 0.5)
       .in("parts of the value")
@@ -98,9 +99,10 @@ cli::ToolSpec tool_spec(Options& o) {
       "than a third of them had to be left out, where none was taken within 20 degrees of the mirror direction, where "
       "a lobe was never seen at a tenth of its peak, or where its "
       "strength had to be bounded.",
-      "The photographs must be registered: they have the same size, and a pixel of each is the same place of the "
-      "surface. 8 and 16 bit PNG, EXR and other formats are read; whole numbers are decoded as sRGB unless they state "
-      "another color space.",
+      "The photographs are registered: they have the same size, and a pixel of each is the same place of the surface; "
+      "or the corners of the surface are marked in them. 8 and 16 bit PNG, EXR and other formats are read; whole "
+      "numbers are decoded as sRGB unless they state another color space. goniochrome-surfaces(7) says how to take "
+      "photographs.",
       "The table is text (CSV) whose first row names its columns. image is a path relative to the table. light_x, "
       "light_y, light_z and camera_x, camera_y, camera_z are places, with the middle of the surface as the origin and "
       "z along its normal. With a column light_distance or camera_distance, x, y and z are a direction and the "
@@ -109,18 +111,13 @@ cli::ToolSpec tool_spec(Options& o) {
       "largest of whole numbers, that a white matte surface would have that faces the light at distance 1, in the unit "
       "of the table; it is measured once with a white card. Twice the exposure time doubles it. Lines that begin with "
       "# are remarks.",
-      "A turntable rig: lamp and camera stand still and the sample turns. In the frame of the sample both turn "
-      "together: at the angle t, a lamp at azimuth 0 has light_x = d sin(p) cos(t), light_y = -d sin(p) sin(t) and "
-      "light_z = d cos(p), and so has the camera with its own azimuth. Take 12 turns for each of three or more "
-      "elevations p of the lamp, of which one is that of the mirror direction.",
-      "A handheld lamp with a mirror ball: camera and sample stand still, and a ball lies beside the sample. With a "
-      "distant camera above, light seen at the fraction r of the ball's radius from its middle, at azimuth a, has the "
-      "normal (r cos a, r sin a, sqrt(1 - r^2)) there, and comes from the direction (2 r sqrt(1 - r^2) cos a, 2 r "
-      "sqrt(1 - r^2) sin a, 1 - 2 r^2): write it as x, y, z with light_distance. r below 0.7 is above the surface. "
-      "One camera sees each texel from one side only, so that lobes that turn with the view need a second one.",
-      "A gantry: light and camera go to any direction. 40 photographs over the hemisphere, up to 65 degrees from the "
-      "normal, and 40 with the light within 20 degrees of the mirror direction of the camera, settle two lobes. For "
-      "both, write parallel rays or the places of the stage.",
+      "# Photographs in perspective\nThe columns corner1_x, corner1_y to corner4_x, corner4_y hold the corners of the "
+      "surface in a photograph: upper left, upper right, lower right, lower left, in pixels from the upper left edge "
+      "of the photograph; the middle of its first pixel is at .5, .5. With --texels such photographs are rectified, so "
+      "that cameras and sizes may differ. A texel is the mean, in linear light, of the pixels that it covers. Rows "
+      "without corners are of the size of the map already. The column k1 is the distortion of the lens: what is to be "
+      "at the distance r from the middle of the photograph, in half diagonals, is seen at r (1 + k1 r^2). Without it, "
+      "remove the distortion before.",
       "# Methods\ndictionary chooses lobes from a dictionary by weights that are not negative, weighs shadows, "
       "saturated values and outliers down, refines the lobes, and takes neighbors into account. nonlinear is least "
       "squares from one start, for each texel by itself, with one or two lobes, as in the first paper on such maps; it "

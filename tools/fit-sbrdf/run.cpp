@@ -25,6 +25,18 @@ Result<void> check(const Options& options) {
   return {};
 }
 
+// Nothing where the option is not given.
+Result<capture::MapSize> size_of(const std::string& text) {
+  if (text.empty()) return capture::MapSize{};
+  const auto words = split(lower(text), 'x');
+  if (words.size() == 2) {
+    const auto columns = parse_integer(words[0]), rows = parse_integer(words[1]);
+    if (columns && rows && std::min(*columns, *rows) >= 1 && std::max(*columns, *rows) <= 65536)
+      return capture::MapSize{static_cast<int>(*columns), static_cast<int>(*rows)};
+  }
+  return usage_error("--texels is \"{}\": give two whole numbers from 1 to 65536, as in --texels 512x256", text);
+}
+
 capture::MapMethod method_of(const std::string& name) {
   for (const auto method : {capture::MapMethod::kDictionary, capture::MapMethod::kNonlinear})
     if (name == capture::method_name(method)) return method;
@@ -133,6 +145,7 @@ void warn(const capture::PhotoTable& table, const capture::MapFit& fit, const Op
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_TRY(check(options));
+  GONIO_ASSIGN(const capture::MapSize size, size_of(options.texels));
   const std::string path = options.table.empty() ? "-" : options.table.front();
   GONIO_ASSIGN(const capture::PhotoTable table, capture::read_photo_table(path));
   session.explain(plan_text(options, table));
@@ -142,7 +155,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(const std::optional<image::Image> mask, image_of(options.mask, false));
   GONIO_ASSIGN(const std::optional<image::Image> normals, image_of(options.normals, true));
   const Stopwatch clock;
-  GONIO_ASSIGN(const capture::PhotoStack stack, capture::PhotoStack::open(table, options.saturated, [&](int done) {
+  GONIO_ASSIGN(const capture::PhotoStack stack,
+               capture::PhotoStack::open(table, options.saturated, size, [&](int done) {
                  session.progress(fmt::format("read {} of {} photographs", done, table.photos.size()));
                }));
   session.results()["read_s"] = clock.elapsed_s();

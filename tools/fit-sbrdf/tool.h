@@ -11,7 +11,7 @@ namespace goniochrome::tool {
 struct Options {
   cli::CommonOptions common;
   std::vector<std::string> table;
-  std::string output = "-", error_map, mask, normals;
+  std::string output = "-", error_map, mask, normals, texels;
   std::string method = "best";
   int lobes = 2, holdout = 0, tile_rows = 0;
   double width = 1, noise = 0.02, saturated = 1e300;
