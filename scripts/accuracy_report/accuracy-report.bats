@@ -98,3 +98,20 @@ for name in {row["figure"] for row in rows}:
     assert (out / f"{name}.svg").read_text() in text, name
 PY
 }
+
+@test "the projection factor softens the rim of a sphere, whatever the treatment of the critical angle" {
+  run report isolines --quick --bin "$(dirname "$(command -v draw-plot)")" -o out
+  echo "$output"
+  [ "$status" -eq 0 ]
+  /usr/bin/python3 - out <<'PY'
+import pathlib, re, sys
+
+page = (pathlib.Path(sys.argv[1]) / "index.html").read_text()
+rows = [re.findall(r"<td[^>]*>([^<]*)", row) for row in re.findall(r"<tr>(.*?)</tr>", page, re.S)]
+rows = [row for row in rows if len(row) == 7]
+assert [row[2] for row in rows] == ["clip", "slide", "index"], rows
+for row in rows:
+    without, factor, mean = map(float, row[3:6])
+    assert without > 15 and factor < without / 4 and (row[2] == "clip") == (mean == 0), row
+PY
+}

@@ -23,6 +23,7 @@ STUDIES = {
     "spots": "bright spots of an environment that each horizon cuts by itself: their number against the exact sum",
     "edges": "edges: few samples in a pixel against hundreds",
     "interference": "paints with a color map in image light: sets of tilted lobes against the integral of the map",
+    "isolines": "color maps under a lamp: treatments of the critical angle, with and without the projection factor",
     "scenes": "ten scenes: what the plan leaves out, and what it says that each effect is worth",
     "inverse": "paints that are searched for: sketches by their size, and panels that hide a misalignment",
     "sketches": "round trips of sketch-fit: paints, meshes, sizes and lights, and whether each error has a warning",
