@@ -110,7 +110,8 @@ EOF
       /^stripes-03/ { print $0, '"$1"'; next } { print $0, ",,,,,,," }' "$TESTDATA/capture/photos.csv" >p.csv
   }
   corners '"0,0,24,0,24,16,0,16"'
-  fit-sbrdf -q -n 1 --width 2 --texels 24x16 -o map.sbrdf.exr p.csv
+  run fit-sbrdf -n 1 --width 2 --texels 24x16 --explain -o map.sbrdf.exr p.csv
+  [ "$status" -eq 0 ] && [[ "$output" = *"1 photographs are rectified from their corners"* ]]
   corners '"2,2,8,5,14,8,0,16"'
   refused "stripes-03.png: the upper right corner is on the line through its neighbors" --texels 24x16 p.csv
   corners '"24,0,0,0,24,16,0,16"'
@@ -141,7 +142,7 @@ EOF
   run --separate-stderr fit-sbrdf -n 1 --width 2 -k 2 --explain --report r.json -o map.sbrdf.exr photos.csv
   [ "$status" -eq 0 ]
   [[ "$stderr" = *"dictionary: median error "*" us a texel"*"nonlinear: median error "*"fit-sbrdf: 384 texels by "* ]]
-  [[ "$stderr" = *"20 photographs, 2 of them held out; 1 lobes"* ]]
+  [[ "$stderr" = *"20 photographs, 2 of them held out; 1 lobes"*"0 photographs are rectified"* ]]
   jq -e '.tool == "fit-sbrdf" and (.results | has("uncertain") and has("fit_s") and has("read_s") and has("left_out_share"))' r.json
   for method in dictionary nonlinear; do
     fit -m $method

@@ -55,13 +55,16 @@ Result<std::optional<image::Image>> image_of(const std::string& path, bool as_no
 }
 
 std::string plan_text(const Options& options, const capture::PhotoTable& table) {
+  const auto marked =
+      std::ranges::count_if(table.photos, [](const capture::Photo& p) { return p.corners.has_value(); });
   return fmt::format(
       "{} photographs, {} of them held out; {} lobes for each texel, {} numbers\n"
+      "{} photographs are rectified from their corners\n"
       "each texel needs {} photographs or more\n"
       "methods: dictionary weighs shadows and outliers down and asks neighbors; nonlinear is plain least squares, for "
       "1 or 2 lobes, and takes a tenth to a half of the time\n"
       "left out: light between texels, shadows that most photographs have, and light that is not white\n",
-      table.photos.size(), options.holdout, options.lobes, 3 + 6 * options.lobes + 1,
+      table.photos.size(), options.holdout, options.lobes, 3 + 6 * options.lobes + 1, marked,
       capture::least_photos(options.lobes));
 }
 
