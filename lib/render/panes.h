@@ -1,5 +1,5 @@
 // Clear glass that is seen through: its reflectance, its transmission, and the surfaces behind it.
-// goniochrome-paths(7), "PANES".
+// goniochrome-coats(7), "PANES".
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Surfaces behind panes, as engines that shade G-buffers draw them. goniochrome-paths(7), "PANES".
+// Surfaces behind panes, as engines that shade G-buffers draw them. goniochrome-coats(7), "PANES".
 #pragma once
 
 #include <memory>

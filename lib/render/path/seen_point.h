@@ -1,5 +1,5 @@
 // The points that a camera sees along one ray: a point, or a pane and the points behind it.
-// goniochrome-paths(7), "PANES".
+// goniochrome-coats(7), "PANES".
 #pragma once
 
 #include <vector>
