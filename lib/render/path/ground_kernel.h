@@ -1,6 +1,6 @@
 // Sums over a floor that shows the environment, in blocks: what the diffuse part and wide lobes gather of it at a
 // point. Compiled for several instruction sets, of which the best that the processor has is chosen at run time.
-// goniochrome-paths(7), "Ground".
+// goniochrome-paths(7), "Open floor".
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // Light from directions below the horizon, as means over parts of the hemisphere of any size.
-// goniochrome-paths(7), "Ground".
+// goniochrome-paths(7), "Open floor".
 #pragma once
 
 #include <functional>

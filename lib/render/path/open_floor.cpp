@@ -45,15 +45,16 @@ OpenFloor::OpenFloor(const rays::RayScene& scene, const Float3& eye, const Along
   lit_ = std::make_unique<const HemisphereMap>(kSize, lit_texels);
 }
 
-// A block's light comes from its middle by the light.
+// A block's light comes from its middle by the light; a dark one has a middle too.
 GroundBlocks OpenFloor::blocks(int across, const std::vector<Float3>& hidden, const std::vector<Float3>& lit) const {
   GroundBlocks blocks;
   const int texels = kSize / across;
   const float texel_sr = HemisphereMap::texel_sr(kSize);
+  constexpr float kDark = 1e-12F;  // whose square is no 0
   struct Middle {
     Float3 light, way;
     void add(const Float3& of, const Float3& direction) {
-      light = light + of, way = way + (size_of(of) + 1e-20F) * direction;
+      light = light + of, way = way + (size_of(of) + kDark) * direction;
     }
   };
   for (int row = 0; row < across; ++row) {

@@ -1,5 +1,5 @@
 // The light of a floor that shows the environment where nothing is in the way of it, less that of the environment below
-// the horizon, in the place of which it stands. goniochrome-paths(7), "Ground".
+// the horizon, in the place of which it stands. goniochrome-paths(7), "Open floor".
 #pragma once
 
 #include <functional>

@@ -98,6 +98,16 @@ TEST(OpenFloor, ItsBlocksAreTheSumOverAllDirections) {
   EXPECT_GT(percentile_95(control), 0.3) << "the control: without the floor";
 }
 
+TEST(OpenFloor, OfADarkFloorTheHiddenLightIsMissing) {
+  const Floor floor;
+  const OpenFloor dark(floor.scene, floor.eye, ground, ground, [](const Float3&) { return color::Rgb{}; });
+  const GroundReceiver wall{floor.scene.local({2, 0, 0}), {1, 0, 0}, {0.6F, 0.8F, 0}, {0.6F, -0.8F, 0}};
+  const float lit = floor.open.columns(wall).diffuse.y, missing = dark.columns(wall).diffuse.y;
+  EXPECT_LT(missing, -0.5F);
+  EXPECT_LT(missing, lit - 0.5F) << "the control: a lit floor";
+  EXPECT_EQ(dark.lit(wall.position, {0.6F, -0.8F, 0}, 0, 0).y, 0);
+}
+
 TEST(OpenFloor, MapsHoldMeansOverEqualParts) {
   const Floor floor;
   double all = 0;
