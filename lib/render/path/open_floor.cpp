@@ -17,7 +17,7 @@ constexpr int kCoarse = 32, kFine = 64;
 constexpr float kLow = 0.4F;
 
 float size_of(const Float3& light) {
-  return light.x + light.y + light.z;
+  return std::abs(light.x) + std::abs(light.y) + std::abs(light.z);
 }
 
 }  // namespace

@@ -105,6 +105,9 @@ TEST(OpenFloor, OfADarkFloorTheHiddenLightIsMissing) {
   const float lit = floor.open.columns(wall).diffuse.y, missing = dark.columns(wall).diffuse.y;
   EXPECT_LT(missing, -0.5F);
   EXPECT_LT(missing, lit - 0.5F) << "the control: a lit floor";
+  // Rounding leaves a little less than nothing.
+  const OpenFloor less(floor.scene, floor.eye, ground, ground, [](const Float3&) { return color::Rgb{-1e-8, 0, 0}; });
+  EXPECT_NEAR(less.columns(wall).diffuse.x, dark.columns(wall).diffuse.x, 1e-5F);
   EXPECT_EQ(dark.lit(wall.position, {0.6F, -0.8F, 0}, 0, 0).y, 0);
 }
 
