@@ -31,10 +31,10 @@ Result<capture::MapSize> size_of(const std::string& text) {
   const auto words = split(lower(text), 'x');
   if (words.size() == 2) {
     const auto columns = parse_integer(words[0]), rows = parse_integer(words[1]);
-    if (columns && rows && std::min(*columns, *rows) >= 1 && std::max(*columns, *rows) <= 65536)
+    if (columns && rows && std::min(*columns, *rows) >= 1 && std::max(*columns, *rows) <= 16384)
       return capture::MapSize{static_cast<int>(*columns), static_cast<int>(*rows)};
   }
-  return usage_error("--texels is \"{}\": give two whole numbers from 1 to 65536, as in --texels 512x256", text);
+  return usage_error("--texels is \"{}\": give two whole numbers from 1 to 16384, as in --texels 512x256", text);
 }
 
 capture::MapMethod method_of(const std::string& name) {

@@ -37,9 +37,8 @@ HWY_INLINE Corners corners_of(const InterleavedMaps& maps, const Taps& taps, int
 
 // Adds one block of a texel, between the four, to `sum`.
 HWY_INLINE Block add_between(const Corners& c, std::size_t at, const Block& sum) {
-  const auto add = [&](int corner, const float* texel, const Block& to) HWY_ATTR {
-    return mul_add(c.share[corner], Block::load(texel + at), to);
-  };
+  const auto add = [&](int corner, const float* texel, const Block& to)
+                       HWY_ATTR { return mul_add(c.share[corner], Block::load(texel + at), to); };
   return add(2, c.lower, add(3, c.lower + c.right, add(0, c.upper, add(1, c.upper + c.right, sum))));
 }
 
@@ -217,14 +216,7 @@ HWY_INLINE void add_environment(const CpuShading& s, const PointArrays& points, 
   }
 }
 
-// brdf's fresnel_dielectric() with the refracted cosine g/n written in c: r_s = (c-g)/(c+g), r_p = (n^2 c-g)/(n^2 c+g).
-HWY_INLINE V fresnel_of(V c) {
-  const D f;
-  const V n2 = hn::Set(f, static_cast<float>(brdf::kCoatIndex * brdf::kCoatIndex));
-  const V g = hn::Sqrt(hn::MulAdd(c, c, hn::Set(f, static_cast<float>(brdf::kCoatIndex * brdf::kCoatIndex - 1))));
-  const V s = hn::Div(hn::Sub(c, g), hn::Add(c, g)), p = hn::Div(hn::MulSub(n2, c, g), hn::MulAdd(n2, c, g));
-  return hn::Mul(hn::Set(f, 0.5F), hn::MulAdd(s, s, hn::Mul(p, p)));
-}
+constexpr auto kCoat2 = static_cast<float>(brdf::kCoatIndex * brdf::kCoatIndex);
 
 // The transmission of a coat, by brdf's form of the Fresnel reflectance; `index2` is the square of its index, 1 without
 // a coat, where the amplitudes would be 0/0 at c = 0.
@@ -311,7 +303,8 @@ HWY_INLINE void add_light(const CpuShading& s, int number, const PointArrays& po
     const Direction l = lamp.toward(i);
     hn::Store(hn::Max(dot(normal_of(points, i), l), hn::Zero(f)), f, base + i);
     const V half = hn::Set(f, 0.5F), cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), l), half);
-    hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, hn::Zero(f)))) : hn::Set(f, 1.0F), f, fresnel + i);
+    hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, hn::Zero(f))), kCoat2) : hn::Set(f, 1.0F), f,
+              fresnel + i);
   }
   for (int i = 0; s.coat && i < count; ++i) base[i] *= let_in(base[i], index2[i]);
   // 2. What the diffuse part meets, and each lobe.
@@ -348,9 +341,9 @@ HWY_INLINE float elevation_of(float sine, const CpuShading::Disc& disc) {
   return std::max(-1.0F, static_cast<float>(math::asin(std::max(-1.0F, sine))) / disc.radius_rad);
 }
 
-// Adds the light of a disc and of its mirror image. Each lobe is looked up by the chord between the mirror direction and the
-// middle of the disc. Of what it gathers, one part counts with cosine and coat at the disc and the other with those at
-// the mirror direction.
+// Adds the light of a disc and of its mirror image. Each lobe is looked up by the chord between the mirror direction
+// and the middle of the disc. Of what it gathers, one part counts with cosine and coat at the disc and the other with
+// those at the mirror direction.
 HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& points, const Frame& frame, int count,
                          const float* index2, Lit& lit) {
   const D f;
@@ -368,7 +361,7 @@ HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& poi
     const Direction l = lamp.toward(i);
     const V cosine = dot(normal_of(points, i), l), cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), l), half);
     hn::Store(cosine, f, irradiance + i);
-    hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero))) : one, f, above + i);
+    hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero)), kCoat2) : one, f, above + i);
     hn::Store(hn::IfThenElseZero(hn::Gt(cosine, hn::Set(f, -disc.sine)), hn::Load(f, lamp.strength + i)), f, seen + i);
   }
   if (std::none_of(seen, seen + count, [](float strength) { return strength > 0; })) return;
@@ -403,7 +396,7 @@ HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& poi
       hn::Store(hn::Sqrt(dot(apart, apart)), f, chord + i);
       hn::Store(hn::Max(dot(normal_of(points, i), r), zero), f, cos_r + i);
       const V cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), r), half);
-      hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero))) : one, f, coat_r + i);
+      hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero)), kCoat2) : one, f, coat_r + i);
     }
     for (int i = 0; i < kPointsAtOnce; ++i) {
       if (s.coat && i < count) cos_r[i] *= let_in(cos_r[i], index2[i]);

@@ -145,6 +145,15 @@ HWY_INLINE Direction mirrored(V c, const Direction& n, const Direction& v) {
   return {hn::MulSub(two, n.x, v.x), hn::MulSub(two, n.y, v.y), hn::MulSub(two, n.z, v.z)};
 }
 
+// brdf's fresnel_dielectric() with the refracted cosine g/n written in c: r_s = (c-g)/(c+g), r_p = (n^2 c-g)/(n^2 c+g).
+// `index2` is n^2, above 1.
+HWY_INLINE V fresnel_of(V c, float index2) {
+  const D f;
+  const V n2 = hn::Set(f, index2), g = hn::Sqrt(hn::MulAdd(c, c, hn::Set(f, index2 - 1)));
+  const V s = hn::Div(hn::Sub(c, g), hn::Add(c, g)), p = hn::Div(hn::MulSub(n2, c, g), hn::MulAdd(n2, c, g));
+  return hn::Mul(hn::Set(f, 0.5F), hn::MulAdd(s, s, hn::Mul(p, p)));
+}
+
 using Quad = Pack<4>;  // one R G B 0
 
 // The light of one map at point i, between its four texels.

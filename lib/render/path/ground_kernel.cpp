@@ -5,116 +5,81 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/path/ground_kernel.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
 
-#include <hwy/contrib/math/math-inl.h>
+#include "render/cpu/cube_lookup-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace goniochrome::render {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::CappedTag<float, GroundBlocks::kLanes>;
-using V = hn::Vec<D>;
-
-struct V3 {
-  V x, y, z;
-};
-
-HWY_INLINE V3 Same(const rays::Float3& a) {
-  const D d;
-  return {hn::Set(d, a.x), hn::Set(d, a.y), hn::Set(d, a.z)};
+HWY_INLINE Direction same(const rays::Float3& a) {
+  const D f;
+  return {hn::Set(f, a.x), hn::Set(f, a.y), hn::Set(f, a.z)};
 }
-HWY_INLINE V3 Load(const GroundBlocks::Places& from, std::size_t i) {
-  const D d;
-  return {hn::LoadU(d, &from[0][i]), hn::LoadU(d, &from[1][i]), hn::LoadU(d, &from[2][i])};
+HWY_INLINE Direction loaded(const GroundBlocks::Places& from, std::size_t i) {
+  return loaded(from[0].data(), from[1].data(), from[2].data(), i);
 }
-HWY_INLINE V Dot(const V3& a, const V3& b) {
-  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
-}
-HWY_INLINE V3 Times(V s, const V3& a) {
-  return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
-}
-HWY_INLINE void Add(V s, const V3& a, V3& sum) {
-  sum = {hn::MulAdd(s, a.x, sum.x), hn::MulAdd(s, a.y, sum.y), hn::MulAdd(s, a.z, sum.z)};
-}
-HWY_INLINE rays::Float3 Sum(const V3& a) {
-  const D d;
-  return {hn::GetLane(hn::SumOfLanes(d, a.x)), hn::GetLane(hn::SumOfLanes(d, a.y)),
-          hn::GetLane(hn::SumOfLanes(d, a.z))};
-}
-
-// Fresnel reflectance of a dielectric of this squared index for unpolarized light.
-HWY_INLINE V Fresnel(V cosine, float n2) {
-  const D d;
-  const V one = hn::Set(d, 1.0F), contrast = hn::Set(d, n2 - 1), c2 = hn::Mul(cosine, cosine);
-  const V g = hn::Sqrt(hn::Add(contrast, c2));
-  const V s = hn::Add(cosine, g), p = hn::MulAdd(hn::Set(d, n2), cosine, g);
-  const V r_s = hn::Div(contrast, hn::Mul(s, s));
-  const V r_p = hn::Div(hn::Mul(contrast, hn::MulSub(hn::Set(d, n2 + 1), c2, one)), hn::Mul(p, p));
-  return hn::Mul(hn::Set(d, 0.5F), hn::MulAdd(r_s, r_s, hn::Mul(r_p, r_p)));
+HWY_INLINE rays::Float3 sum(const Direction& a) {
+  const D f;
+  const auto lanes = [&](V v) HWY_ATTR { return hn::GetLane(hn::SumOfLanes(f, v)); };
+  return {lanes(a.x), lanes(a.y), lanes(a.z)};
 }
 
 struct Point {
-  V3 normal, to_viewer, mirrored;
+  Direction normal, to_viewer, mirrored;
 };
 struct Columns {
-  V3 diffuse, flakes[GroundReceiver::kMostLobes], gloss[GroundReceiver::kMostLobes];
+  Direction diffuse, flakes[GroundReceiver::kMostLobes], gloss[GroundReceiver::kMostLobes];
 };
 
 // Adds the light that comes along these directions.
-HWY_INLINE void Gather(const GroundReceiver& receiver, const Point& point, const V3& direction, const V3& light,
-                       Columns& sums) {
+HWY_INLINE void Gather(const GroundReceiver& receiver, const Point& point, const Direction& direction,
+                       const Direction& light, Columns& sums) {
   const D d;
-  const V one = hn::Set(d, 1.0F), cosine = Dot(point.normal, direction);
+  const V one = hn::Set(d, 1.0F), cosine = dot(point.normal, direction);
   const auto above = hn::Gt(cosine, hn::Zero(d));
   if (hn::AllFalse(d, above)) return;
   V base = hn::IfThenElseZero(above, cosine);
   if (receiver.coat_index > 1)
-    base = hn::Mul(base, hn::Sub(one, Fresnel(base, receiver.coat_index * receiver.coat_index)));
-  Add(base, light, sums.diffuse);
+    base = hn::Mul(base, hn::Sub(one, fresnel_of(base, receiver.coat_index * receiver.coat_index)));
+  sums.diffuse = mul_add(base, light, sums.diffuse);
   if (receiver.lobes == 0) return;
-  const V toward = hn::Min(Dot(point.mirrored, direction), one);
-  const auto in_lobe = hn::And(above, hn::Gt(toward, hn::Set(d, 1e-6F)));
+  const V toward = hn::Min(dot(point.mirrored, direction), one), least = hn::Set(d, 1e-6F);
+  const auto in_lobe = hn::And(above, hn::Gt(toward, least));
   if (hn::AllFalse(d, in_lobe)) return;
-  const V log = hn::Log(d, hn::Max(toward, hn::Set(d, 1e-6F)));
-  // |l + v|^2 = 2 + 2 l v
-  const V half = hn::Mul(
-      hn::Set(d, 0.5F),
-      hn::Sqrt(hn::Max(hn::Zero(d), hn::MulAdd(hn::Set(d, 2.0F), Dot(point.to_viewer, direction), hn::Set(d, 2.0F)))));
-  constexpr auto kN2 = static_cast<float>(brdf::kCoatIndex * brdf::kCoatIndex);
-  const V fresnel = Fresnel(hn::Min(half, one), kN2);
+  const V log = hn::Log(d, hn::Max(toward, least));
+  // |l + v|^2 / 4 = (1 + l v) / 2
+  const V half = hn::Set(d, 0.5F), cos_half2 = hn::MulAdd(half, dot(point.to_viewer, direction), half);
+  constexpr auto kCoat2 = static_cast<float>(brdf::kCoatIndex * brdf::kCoatIndex);
+  const V fresnel = fresnel_of(hn::Sqrt(hn::Min(hn::Max(cos_half2, hn::Zero(d)), one)), kCoat2);
   for (std::size_t j = 0; j < receiver.lobes; ++j) {
-    const V power = hn::IfThenElseZero(
-        in_lobe, hn::Exp(d, hn::Max(hn::Mul(hn::Set(d, receiver.exponents[j]), log), hn::Set(d, -80.0F))));
-    Add(hn::Mul(power, base), light, sums.flakes[j]);
-    Add(hn::Mul(power, fresnel), light, sums.gloss[j]);
+    const V power = hn::IfThenElseZero(in_lobe, hn::Exp(d, hn::Mul(hn::Set(d, receiver.exponents[j]), log)));
+    sums.flakes[j] = mul_add(hn::Mul(power, base), light, sums.flakes[j]);
+    sums.gloss[j] = mul_add(hn::Mul(power, fresnel), light, sums.gloss[j]);
   }
 }
 
 GroundColumns SumGround(const GroundBlocks& blocks, const GroundReceiver& receiver) {
   const D d;
-  const Point point{Same(receiver.normal), Same(receiver.to_viewer), Same(receiver.mirrored)};
-  const V3 from = Same(receiver.position);
-  const V3 none = Same({});
+  const Point point{same(receiver.normal), same(receiver.to_viewer), same(receiver.mirrored)};
+  const Direction from = same(receiver.position);
+  const Direction none = same({});
   Columns sums;
   sums.diffuse = none;
   for (std::size_t j = 0; j < receiver.lobes; ++j) sums.flakes[j] = sums.gloss[j] = none;
   for (std::size_t i = 0; i < blocks.place[0].size(); i += hn::Lanes(d)) {
-    const V3 place = Load(blocks.place, i);
-    const V3 way{hn::Sub(place.x, from.x), hn::Sub(place.y, from.y), hn::Sub(place.z, from.z)};
-    const V inverse2 = hn::Div(hn::Set(d, 1.0F), Dot(way, way)), inverse = hn::Sqrt(inverse2);
-    const V3 direction = Times(inverse, way);
+    const Direction way = minus(loaded(blocks.place, i), from);
+    const V inverse2 = hn::Div(hn::Set(d, 1.0F), dot(way, way)), inverse = hn::Sqrt(inverse2);
+    const Direction direction = scaled(inverse, way);
     // The floor's own cosine, seen from above.
     const V extent = hn::Mul(hn::Max(hn::Neg(direction.y), hn::Zero(d)), inverse2);
-    Gather(receiver, point, direction, Times(extent, Load(blocks.sent, i)), sums);
-    const V3 hidden = Load(blocks.hidden, i);
-    Gather(receiver, point, Load(blocks.toward, i), {hn::Neg(hidden.x), hn::Neg(hidden.y), hn::Neg(hidden.z)}, sums);
+    Gather(receiver, point, direction, scaled(extent, loaded(blocks.sent, i)), sums);
+    Gather(receiver, point, loaded(blocks.toward, i), scaled(hn::Set(d, -1.0F), loaded(blocks.hidden, i)), sums);
   }
   GroundColumns columns;
-  columns.diffuse = Sum(sums.diffuse);
+  columns.diffuse = sum(sums.diffuse);
   for (std::size_t j = 0; j < receiver.lobes; ++j)
-    columns.flakes[j] = Sum(sums.flakes[j]), columns.gloss[j] = Sum(sums.gloss[j]);
+    columns.flakes[j] = sum(sums.flakes[j]), columns.gloss[j] = sum(sums.gloss[j]);
   return columns;
 }
 

@@ -13,7 +13,7 @@ namespace goniochrome::render {
 
 // Blocks one by one, each quantity by itself; the last ones are dark and fill the lanes of a kernel.
 struct GroundBlocks {
-  static constexpr std::size_t kLanes = 16;
+  static constexpr std::size_t kLanes = 16;  // No kernel takes more blocks at once.
   using Places = std::array<std::vector<float>, 3>;
 
   Places place;   // of the light of a block of floor, local

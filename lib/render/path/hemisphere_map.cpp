@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
-
 namespace goniochrome::render {
 
 namespace {
@@ -24,19 +22,16 @@ HemisphereMap::Place HemisphereMap::place(float column, float row, int size) {
 }
 
 HemisphereMap::HemisphereMap(int size, const std::vector<Float3>& light) {
-  levels_.push_back({size, {}});
-  for (const Float3& at : light) levels_.front().texels.push_back({at.x, at.y, at.z, 0});
+  levels_.push_back({size, light});
   while (levels_.back().size > kCoarsest) {
     const Level& fine = levels_.back();
     Level coarse{fine.size / 2, {}};
     for (int row = 0; row < coarse.size; ++row) {
       for (int column = 0; column < coarse.size; ++column) {
-        const Texel* a = &fine.texels[static_cast<std::size_t>(2 * row) * static_cast<std::size_t>(fine.size) +
-                                      static_cast<std::size_t>(2 * column)];
-        const Texel* b = a + fine.size;
-        coarse.texels.push_back({0.25F * (a[0].r + a[1].r + b[0].r + b[1].r),
-                                 0.25F * (a[0].g + a[1].g + b[0].g + b[1].g),
-                                 0.25F * (a[0].b + a[1].b + b[0].b + b[1].b), 0});
+        const Float3* a = &fine.texels[static_cast<std::size_t>(2 * row) * static_cast<std::size_t>(fine.size) +
+                                       static_cast<std::size_t>(2 * column)];
+        const Float3* b = a + fine.size;
+        coarse.texels.push_back(0.25F * (a[0] + a[1] + b[0] + b[1]));
       }
     }
     levels_.push_back(std::move(coarse));
@@ -44,9 +39,8 @@ HemisphereMap::HemisphereMap(int size, const std::vector<Float3>& light) {
 }
 
 Float3 HemisphereMap::at(const Float3& direction, float extent_sr, float number) const {
-  // A texel of the finest image holds 8 / size^2.
-  const auto size = static_cast<float>(levels_.front().size);
-  const float level = 0.5F * std::log2(std::max(extent_sr * size * size / 8, 1e-6F)) + number;
+  const float texels = extent_sr / texel_sr(levels_.front().size);
+  const float level = 0.5F * std::log2(std::max(texels, 1e-6F)) + number;
   const auto coarsest = static_cast<float>(levels_.size() - 1);
   const Level& image = levels_[level > 0 ? static_cast<std::size_t>(std::min(level, coarsest)) : 0];
   const float half = 0.5F * static_cast<float>(image.size), scale = half / std::sqrt(1 - direction.y);
@@ -55,11 +49,9 @@ Float3 HemisphereMap::at(const Float3& direction, float extent_sr, float number)
               z = std::clamp(scale * direction.z + half - 0.5F, 0.0F, last);
   const auto column = static_cast<std::size_t>(x), row = static_cast<std::size_t>(z);
   const float right = x - static_cast<float>(column), down = z - static_cast<float>(row);
-  const Texel* a = &image.texels[row * static_cast<std::size_t>(image.size) + column];
-  const Texel* b = a + image.size;
-  const float wa = (1 - right) * (1 - down), wb = right * (1 - down), wc = (1 - right) * down, wd = right * down;
-  return {wa * a[0].r + wb * a[1].r + wc * b[0].r + wd * b[1].r, wa * a[0].g + wb * a[1].g + wc * b[0].g + wd * b[1].g,
-          wa * a[0].b + wb * a[1].b + wc * b[0].b + wd * b[1].b};
+  const Float3* a = &image.texels[row * static_cast<std::size_t>(image.size) + column];
+  const Float3* b = a + image.size;
+  return (1 - down) * ((1 - right) * a[0] + right * a[1]) + down * ((1 - right) * b[0] + right * b[1]);
 }
 
 }  // namespace goniochrome::render

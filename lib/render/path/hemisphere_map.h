@@ -2,7 +2,6 @@
 // goniochrome-paths(7), "Open floor".
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "rays/float3.h"
@@ -30,12 +29,9 @@ class HemisphereMap {
   rays::Float3 at(const rays::Float3& direction, float extent_sr, float number) const;
 
  private:
-  struct Texel {
-    float r, g, b, a;
-  };
   struct Level {
     int size = 0;
-    std::vector<Texel> texels;
+    std::vector<rays::Float3> texels;
   };
   std::vector<Level> levels_;
 };

@@ -141,13 +141,14 @@ class PaintedPoint {
     return total_ > 0 ? at(direction(choice, u, v)) : Reflection{};
   }
 
-  // A lobe about mirrored(). The coat that lets its light in is left to whom asks; what it lets out is in the weight.
+  // A lobe cos^E about mirrored(). Its weight for flakes has the passage of the coat to the viewer, but not that of the
+  // light.
   struct WideLobe {
     float exponent;
     rays::Float3 directional_diffuse, gloss;
   };
-  // The first lobes of exponents up to `sharpest`, no more than `most`. None where the point shows anything but its
-  // diffuse part, its mirror and lobes about mirrored(); without_wide() is then not to be asked.
+  // The first lobes of exponents up to `sharpest`, no more than `most`. Nothing where the point shows anything but
+  // its diffuse part, its mirror and lobes about mirrored().
   std::optional<std::vector<WideLobe>> wide_lobes(float sharpest, std::size_t most) const;
   // This point without its diffuse part and so many of the first lobes.
   PaintedPoint without_wide(std::size_t lobes) const;
