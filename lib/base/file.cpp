@@ -96,10 +96,14 @@ void take_over(int descriptor, const struct stat& old) {
   }
 }
 
-// The mode a newly created file would get: 0666 less the umask.
+// The mode a newly created file would get: 0666 less the umask. It is asked for once, since asking sets it: two threads
+// that ask at once can leave the process without one.
 mode_t creation_mode() {
-  const mode_t mask = umask(0);
-  umask(mask);
+  static const mode_t mask = [] {
+    const mode_t of_process = umask(0);
+    umask(of_process);
+    return of_process;
+  }();
   return 0666 & ~mask;
 }
 
@@ -225,7 +229,8 @@ Result<OutputFile> OutputFile::create(const std::string& path) {
   if (!there && errno != ENOENT) return cannot_be_written(path);
   if (there && S_ISDIR(old.st_mode)) return is_a_folder(path);
   if (there && !S_ISREG(old.st_mode)) return written_in_place(open(path.c_str(), O_WRONLY | O_CLOEXEC), path, in_place);
-  if (there && access(path.c_str(), W_OK) != 0) return cannot_be_written(path);
+  // Another run may have removed the file since.
+  if (there && access(path.c_str(), W_OK) != 0 && errno != ENOENT) return cannot_be_written(path);
   GONIO_ASSIGN(const std::string file, file_behind(path));
   int fd = open(folder_of(file).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   bool has_dot_file = fd < 0 && (errno == EOPNOTSUPP || errno == EISDIR);

@@ -92,7 +92,8 @@ TEST_F(Caches, ManyWritersLeaveWholeFilesWithinTheBound) {
     writers.emplace_back([&, writer] {
       for (int i = 0; i < 20; ++i) {
         const std::string key(1, static_cast<char>('a' + (writer + i) % 5)), content(250, key[0]);
-        EXPECT_TRUE(cache_.keep(key, content).ok());
+        const auto kept = cache_.keep(key, content);
+        EXPECT_TRUE(kept.ok()) << kept.error().message;
         EXPECT_EQ(cache_.find(key).value_or(content), content);  // another writer may have taken its room
       }
     });
