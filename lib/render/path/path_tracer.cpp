@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "base/clock.h"
@@ -187,6 +188,7 @@ class Picture {
     Gathered sums;
     color::Rgb deterministic;
     color::Rgb sharp;   // what is known without samples of the light that the mesh takes and adds
+    std::optional<color::Rgb> floor_light;  // of any sample of the pixel; none: not known, or of each another
     double needed = 0;  // fours that bring the noise of the neighborhood to the tolerance
     bool certain = false;
     bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
@@ -225,9 +227,10 @@ class Picture {
     const Gbuffer& g = surface_.gbuffer;
     const rays::Spot spot = spot_at(transport_.rays(), surface_, point.x, point.y);
     const SeenPoint at(transport_, options_of(i), spot, rays::float3(g.to_viewer(point.x, point.y)));
-    state.certain = at.certain();
-    state.deterministic = at.deterministic();
-    if (first_round_) show(i, spot, 1, state.deterministic, rays::float3(g.to_viewer(point.x, point.y)));
+    if (!state.looked) {
+      state.looked = true, state.certain = at.certain(), state.deterministic = at.deterministic();
+      show(i, spot, 1, state.deterministic, rays::float3(g.to_viewer(point.x, point.y)));
+    }
     if (state.certain && state.sums.fours() == 0) return;
     const Round round(fours);
     LightShares means[Round::kSequences];
@@ -333,14 +336,20 @@ class Picture {
     return {transport_, options_of(i), spot, to_viewer};
   }
 
-  // Each round at a point has sequences of its own.
+  // Each round at a point has sequences of its own. Samples of a pixel that show one piece have one light of the open
+  // floor.
   void add_fan(const SeenPoint& at, std::size_t i, const Round& round, int fan,
-               LightShares (&means)[Round::kSequences]) const {
+               LightShares (&means)[Round::kSequences]) {
     const int which = round.sequence_of(fan);
     const Sequence sequence(seed_of(request_.seed, i, states_[i].sums.fours() + which),
                             static_cast<std::uint32_t>(kOfFour * round.length));
-    means[which] += (static_cast<double>(round.together()) / round.length) *
-                    at.shares_of(sequence, round.first_of(fan), static_cast<std::uint32_t>(kOfFour * round.together()));
+    LightShares shares =
+        at.shares_of(sequence, round.first_of(fan), static_cast<std::uint32_t>(kOfFour * round.together()));
+    std::optional<color::Rgb>& known = states_[i].floor_light;
+    const color::Rgb floor_light = known ? *known : at.floor_light();
+    if (count_ == 1 || (!even_.empty() && even_[place(points_[i])] != 0)) known = floor_light;
+    shares.from_floor += floor_light;
+    means[which] += (static_cast<double>(round.together()) / round.length) * shares;
   }
 
   // The fans take the samples of the pixel in turn from one drawn by chance: the mean over all fans has the right

@@ -204,6 +204,13 @@ void PointTransport::add_mirror() {
     return;
   }
   if (correction_) deterministic_ += -1.0 * reflect(mirror, open);
+  if (transport_.is_projected(mirror_hit_) && transport_.shaded_ != nullptr) {
+    const LightShares floor =
+        transport_.shaded_ground(transport_.rays_->spot(mirror_hit_, spot_.start, painted_.mirrored()));
+    deterministic_ += reflect(mirror, floor.direct);
+    if (options_.bounces > 0 && options_.into_lobes) deterministic_ += reflect(mirror, floor.into_diffuse);
+    return;
+  }
   deterministic_ += reflect(mirror, transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle)));
   if ((options_.bounces == 0 || !options_.into_lobes) && !transport_.is_projected(mirror_hit_)) return;
   const double share = weight / (weight + painted_.lobes_weight());
@@ -298,7 +305,7 @@ LightShares PointTransport::shown(const Ray& ray, bool occluded, const Sequence&
   return shares;
 }
 
-// Over a floor that shows the environment. In a correction the open floor is told by open_floor(), and rays tell what
+// Over a floor that shows the environment. In a correction floor_light() and sharp_floor_light() tell the open floor, and rays what
 // the mesh takes from there and sends instead.
 LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, const Sequence& sequence,
                                               std::uint32_t index) const {
@@ -330,26 +337,30 @@ LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, co
   return shares;
 }
 
-// The light of the open floor less that of the environment below the horizon, which the maps have in its place: the sum
-// over these samples. The diffuse part and wide lobes take it from the blocks of the floor, without noise; all else
-// along directions of its own, which gather the mean about them.
-color::Rgb PointTransport::open_floor(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const {
+color::Rgb PointTransport::floor_light() const {
+  if (certain_ || !over_ground_ || !correction_) return {};
+  const auto lobes = painted_.wide_lobes(kWidestShared, GroundReceiver::kMostLobes);
+  if (!lobes) return {};
+  GroundReceiver receiver{spot_.start, painted_.normal(), painted_.to_viewer(), painted_.mirrored(),
+                          static_cast<float>(painted_.coat_index())};
+  for (const PaintedPoint::WideLobe& lobe : *lobes) receiver.exponents[receiver.lobes++] = lobe.exponent;
+  const GroundColumns columns = transport_.open_floor_->columns(receiver);
+  color::Rgb light = reflect(painted_.diffuse(), rays::vec3(columns.diffuse));
+  for (std::size_t j = 0; j < lobes->size(); ++j)
+    light += reflect((*lobes)[j].directional_diffuse, rays::vec3(columns.flakes[j])) +
+             reflect((*lobes)[j].gloss, rays::vec3(columns.gloss[j]));
+  return light;
+}
+
+// What the open floor sends beside floor_light(): the sum over these samples along directions that each gather the mean
+// about them.
+color::Rgb PointTransport::sharp_floor_light(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const {
   constexpr std::uint32_t kSet = 40;  // that nothing else draws from
   const OpenFloor& floor = *transport_.open_floor_;
   color::Rgb sum;
   std::optional<PaintedPoint> rest;
-  if (const auto lobes = painted_.wide_lobes(kWidestShared, GroundReceiver::kMostLobes)) {
-    GroundReceiver receiver{spot_.start, painted_.normal(), painted_.to_viewer(), painted_.mirrored(),
-                            static_cast<float>(painted_.coat_index())};
-    for (const PaintedPoint::WideLobe& lobe : *lobes) receiver.exponents[receiver.lobes++] = lobe.exponent;
-    const GroundColumns columns = floor.columns(receiver);
-    color::Rgb wide = reflect(painted_.diffuse(), rays::vec3(columns.diffuse));
-    for (std::size_t j = 0; j < lobes->size(); ++j)
-      wide += reflect((*lobes)[j].directional_diffuse, rays::vec3(columns.flakes[j])) +
-              reflect((*lobes)[j].gloss, rays::vec3(columns.gloss[j]));
-    sum = static_cast<double>(count) * wide;
+  if (const auto lobes = painted_.wide_lobes(kWidestShared, GroundReceiver::kMostLobes))
     rest = painted_.without_wide(lobes->size());
-  }
   const PaintedPoint& point = rest ? *rest : painted_;
   if (!(point.lobes_weight() > 0)) return sum;
   const std::uint32_t directions = rest ? 1 : kFloorDirections;
@@ -436,7 +447,7 @@ LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t be
       if (over_ground_) {
         Hit hits[kFan];
         if (fan.wanted != 0) transport_.rays_->closest(fan, hits);
-        if (correction_) sum.from_floor += open_floor(sequence, first, traced);
+        if (correction_) sum.from_floor += sharp_floor_light(sequence, first, traced);
         for (std::uint32_t i = 0; i < traced; ++i) {
           sum += shown_over_ground(rays[i], hits[i], sequence, first + i);
         }

@@ -35,6 +35,11 @@ class SeenPoint {
       if (!point.at.certain()) sum += static_cast<double>(point.passed) * point.at.shares_of(sequence, first, count);
     return sum;
   }
+  color::Rgb floor_light() const {
+    color::Rgb sum = front_.floor_light();
+    for (const Behind& point : behind_) sum += static_cast<double>(point.passed) * point.at.floor_light();
+    return sum;
+  }
 
  private:
   struct Behind {

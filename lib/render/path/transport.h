@@ -258,10 +258,15 @@ class PointTransport {
   // The mean by shares of the samples first, first + 1, ... of the rest, drawn from a sequence of this seed; `first`
   // and `count` are multiples of kHalfFan. Its expectation is the rest, exactly.
   LightShares batch_shares(std::uint64_t seed, std::uint32_t first = 0, std::uint32_t count = kBatch) const {
-    return shares_of(Sequence(seed, kBatch), first, count);
+    LightShares shares = shares_of(Sequence(seed, kBatch), first, count);
+    shares.from_floor += floor_light();
+    return shares;
   }
-  // This draws from any sequence.
+  // This draws from any sequence, and leaves floor_light() out.
   LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count) const;
+  // The part of LightShares::from_floor that is known without samples, from the blocks of the floor: that of the
+  // diffuse part and wide lobes.
+  color::Rgb floor_light() const;
 
  private:
   struct Ray;
@@ -280,7 +285,7 @@ class PointTransport {
                                 std::uint32_t index) const;
   void add_sent(const rays::Float3& direction, const color::Rgb& sent, float scale, LightShares& shares) const;
   LightShares mirrored(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
-  color::Rgb open_floor(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
+  color::Rgb sharp_floor_light(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
   color::Rgb emitter_sample(const std::array<double, 4>& numbers) const;
   color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
 
