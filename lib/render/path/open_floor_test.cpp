@@ -171,5 +171,40 @@ TEST(OpenFloor, CorrectionsAreTheLightOfPaths) {
   }
 }
 
+// The floor under a roof in a sun, in the mirror of a plate.
+TEST(OpenFloor, AFloorInAMirrorIsKnownWithoutSamples) {
+  mesh::Mesh mesh;
+  add_rectangle(mesh, "mirror", {-4, -1, -2}, {8, 0, 0}, {0, 3, 0});
+  add_rectangle(mesh, "roof", {-8, 2.2, -1.9}, {14, 0, 0}, {0, 0, 6});
+  PathStage stage(std::move(mesh), {only_mirror(0.9), matt({0.3, 0.3, 0.3})});
+  stage.environment = environment_of(64, 32, [](int x, int y) {
+    return y == 2 && x == 20 ? color::Rgb{4000, 4000, 4000} : color::Rgb{0.5 + 0.1 * (x % 3), 0.6, y / 32.0};
+  });
+  stage.ground.emplace();
+  stage.ground->height = -1.2, stage.ground->probe_eye = {0, 1, 0.4};
+  stage.build();
+  Transport shaded = *stage.transport;
+  shaded.shade_ground({}, 0);
+  PathOptions options;
+  options.bounces = 0;
+  const Float3 from = shaded.rays().local({2, 2.5, 6});
+  double least = 1;
+  for (const double x : {-2.0, -1.5, -1.0, -0.5, 0.0}) {
+    const Float3 direction = rays::normalized(shaded.rays().local({x, 0.2, -2}) - from);
+    const rays::Hit hit = shaded.rays().closest(from, direction);
+    ASSERT_EQ(shaded.rays().part(hit.triangle), 0);
+    const rays::Spot spot = shaded.rays().spot(hit, from, direction);
+    const PointTransport known(shaded, options, spot, -direction);
+    ASSERT_TRUE(known.certain());
+    const PathEstimate truth = path_estimate(*stage.transport, options, spot, rays::vec3(-direction), 2000, 1);
+    const double noise = deviation(truth);
+    const Float3 mirrored = direction - 2 * rays::dot(direction, spot.shading) * spot.shading;
+    const rays::Spot floor = shaded.rays().spot(shaded.rays().closest(spot.start, mirrored), spot.start, mirrored);
+    least = std::min(least, shaded.shaded_ground(floor).direct.y / shaded.open_ground(floor).y);
+    EXPECT_NEAR(known.deterministic().y, truth.radiance.y, 4 * noise + 0.05 * truth.radiance.y) << x;
+  }
+  EXPECT_LT(least, 0.7) << "the control: an open floor";
+}
+
 }  // namespace
 }  // namespace goniochrome::render::open_floor_test
