@@ -32,6 +32,9 @@ struct Columns {
   Direction diffuse, flakes[GroundReceiver::kMostLobes], gloss[GroundReceiver::kMostLobes];
 };
 
+// The logarithm of a power of which a lobe shows nothing: 1e-7.
+constexpr float kDarkest = -16.1F;
+
 // Adds the light that comes along these directions.
 HWY_INLINE void Gather(const GroundReceiver& receiver, const Point& point, const Direction& direction,
                        const Direction& light, Columns& sums) {
@@ -53,7 +56,10 @@ HWY_INLINE void Gather(const GroundReceiver& receiver, const Point& point, const
   constexpr auto kCoat2 = static_cast<float>(brdf::kCoatIndex * brdf::kCoatIndex);
   const V fresnel = fresnel_of(hn::Sqrt(hn::Min(hn::Max(cos_half2, hn::Zero(d)), one)), kCoat2);
   for (std::size_t j = 0; j < receiver.lobes; ++j) {
-    const V power = hn::IfThenElseZero(in_lobe, hn::Exp(d, hn::Mul(hn::Set(d, receiver.exponents[j]), log)));
+    const V exponent = hn::Mul(hn::Set(d, receiver.exponents[j]), log);
+    const auto seen = hn::And(in_lobe, hn::Gt(exponent, hn::Set(d, kDarkest)));
+    if (hn::AllFalse(d, seen)) continue;
+    const V power = hn::IfThenElseZero(seen, hn::Exp(d, exponent));
     sums.flakes[j] = mul_add(hn::Mul(power, base), light, sums.flakes[j]);
     sums.gloss[j] = mul_add(hn::Mul(power, fresnel), light, sums.gloss[j]);
   }
