@@ -379,9 +379,8 @@ Result<Transport> Renderer::State::traced_light(bool over_floor) const {
   }
   GONIO_ASSIGN(Transport created, Transport::create(paths));
   if (over_floor) {
-    GroundRequest request{.directions = ground_directions(tolerance_de00), .seed = effort_asked.seed};
-    request.bounced_directions = 4 * request.directions;
-    if (deadline && deadline->limit_s() > 0) request.longest_s = std::max(1e-3, deadline->left_s() / 4);
+    const double left_s = deadline && deadline->limit_s() > 0 ? std::max(4e-3, deadline->left_s()) : 0;
+    const GroundRequest request = ground_request(tolerance_de00, effort_asked.seed, left_s);
     created.shade_ground(request, effects.rays.self || effects.rays.bounce ? effort_asked.bounces : 0);
   }
   return created;

@@ -137,7 +137,11 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
   path.emission = scene.emission, path.ground = scene.ground;
   GONIO_ASSIGN(const render::LobeColumns columns, render::lobe_columns(scene));
   GONIO_ASSIGN(const render::WornPaints worn, render::worn_paints(columns, path));
-  GONIO_ASSIGN(const render::Transport transport, render::Transport::create(path));
+  GONIO_ASSIGN(render::Transport transport, render::Transport::create(path));
+  if (transport.emitters().empty())
+    transport.shade_ground(
+        render::ground_request(session.common().tolerance, session.common().seed, session.common().time_limit_s),
+        bounces);
   std::optional<render::OpenLight> open;
   if (scene.env != nullptr && with_maps) {
     const render::Effects effects = render::effects_of(scene);

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/angles.h"
+#include "render/path/ground_kernel.h"
 #include "render/path/path_loop.h"
 
 namespace goniochrome::render {
@@ -87,6 +88,9 @@ struct LobePoint::Sums {
   std::vector<color::Rgb> free, hidden, emitted, bounced;
   std::vector<double> free_squares, hidden_squares;
   std::vector<color::Rgb> classes;
+  // Columns before this one have the open floor in the light that is known of them, in place of the environment below
+  // the horizon.
+  std::size_t over_floor = 0;
 
   Sums(std::size_t count, int of_directions, std::size_t of_columns, std::size_t of_classes)
       : columns(of_columns),
@@ -195,16 +199,30 @@ void LobePoint::add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t 
   if (transport_.environment_) light = transport_.environment_->at(ray.direction);
   const double pdf = light_chance_ * light.pdf + (1 - light_chance_) * kernels_pdf;
   if (!(pdf > 0) || !(kernels_pdf > 0)) return;
-  const double scale = 1 / pdf, size = scale * brightness(light.radiance);
+  const double scale = 1 / pdf;
+  const bool passes_on = options_.bounces > 0 || !transport_.emitters_.empty() || transport_.ground_;
+  const Hit hit = ray.occluded && passes_on ? transport_.rays_->closest(spot_.start, ray.direction) : Hit{};
+  const bool meets_floor = transport_.is_projected(hit);
+  const Sent sent =
+      hit.any() && (options_.bounces > 0 || meets_floor) ? this->sent(hit, ray.direction, sequence, index) : Sent{};
   const std::size_t first = sums.at(which, 0), count = columns_.count();
-  std::vector<color::Rgb>& into = ray.occluded ? sums.hidden : sums.free;
-  std::vector<double>& squares = ray.occluded ? sums.hidden_squares : sums.free_squares;
-  for (std::size_t k = 0; k < count; ++k) {
-    into[first + k] += (scale / sums.directions * values[k]) * light.radiance;
-    squares[first + k] += size * size * values[k] * values[k];
+  const auto add_open = [&](std::size_t begin, std::size_t end, const color::Rgb& radiance, bool is_hidden) {
+    std::vector<color::Rgb>& into = is_hidden ? sums.hidden : sums.free;
+    std::vector<double>& squares = is_hidden ? sums.hidden_squares : sums.free_squares;
+    const double size = scale * brightness(radiance);
+    for (std::size_t k = begin; k < end; ++k) {
+      into[first + k] += (scale / sums.directions * values[k]) * radiance;
+      squares[first + k] += size * size * values[k] * values[k];
+    }
+  };
+  if (meets_floor) {
+    add_open(0, sums.over_floor, sent.fixed + sent.total(), false);
+  } else if (sums.over_floor > 0) {
+    const bool below = ray.direction.y < 0;
+    add_open(0, sums.over_floor,
+             below ? rgb(transport_.open_floor_->lit(spot_.start, ray.direction, 0, 0)) : light.radiance, ray.occluded);
   }
-  if (!ray.occluded || (options_.bounces == 0 && transport_.emitters_.empty() && !transport_.ground_)) return;
-  const Hit hit = transport_.rays_->closest(spot_.start, ray.direction);
+  add_open(sums.over_floor, count, light.radiance, ray.occluded);
   if (!hit.any()) return;
   const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
   if (emission != color::Rgb{}) {
@@ -212,13 +230,12 @@ void LobePoint::add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t 
         1 / (pdf + transport_.emitters_.pdf(lit_point(spot_), hit.triangle, ray.direction, hit.distance));
     for (std::size_t k = 0; k < count; ++k) sums.emitted[first + k] += (share / sums.directions * values[k]) * emission;
   }
-  if (options_.bounces == 0 && !transport_.is_projected(hit)) return;
-  const Sent sent = this->sent(hit, ray.direction, sequence, index);
   const color::Rgb total = sent.total();
-  for (std::size_t k = 0; sent.fixed != color::Rgb{} && k < count; ++k)
+  const std::size_t begin = meets_floor ? sums.over_floor : 0;
+  for (std::size_t k = begin; sent.fixed != color::Rgb{} && k < count; ++k)
     sums.emitted[first + k] += (scale / sums.directions * values[k]) * sent.fixed;
   if (total == color::Rgb{}) return;
-  for (std::size_t k = 0; k < count; ++k) sums.bounced[first + k] += (scale / sums.directions * values[k]) * total;
+  for (std::size_t k = begin; k < count; ++k) sums.bounced[first + k] += (scale / sums.directions * values[k]) * total;
   add_classes(static_cast<float>(scale) * painted_.at(ray.direction).f_cos, hit, sent, 1.0 / sums.directions, sums);
 }
 
@@ -235,15 +252,41 @@ void LobePoint::add_emitter(const std::array<double, 4>& numbers, Sums& sums, in
 
 void LobePoint::add_mirror(std::uint64_t seed, Sums& sums, int which) const {
   if (!mirror_hit_.any() || (options_.bounces == 0 && !transport_.is_projected(mirror_hit_))) return;
+  const std::size_t mirror = sums.at(which, columns_.mirror());
+  const auto add = [&](const Sent& sent, double share) {
+    sums.bounced[mirror] += (share * kernels_.mirror()) * sent.total();
+    sums.emitted[mirror] += (share * kernels_.mirror()) * sent.fixed;
+    add_classes(painted_.mirror(), mirror_hit_, sent, share, sums);
+  };
+  if (sees_shaded_floor(mirror_hit_)) {
+    const LightShares floor =
+        transport_.shaded_ground(transport_.rays_->spot(mirror_hit_, spot_.start, painted_.mirrored()));
+    add({{}, {}, floor.into_diffuse, floor.direct}, 1);
+    return;
+  }
   const int samples = std::max(1, sums.directions / kMirrorShare);
   const Sequence sequence(mixed(seed, 0x4D), static_cast<std::uint32_t>(sums.directions));
-  const std::size_t mirror = sums.at(which, columns_.mirror());
-  for (int i = 0; i < samples; ++i) {
-    const Sent sent = this->sent(mirror_hit_, painted_.mirrored(), sequence, static_cast<std::uint32_t>(i));
-    sums.bounced[mirror] += (kernels_.mirror() / static_cast<double>(samples)) * sent.total();
-    sums.emitted[mirror] += (kernels_.mirror() / static_cast<double>(samples)) * sent.fixed;
-    add_classes(painted_.mirror(), mirror_hit_, sent, 1.0 / samples, sums);
-  }
+  for (int i = 0; i < samples; ++i)
+    add(sent(mirror_hit_, painted_.mirrored(), sequence, static_cast<std::uint32_t>(i)), 1.0 / samples);
+}
+
+std::size_t LobePoint::floor_lobes() const {
+  if (transport_.open_floor_ == nullptr || !painted_.axes().empty()) return 0;
+  const auto wide = std::ranges::count_if(columns_.exponents, [](double e) { return e <= kWidestShared; });
+  return std::min(static_cast<std::size_t>(wide), GroundReceiver::kMostLobes);
+}
+
+void LobePoint::add_open_floor(color::Rgb* open_light) const {
+  const std::size_t lobes = floor_lobes();
+  if (lobes == 0) return;
+  GroundReceiver receiver{spot_.start, painted_.normal(), painted_.to_viewer(), painted_.mirrored(),
+                          static_cast<float>(painted_.coat_index())};
+  receiver.lobes = lobes;
+  std::copy_n(columns_.exponents.begin(), lobes, receiver.exponents);
+  const GroundColumns floor = transport_.open_floor_->columns(receiver);
+  open_light[LobeColumns::diffuse()] += rgb(floor.diffuse);
+  for (std::size_t j = 0; j < lobes; ++j)
+    open_light[LobeColumns::flake(j)] += rgb(floor.flakes[j]), open_light[LobeColumns::gloss(j)] += rgb(floor.gloss[j]);
 }
 
 // The columns gather light of a disc that the mesh may hide in part: even directions of it, of which some are free.
@@ -342,6 +385,22 @@ class Scatter {
 
 }  // namespace
 
+LobeEstimate LobePoint::shaded_floor(std::span<const LobePoint* const> points) {
+  const LobePoint& any = *points.front();
+  LobeEstimate result;
+  result.direct.resize(any.columns_.count()), result.bounced.resize(any.columns_.count());
+  result.covariance.resize(any.columns_.count()), result.classes.resize(any.groups_.classes());
+  color::Rgb& bounced = result.bounced[LobeColumns::diffuse()];
+  for (const LobePoint* point : points) {
+    const LightShares shown = point->transport_.shaded_ground(point->spot_);
+    const double share = 1.0 / static_cast<double>(points.size());
+    result.direct[LobeColumns::diffuse()] += share * shown.direct, bounced += share * shown.into_diffuse;
+  }
+  const int floor = any.groups_.of_part[static_cast<std::size_t>(any.spot_.part)];
+  result.classes[any.groups_.at(floor, PaintGroups::kDeeper)] = bounced;
+  return result;
+}
+
 // All that a floor shows is light of its one column; what the mesh sends to it came through other surfaces.
 LobeEstimate LobePoint::floor_estimate(std::span<const LobePoint* const> points, int sequences, int directions,
                                        std::uint64_t seed) {
@@ -399,7 +458,9 @@ void LobePoint::add_sequence(const std::vector<Ray>& rays, std::uint64_t seed, S
 LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const color::Rgb* open_light,
                                  const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed) {
   const LobePoint& any = *points.front();
-  if (any.on_projected_) return floor_estimate(points, sequences, directions, seed);
+  if (any.on_projected_)
+    return any.transport_.shaded_ != nullptr ? shaded_floor(points)
+                                             : floor_estimate(points, sequences, directions, seed);
   const Transport& transport = any.transport_;
   const LobeColumns& columns = any.columns_;
   const std::size_t count = columns.count();
@@ -433,6 +494,7 @@ LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const
     return result;
   }
   Sums sums(static_cast<std::size_t>(sequences), directions, count, any.groups_.classes());
+  if (const std::size_t lobes = any.floor_lobes(); open_light != nullptr && lobes > 0) sums.over_floor = 1 + 2 * lobes;
   for (int which = 0; which < sequences; ++which) {
     const auto w = static_cast<std::size_t>(which);
     points[starts[w]]->add_sequence(rays[w], seed_of(which), sums, which);

@@ -59,10 +59,15 @@ class LobePoint {
   };
   Pairs pairs(int sequences, int directions, std::uint64_t seed) const;
 
+  // Adds the light of the open floor, less that of the environment below the horizon, to the open light of the columns
+  // whose light of it is known. Nothing where no floor is shaded.
+  void add_open_floor(color::Rgb* open_light) const;
+
   // The mean over at most kMostPoints points of one part, and at least one, by so many sequences of `directions` each,
   // a power of two: each sequence starts from one of them. `open_light` has the mean light of each column there, of the
-  // environment without any surface in the way: rays correct it without bias, so that points whose rays are all free
-  // have no noise. `open_mirrors` has what the mirror of each point sees of it. Both null: rays alone.
+  // environment without any surface in the way, with add_open_floor(): rays correct it without bias, so that points
+  // whose rays are all free have no noise. `open_mirrors` has what the mirror of each point sees of it. Both null: rays
+  // alone.
   static LobeEstimate estimate(std::span<const LobePoint* const> points, const color::Rgb* open_light,
                                const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed);
   // The estimate of this point alone.
@@ -90,6 +95,13 @@ class LobePoint {
   bool lamp_values(std::size_t which, const Transport::SeenLamp& lamp, float* values) const;
   void add_sequence(const std::vector<Ray>& rays, std::uint64_t seed, Sums& sums, int which) const;
   void add_deterministic(const color::Rgb* open_mirror, double share, std::vector<color::Rgb>& direct) const;
+  // A floor whose light is on a grid is seen without samples.
+  bool sees_shaded_floor(const rays::Hit& hit) const {
+    return transport_.shaded_ != nullptr && transport_.is_projected(hit);
+  }
+  // The diffuse part and so many lobes are told by the blocks of an open floor; 0: not even that part.
+  std::size_t floor_lobes() const;
+  static LobeEstimate shaded_floor(std::span<const LobePoint* const> points);
   static LobeEstimate floor_estimate(std::span<const LobePoint* const> points, int sequences, int directions,
                                      std::uint64_t seed);
   int group_of(const rays::Hit& hit) const {

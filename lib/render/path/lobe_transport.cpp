@@ -20,7 +20,8 @@ namespace goniochrome::render {
 namespace {
 
 constexpr std::size_t kTogether = 64;
-constexpr int kFirstBatches = 2, kMostAtOnce = 256;
+constexpr int kFirstBatches = 2, kMostAtOnce = 512;
+constexpr int kDirections = kFan;  // of a batch
 // Later rounds draw as few sequences as tell a variance, each of as many directions as it takes: the longer a sequence,
 // the more evenly it covers the hemisphere.
 constexpr int kSequences = 8;
@@ -76,7 +77,7 @@ class Tracing {
     const double count = std::max<double>(1, static_cast<double>(batches_.size()));
     for (std::size_t i = 0; i < batches_.size(); ++i) {
       result_.noise_mean_de00 += result_.transport.noise_de00[i] / count;
-      result_.samples_mean += kBatch * batches_[i] / count;
+      result_.samples_mean += kDirections * batches_[i] / count;
     }
     result_.free_share = static_cast<double>(std::ranges::count(batches_, 0)) / count;
     if (request_.bounces > 0) probe();
@@ -180,6 +181,7 @@ class Tracing {
       float* kept = &open_light_[i * t.floats()];
       if (round_ == 0) {
         open_->mean(views, part, open.data());
+        points.front().add_open_floor(open.data());  // which hardly differs between samples of one part
         for (const color::Rgb& light : open)
           for (int c = 0; c < 3; ++c) *kept++ = static_cast<float>(light[c]);
       } else {
@@ -191,9 +193,9 @@ class Tracing {
     const int sequences = std::min(batches, std::max(kSequences, fewest_));
     int of_each = 1;  // batches
     while (of_each * sequences < batches) of_each *= 2;
-    const LobeEstimate estimate =
-        LobePoint::estimate(of_pixel, open_ != nullptr ? open.data() : nullptr, mirrors.data(), sequences,
-                            of_each * kBatch, mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(batches_[i])));
+    const LobeEstimate estimate = LobePoint::estimate(
+        of_pixel, open_ != nullptr ? open.data() : nullptr, mirrors.data(), sequences, of_each * kDirections,
+        mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(batches_[i])));
     const double before = batches_[i], added = estimate.sequences * of_each;
     const double share = added > 0 ? added / (before + added) : 1;
     const auto mix = [share](float& into, double value) {
@@ -235,8 +237,16 @@ class Tracing {
     parallel_for(points, 1024, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) judge(i);
     });
-    std::vector<double> noise(result_.transport.noise_de00.begin(), result_.transport.noise_de00.end());
-    return percentile_95(std::move(noise));
+    return worse_percentile(result_.transport.noise_de00);
+  }
+
+  // The larger of the 95th percentiles over the mesh and over a floor that shows the environment.
+  template <class Value>
+  double worse_percentile(const std::vector<Value>& of) const {
+    const LobeTransport& t = result_.transport;
+    std::vector<double> mesh, floor;
+    for (std::size_t i = 0; i < of.size(); ++i) (t.worn.is_projected(t.part[i]) ? floor : mesh).push_back(of[i]);
+    return std::max(percentile_95(std::move(mesh)), percentile_95(std::move(floor)));
   }
 
   // The judgment is that of path_picture(): few estimates tell little of their variance, and the neighbors alone decide
@@ -277,7 +287,7 @@ class Tracing {
   bool plan(std::vector<int>& more) const {
     const double lacking = result_.noise_p95_de00 / request_.tolerance_de00;
     for (double scale = 1.1;; scale *= 1.1 * std::max(1.0, lacking * lacking)) {
-      const double most = std::min<double>(std::ceil(1.05 * scale * percentile_95(needed_)), request_.most_batches);
+      const double most = std::min<double>(std::ceil(1.05 * scale * worse_percentile(needed_)), request_.most_batches);
       bool any = false, limited = true;
       for (std::size_t i = 0; i < batches_.size(); ++i) {
         const double n = batches_[i], wanted = std::min(std::ceil(scale * needed_[i]), most) - n;

@@ -75,7 +75,7 @@ struct LobeTransportRequest {
   // the 95th percentile over the points is within the tolerance.
   double tolerance_de00 = 0.5;
   double time_limit_s = 0;  // 0: none
-  int most_batches = 1024;  // of a point
+  int most_batches = 2048;  // of a point
   double white_luminance = 1;
   int probes = 256;       // at most, at pixel centers
   int pixel_samples = 1;  // LobeTransport::samples

@@ -352,8 +352,8 @@ color::Rgb PointTransport::floor_light() const {
   return light;
 }
 
-// What the open floor sends beside floor_light(): the sum over these samples along directions that each gather the mean
-// about them.
+// The light of the open floor beside floor_light(): the sum over these samples along directions that each gather the
+// mean about them.
 color::Rgb PointTransport::sharp_floor_light(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const {
   constexpr std::uint32_t kSet = 40;  // that nothing else draws from
   const OpenFloor& floor = *transport_.open_floor_;

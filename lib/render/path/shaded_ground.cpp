@@ -75,6 +75,13 @@ int ground_directions(double tolerance_de00) {
   return directions;
 }
 
+GroundRequest ground_request(double tolerance_de00, std::uint64_t seed, double left_s) {
+  GroundRequest request{.directions = ground_directions(tolerance_de00), .seed = seed};
+  request.bounced_directions = 4 * request.directions;
+  request.longest_s = left_s / 4;
+  return request;
+}
+
 // The directions from a place of the floor in which the mesh can be: all where the place is beside the cone's sphere.
 struct ShadedGround::Cone {
   Float3 axis;

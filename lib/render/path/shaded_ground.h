@@ -42,6 +42,8 @@ struct GroundRequest {
 // as the tests tell, and that of light that the mesh sends within all of it: kFewestGroundDirections to 4096.
 int ground_directions(double tolerance_de00);
 constexpr int kFewestGroundDirections = 128;
+// A request for a tolerance, which takes a quarter of the time that is left; 0: it takes what it needs.
+GroundRequest ground_request(double tolerance_de00, std::uint64_t seed, double left_s);
 
 // Immutable: for any number of threads at once.
 class ShadedGround {
