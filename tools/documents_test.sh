@@ -75,8 +75,37 @@ words 1000 "$top/README.md"
 words 3500 "$top/man/render-osmesa.1"
 for page in "$top"/man/*.1; do [ "$page" = "$top/man/render-osmesa.1" ] || words 1800 "$page"; done
 for page in "$top"/man/*.7; do [ "$page" = "$top/man/goniochrome-hard-cases.7" ] || words 4000 "$page"; done
-# The pages as HTML: every link leads to a page, and every page is in the index.
+# gallery_faults TREE: pictures that the gallery or a page names and the folder lacks, those that the gallery does not name, too many
+# bytes, and options in commands of the gallery that their tool does not have.
+gallery_faults() {
+  (
+    cd "$1"
+    sed -nE 's/^!\[.*\]\(gallery\/(.*)\)$/\1/p' docs/gallery.md | sort >"$made/named"
+    sed -nE 's/^\.\\" figure: (.*)/\1/p' man/*.[1-9] | sort -u | comm -23 - "$made/named" | sed 's/$/ is a figure that the gallery lacks/'
+    ls docs/gallery | comm -13 - "$made/named" | sed 's/$/ is not there: run scripts\/pictures --gallery/'
+    ls docs/gallery | comm -23 - "$made/named" | sed 's/$/ is in the folder and not in the gallery/'
+    bytes=$(cat docs/gallery/* | wc -c)
+    [ "$bytes" -le 1500000 ] || echo "$bytes bytes, and at most 1500000 are wanted"
+    awk '/^```/ { inside = /^```sh$/; next } inside' docs/gallery.md | sed -e ':a' -e '/\\$/N; s/\\\n//; ta' | tr '|' '\n' | while read -r tool rest; do
+      [ ! -d "$top/tools/$tool" ] || for option in $(grep -oE -- ' --[a-z0-9-]+' <<<" $rest"); do
+        grep -qE -- "[\" ]$option[\" ]" "$top/scripts/completions/$tool.bash" || echo "$option is no option of $tool"
+      done
+    done
+  )
+}
+faults=$(gallery_faults "$top")
+[ -z "$faults" ] || complain "docs/gallery: $faults"
+# The control: each of the five faults is found.
+mkdir -p "$made/control/docs/gallery" "$made/control/man"
+printf '![A](gallery/a.jpg)\n![B](gallery/b.jpg)\n```sh\necho | draw-plot --x 1 \\\n  --lost\n```\n' >"$made/control/docs/gallery.md"
+printf '.\\" figure: a.jpg\n.\\" figure: c.jpg\n' >"$made/control/man/page.7"
+head -c 1500000 /dev/zero >"$made/control/docs/gallery/a.jpg"
+echo >"$made/control/docs/gallery/d.jpg"
+[ "$(gallery_faults "$made/control" | cut -d' ' -f1 | paste -sd ' ')" = 'c.jpg b.jpg d.jpg 1500001 --lost' ] || complain 'the control of the gallery is wrong'
+# The pages as HTML: every figure is a picture, every link leads to a page, and every page is in the index.
 "$top/scripts/make-html" "$made/html"
+figures=$(cat "$top"/man/*.[1-9] | grep -c '^\.\\" figure: ')
+[ "$(cat "$made"/html/*.[1-9].html | grep -c '<figure><img src="gallery/')" -eq "$figures" ] || complain "HTML: not all of $figures figures are pictures"
 for link in $(grep -ohE 'href="[^"#:]+' "$made"/html/*.html | sort -u | cut -d'"' -f2); do
   [ -s "$made/html/$link" ] || complain "HTML: the link $link leads nowhere"
 done

@@ -55,10 +55,12 @@ for file in bin/fit-paint lib/goniochrome/goniochrome-codecs.so share/man/man1/f
     exit 1
   }
 done
-[ ! -f "$build/html/index.html" ] || [ -s "$folder/moved/share/doc/goniochrome/html/goniochrome.7.html" ] || {
-  echo 'not installed: the pages as HTML'
-  exit 1
-}
+for file in goniochrome.7.html gallery/gloss.jpg; do
+  [ ! -f "$build/html/index.html" ] || [ -s "$folder/moved/share/doc/goniochrome/html/$file" ] || {
+    echo "not installed: the pages as HTML: $file"
+    exit 1
+  }
+done
 # The page of paint-studio is there where the compiler for WebAssembly is.
 for file in lib/goniochrome/studio.wasm lib/goniochrome/studio.html; do
   [ ! -f "$build/lib/goniochrome/studio.wasm" ] || [ -s "$folder/moved/$file" ] || {
