@@ -34,6 +34,28 @@ color::Rgb brdf(const Lafortune& surface, const Vec3& to_light, const Vec3& to_v
   return f;
 }
 
+void widen(LafortuneLobe& lobe, double factor) {
+  const double before = lobe.exponent, after = std::max((before + 1) * factor - 1, 0.5);
+  lobe.exponent = after;
+  lobe.albedo = ((after + 1) / (before + 1)) * lobe.albedo;
+  for (const int axis : {0, 1}) {
+    const double ratio = std::abs(lobe.axes[axis] / lobe.axes.z);
+    if (lobe.axes.z != 0 && ratio > 1) lobe.axes[axis] *= std::sqrt(1 + (ratio * ratio - 1) * before / after) / ratio;
+  }
+}
+
+// Normals whose mean has the length r have the variance (1 - r)/r along each axis. A normal that turns by an angle
+// turns the middle of a mirroring lobe by twice as much, and others by Cz - Cx along x. 1/(n + 1) grows by their variance.
+void widen_by_normals(LafortuneLobe& lobe, double mean_length) {
+  const Vec3& c = lobe.axes;
+  const double longest = std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)});
+  constexpr double kEven = 1 - 1e-6;  // floats hold a unit vector to less
+  if (!(longest > 0) || !(mean_length < kEven)) return;
+  const double x = (c.z - c.x) / longest, y = (c.z - c.y) / longest;
+  const double variance = 0.5 * (x * x + y * y) * (1 - mean_length) / std::max(mean_length, 1e-3);
+  widen(lobe, 1 / (1 + (lobe.exponent + 1) * variance));
+}
+
 LobeFetch environment_fetch(const LafortuneLobe& lobe, const Vec3& to_viewer) {
   const Vec3 p = lobe.axes * to_viewer;
   const double size = std::hypot(p.x, p.y, p.z);

@@ -28,6 +28,13 @@ double scaled_power(double scale, double x, double exponent);
 // f(wi,wo) in 1/sr; 0 where a direction is below the surface.
 color::Rgb brdf(const Lafortune& surface, const Vec3& to_light, const Vec3& to_viewer);
 
+// Multiplies n + 1 by a factor; the lobe reflects as much light. Where its axes x and y are longer than z, they keep how
+// much it grows toward grazing angles: n (a^2 - 1) stays.
+void widen(LafortuneLobe& lobe, double factor);
+
+// Widens a lobe for normals of its frame that vary about their mean, which has this length. [Toksvig2005]
+void widen_by_normals(LafortuneLobe& lobe, double mean_length);
+
 // The look-up of a lobe in a prefiltered environment: L = weight * P_n(direction), P_n of
 // goniochrome-prefiltering(7), "PREFILTERING".
 struct LobeFetch {

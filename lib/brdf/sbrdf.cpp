@@ -70,6 +70,14 @@ SurfaceFrame surface_frame(const SbrdfTexel& texel, const Vec3& normal, const Ve
   return {x, cross(normal, x), normal};
 }
 
+Vec3 texel_normal(const Vec3& own, const Vec3& normal, const Vec3& tangent, const Vec3& to_viewer) {
+  if (own.x == 0 && own.y == 0) return normal;
+  constexpr double kLeast = 1e-3;  // the cosine to the viewer
+  const Vec3 turned = normalized(surface_frame({}, normal, tangent).world(own));
+  const double cosine = dot(turned, to_viewer);
+  return cosine < kLeast ? normalized(turned + (kLeast - cosine) * to_viewer) : turned;
+}
+
 namespace {
 
 int wrapped(double index, int n) {
@@ -142,6 +150,7 @@ SbrdfTexture mean_texture(const SbrdfTexture& texture) {
   std::vector<LobeSums> sums(static_cast<std::size_t>(texture.lobes));
   color::Rgb diffuse;
   double covered = 0;
+  Vec3 normal;
   for (std::size_t i = 0; i < texels; ++i) {
     const float* at = &texture.values[i * static_cast<std::size_t>(texture.stride())];
     diffuse += share * color::Rgb{at[0], at[1], at[2]};
@@ -149,7 +158,11 @@ SbrdfTexture mean_texture(const SbrdfTexture& texture) {
     for (std::size_t lobe = 0; lobe < sums.size(); ++lobe)
       sums[lobe].add(at + 5 + 7 * lobe, texture.frame(column, row, static_cast<int>(lobe)), share);
     covered += texture.alpha.empty() ? share : share * texture.alpha[i];
+    normal += share * texture.normal(i);
   }
+  const double mean_length = length(normal);
+  const bool bent = !texture.normals.empty() && mean_length > 0;
+  for (int k = 0; k < 3 && bent; ++k) mean.normals.push_back(static_cast<float>(normal[k] / mean_length));
   if (!texture.alpha.empty()) mean.alpha = {static_cast<float>(covered)};
   std::array<double, 2> all{};
   for (const LobeSums& lobe : sums) all[0] += lobe.odd[0], all[1] += lobe.odd[1];
@@ -163,9 +176,10 @@ SbrdfTexture mean_texture(const SbrdfTexture& texture) {
       mean.turns.push_back(static_cast<float>(c)), mean.turns.push_back(static_cast<float>(s));
     const double n1 = std::exp(lobe.log_exponent / lobe.weight), even = lobe.even / lobe.weight;
     const double odd = (c * lobe.odd[0] + s * lobe.odd[1]) / lobe.weight;
-    for (const double value : {n1 * lobe.energy.x, n1 * lobe.energy.y, n1 * lobe.energy.z, even + odd, even - odd,
-                               lobe.normal / lobe.weight, n1 - 1})
-      *to++ = static_cast<float>(value);
+    LafortuneLobe all_of = {n1 * lobe.energy, {even + odd, even - odd, lobe.normal / lobe.weight}, n1 - 1};
+    if (bent) widen_by_normals(all_of, mean_length);
+    for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(all_of.albedo[k]), to[3 + k] = static_cast<float>(all_of.axes[k]);
+    to[6] = static_cast<float>(all_of.exponent), to += 7;
   }
   return mean;
 }

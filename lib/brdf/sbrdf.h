@@ -22,12 +22,16 @@ struct SbrdfTexture {
   // takes the place of the texel's; empty where the texel's serves all of its lobes.
   std::vector<float> turns = {};
   // The unit normal of each texel's frame along tangent, bitangent and the normal of the surface; empty where the
-  // surface is flat. Pictures leave it out: they take the normal of the surface.
+  // surface is flat.
   std::vector<float> normals = {};
 
   int stride() const { return 5 + 7 * lobes; }
   const float* texel(int column, int row) const {
     return &values[(static_cast<std::size_t>(row) * width + column) * static_cast<std::size_t>(stride())];
+  }
+  Vec3 normal(std::size_t texel) const {
+    if (normals.empty()) return {0, 0, 1};
+    return {normals[3 * texel], normals[3 * texel + 1], normals[3 * texel + 2]};
   }
   // Cos and sin of twice the angle of the x axis of a lobe.
   const float* frame(int column, int row, int lobe) const {
@@ -62,6 +66,10 @@ struct SurfaceFrame {
 };
 SurfaceFrame surface_frame(const SbrdfTexel& texel, const Vec3& normal, const Vec3& tangent);
 
+// The normal of a texel in the world, from the one in the frame of tangent, bitangent and unit normal. One that looks away
+// from the viewer, a unit direction, becomes the nearest that does not.
+Vec3 texel_normal(const Vec3& own, const Vec3& normal, const Vec3& tangent, const Vec3& to_viewer);
+
 // The four texels around a place and their bilinear weights; u runs right, v up, both repeat beyond 0..1. The texels
 // are to be shaded one by one and the colors blended: a mean of two lobes' parameters is a third lobe.
 struct TextureTap {
@@ -76,7 +84,8 @@ std::vector<std::pair<int, double>> covered_texels(int at, int to, int from);
 // One texel in the place of all: the mean diffuse part, and for each lobe, weighted by albedo/(n+1), the mean of that,
 // of log(n+1) and of the axes as matrices of the tangent frame, whose common direction is its frame's; where lobes have
 // frames of their own, each keeps its own direction. It is the control that shows what a texture gains; it is not the
-// mean of the texels' BRDFs, which would take as many lobes as there are texels. Alpha is the mean.
+// mean of the texels' BRDFs, which would take as many lobes as there are texels. Alpha is the mean, and so is the
+// normal, whose variance widens the lobes.
 SbrdfTexture mean_texture(const SbrdfTexture& texture);
 
 }  // namespace goniochrome::brdf

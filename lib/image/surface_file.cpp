@@ -196,14 +196,17 @@ Result<std::vector<float>> values_of(const Image& image, const std::vector<std::
   return values;
 }
 
-Result<void> check_normals(const brdf::SbrdfTexture& texture, const std::string& path) {
+// Halves hold unit vectors to some 1e-3: these become unit again.
+Result<void> check_normals(brdf::SbrdfTexture& texture, const std::string& path) {
   for (std::size_t i = 0; i < texture.normals.size(); i += 3) {
-    const float* n = &texture.normals[i];
+    float* n = &texture.normals[i];
     constexpr double kFromUnit = 0.01;
-    if (!(n[2] > 0 && std::abs(std::hypot(n[0], n[1], n[2]) - 1) < kFromUnit))
+    const float size = std::hypot(n[0], n[1], n[2]);
+    if (!(n[2] > 0 && std::abs(size - 1) < kFromUnit))
       return input_error("{}: the normal of texel ({},{}) is {} {} {}: give a unit vector whose z is above 0", path,
                          i / 3 % static_cast<std::size_t>(texture.width),
                          i / 3 / static_cast<std::size_t>(texture.width), n[0], n[1], n[2]);
+    for (std::size_t k = 0; k < 3; ++k) n[k] /= size;
   }
   return {};
 }

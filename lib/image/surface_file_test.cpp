@@ -137,6 +137,7 @@ TEST_F(SbrdfFile, NormalsAreReadBackAndChecked) {
   ASSERT_TRUE(back.ok()) << back.error().message;
   ASSERT_EQ(back->normals.size(), 6u);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(back->normals[i], texture.normals[i], 5e-4) << "half precision";
+  EXPECT_NEAR(std::hypot(back->normals[0], back->normals[1], back->normals[2]), 1, 1e-6) << "unit again";
   texture.normals[5] = -1;
   ASSERT_TRUE(write_sbrdf(path_, texture, {}).ok());
   const std::string told = read_sbrdf(path_).error().message;

@@ -116,19 +116,29 @@ bool hides_paint(const Scene& scene, int part) {
 // The textured ones of these points get their colors, and keep of what is there the part that is not covered.
 void put_textured(const Scene& scene, const std::vector<VisiblePoint>& points, const Effects& effects,
                   const Surroundings& around, std::vector<color::Rgb>& colors) {
-  std::vector<TexturedPoint> textured;
+  std::vector<TexturedPoint> textured;  // those of a point have different normals
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!is_textured(scene, points[i].part)) continue;
-    textured.push_back(
-        {points[i].normal, points[i].to_viewer, scene.layer->place(points[i], i, effects), points[i].position});
-    numbers.push_back(i);
+    const VisiblePoint& point = points[i];
+    if (!is_textured(scene, point.part)) continue;
+    SurfaceLayer::Place place = scene.layer->place(point, i, effects);
+    colors[i] = place.bare * colors[i];
+    const std::size_t first = textured.size();
+    for (SurfaceLayer::Piece& piece : place.pieces) {
+      const Vec3 normal = piece.normal(point.normal, point.to_viewer);
+      auto same = std::find_if(textured.begin() + static_cast<std::ptrdiff_t>(first), textured.end(),
+                               [&](const TexturedPoint& one) { return one.normal == normal; });
+      if (same == textured.end()) {
+        same = textured.insert(same, {normal, point.to_viewer, {}, point.position});
+        numbers.push_back(i);
+      }
+      same->pieces.push_back(std::move(piece));
+    }
   }
   const std::vector<color::Rgb> shown =
       textured_radiance(textured, effects.environment ? around : darkness(around), lights_of(scene, effects),
                         effects.reflection ? &scene.reflection : nullptr);
-  for (std::size_t i = 0; i < shown.size(); ++i)
-    colors[numbers[i]] = textured[i].place.bare * colors[numbers[i]] + shown[i];
+  for (std::size_t i = 0; i < shown.size(); ++i) colors[numbers[i]] += shown[i];
 }
 
 }  // namespace

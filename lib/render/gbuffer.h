@@ -24,6 +24,7 @@ struct TexturePlace {
   float tangent[3] = {0, 0, 0};  // world, along growing u; of about unit length, or 0 where it is not known
   // The footprint: how far u and v go from one pixel to the next, to the right and downward; 0 where it is not known.
   float across[2] = {0, 0}, down[2] = {0, 0};
+  bool mirrored = false;  // whether v grows against n x tangent, n being the normal to the viewer
   // The share of the texture, which is shown here as far as the places on it that are blended have this one. 0: not at
   // all.
   float share = 1;

@@ -259,7 +259,9 @@ double add_seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at
       std::vector<brdf::LafortuneLobe>& of = texel.surface.lobes;
       for (std::size_t lobe = 0; lobe < of.size(); ++lobe)
         if ((lobes >> lobe & 1U) == 0) of[lobe].albedo = {};
-      pieces.push_back({std::move(texel), one.share, tangent});
+      Vec3 normal = texture.normal(one.texel);
+      if (at.mirrored) normal.y = -normal.y;
+      pieces.push_back({std::move(texel), one.share, tangent, normal});
     }
     covered += texture.alpha.empty() ? one.share : one.share * texture.alpha[one.texel];
   }
@@ -295,10 +297,10 @@ SurfaceLayer::Place SurfaceLayer::place(const VisiblePoint& point, std::size_t n
   return place(point.part, placed(point, number), effects);
 }
 
-SurfaceLayer::Place SurfaceLayer::place(int part, const MeshPoint& point) const {
+SurfaceLayer::Place SurfaceLayer::place(int part, const MeshPoint& point, bool inside) const {
   std::vector<TexturePlace> places;
   for (std::size_t k = 0; k < laid_[static_cast<std::size_t>(part)].size(); ++k)
-    places.push_back(layouts_[k]->place(part, point));
+    places.push_back(layouts_[k]->place(part, point, inside));
   Effects all;
   all.texture = true, all.texture_filter = false, all.texture_lobes = ~0U;
   return place(part, places, all);
@@ -402,7 +404,7 @@ void SurfaceLayer::shade(const Gbuffer& gbuffer, const SeenBand::Bin& bin, const
     each_shape(batch.texture(), std::span(bin.texels).subspan(first, point.end - first),
                [&](std::span<const TexelShare> lobed, std::span<const TexelShare> diffuse) {
                  pixel[batch.count()] = rgba.pixel(x, y);
-                 batch.put(gbuffer.at(x, y), toward, position, places[point.place].tangent, lobed, diffuse);
+                 batch.put(gbuffer.at(x, y), toward, position, places[point.place], lobed, diffuse);
                  if (batch.full()) flush();
                });
     first = point.end;

@@ -132,6 +132,10 @@ class SurfaceLayer {
     brdf::SbrdfTexel texel;
     double share = 1;
     Vec3 tangent = {};
+    Vec3 own = {0, 0, 1};  // its normal, for brdf::texel_normal()
+    Vec3 normal(const Vec3& surface, const Vec3& to_viewer) const {
+      return brdf::texel_normal(own, surface, tangent, to_viewer);
+    }
   };
   struct Place {
     std::vector<Piece> pieces;
@@ -140,8 +144,8 @@ class SurfaceLayer {
   // The place of the point of this number; its lobes that the effects have.
   Place place(const VisiblePoint& point, std::size_t number, const Effects& effects) const;
   // The place of a point of the mesh on a part that has a texture: all its lobes. Of the point the triangle and the
-  // shares are read.
-  Place place(int part, const MeshPoint& point) const;
+  // shares are read. `inside`: whether it is seen from its back.
+  Place place(int part, const MeshPoint& point, bool inside) const;
 
  private:
   static constexpr std::size_t kRowsOfBand = 8;

@@ -123,19 +123,23 @@ EOF
   [[ "$output" = *"--texels is \"24\""* ]]
 }
 
-@test "normals stay in the map, and a picture says that it leaves them out" {
+@test "normals stay in the map, and pictures are drawn with them" {
   oiiotool --pattern constant:color=0.5,0.5,1 24x16 3 -d uint8 -o normals.png
   fit --normals normals.png
   [[ "$(oiiotool --info -v map.sbrdf.exr)" = *normal.x*normal.y*normal.z* ]]
-  draw() { render-osmesa --engine cpu --mesh "$TESTDATA/box.obj" --light 30,50 --texture White=$1 --size 32x24 --samples 1 -o seen.exr; }
-  run draw map.sbrdf.exr
-  [ "$status" -eq 0 ] && [[ "$output" = *"map.sbrdf.exr: its normals are left out"* ]]
-  run paint-sbrdf map.sbrdf.exr -o laid.sbrdf.exr
-  [ "$status" -eq 0 ] && [[ "$output" = *"map.sbrdf.exr: its normals are left out"* ]]
-  # The control: a flat map.
   fit
-  run draw map.sbrdf.exr
-  [ "$status" -eq 0 ] && [[ "$output" != *normals* ]]
+  draw() {
+    render-osmesa -q --engine cpu --mesh "$TESTDATA/box.obj" --light 30,50 --texture White=$1.sbrdf.exr --size 32x24 --samples 1 -o $1.exr
+  }
+  # One map with two normals. The one of the surface is the control.
+  for normal in up=0,0,1 tilted=0.6,0,0.8; do
+    oiiotool map.sbrdf.exr --pattern constant:color=${normal#*=} 24x16 3 --chnames normal.x,normal.y,normal.z --chappend -o ${normal%=*}.sbrdf.exr
+  done
+  paint-sbrdf -q tilted.sbrdf.exr --size 12x8 -o laid.sbrdf.exr
+  for map in map up tilted laid; do draw $map; done
+  idiff -q -fail 0.001 -warn 1 map.exr up.exr
+  ! idiff -q -fail 0.02 -warn 1 map.exr tilted.exr
+  idiff -q -fail 0.02 -failpercent 5 -warn 1 tilted.exr laid.exr
 }
 
 @test "the report tells all, and the summary tells error and time of both methods" {

@@ -70,18 +70,6 @@ Result<Layout> layout_of(const Options& o, const Surfaces& surfaces, const Patte
 
 namespace {
 
-// The lobe with another exponent that reflects as much light. Where its axes x and y are longer than z, they keep how
-// much it grows toward grazing angles: n (a^2 - 1) stays.
-void widen(brdf::LafortuneLobe& lobe, double factor) {
-  const double before = lobe.exponent, after = std::max((before + 1) * factor - 1, 0.5);
-  lobe.exponent = after;
-  lobe.albedo = ((after + 1) / (before + 1)) * lobe.albedo;
-  for (const int axis : {0, 1}) {
-    const double ratio = std::abs(lobe.axes[axis] / lobe.axes.z);
-    if (lobe.axes.z != 0 && ratio > 1) lobe.axes[axis] *= std::sqrt(1 + (ratio * ratio - 1) * before / after) / ratio;
-  }
-}
-
 // The changes by --turn, --polish, --wear and --gloss at a place.
 class Changes {
  public:
@@ -100,7 +88,7 @@ class Changes {
     if (steps == 0 && turn_rad_ == 0 && gloss_.empty()) return;
     brdf::LobeSurface changed{surface.diffuse, {}};
     for (brdf::TurnedLobe lobe : surface.lobes) {
-      if (steps != 0) widen(lobe.lobe, std::pow(4.0, steps));
+      if (steps != 0) brdf::widen(lobe.lobe, std::pow(4.0, steps));
       changed.lobes.push_back(brdf::turned_lobe(lobe.lobe, lobe.turn_rad + turn_rad_));
     }
     brdf::add_surface(changed, coat_, alpha * gloss_.at(u, v));
@@ -135,6 +123,7 @@ class Collection {
 // A texel and how far it is from what it stands for, by refit_error().
 struct MadeTexel {
   brdf::LobeSurface surface;  // multiplied by alpha
+  Vec3 normal;                // the mean of those that the texel is made of
   double error = 0, alpha = 0;
 };
 
@@ -160,6 +149,7 @@ class Builder {
         share[number] += part;
         add(surfaces_.all[number], column, line, part, texel);
       }
+      for (brdf::TurnedLobe& lobe : texel.surface.lobes) brdf::widen_by_normals(lobe.lobe, length(texel.normal));
       changes_.apply((column + 0.5) / layout_.width, 1 - (line + 0.5) / layout_.height, texel.alpha, texel.surface);
     }
     return texels;
@@ -170,6 +160,7 @@ class Builder {
   void add(const Surface& surface, int column, int row, double part, MadeTexel& texel) const {
     if (surface.width() == 0) {
       brdf::add_surface(texel.surface, surface.paint, part);
+      texel.normal += part * surface.normal(0, 0);
       texel.alpha += part * surface.alpha(0, 0);
       return;
     }
@@ -178,6 +169,7 @@ class Builder {
       for (const auto& [x, wide] : brdf::covered_texels(column, layout_.width, surface.width())) {
         brdf::add_surface(sum, surface.texel(x, y), wide * high);
         texel.alpha += part * wide * high * surface.alpha(x, y);
+        texel.normal += (part * wide * high) * surface.normal(x, y);
       }
     const int most = most_lobes_ > 0 ? std::min(most_lobes_, surface.lobes()) : surface.lobes();
     fit::Refit fitted = fitted_to(sum, most, most_lobes_ == 0);
@@ -234,6 +226,7 @@ Result<BuiltMap> built_map(const Options& options, const Surfaces& surfaces, con
   std::vector<std::uint32_t> numbers(rows * wide);
   std::vector<float> resampled(rows * wide);  // errors
   std::vector<float> alpha(rows * wide);
+  std::vector<Vec3> normals(rows * wide);
   bool covers = true;
   Collection kinds;
   constexpr std::size_t kRowsAtOnce = 32;
@@ -249,6 +242,7 @@ Result<BuiltMap> built_map(const Options& options, const Surfaces& surfaces, con
         numbers[place] = kinds.number(made[i][column].surface);
         resampled[place] = static_cast<float>(made[i][column].error);
         alpha[place] = static_cast<float>(std::min(made[i][column].alpha, 1.0));
+        normals[place] = normalized(made[i][column].normal);
         covers = covers && alpha[place] > kAllCovered;
       }
     }
@@ -278,6 +272,8 @@ Result<BuiltMap> built_map(const Options& options, const Surfaces& surfaces, con
   brdf::SbrdfTexture& texture = map.texture;
   texture = {layout.crop_width * layout.columns, layout.crop_height * layout.rows, static_cast<int>(most), {}};
   const auto stride = static_cast<std::size_t>(texture.stride()), turned = std::size_t{2} * most;
+  const bool bent = std::ranges::any_of(
+      surfaces.all, [](const Surface& surface) { return surface.map && !surface.map->normals.empty(); });
   map.frames = !std::ranges::all_of(kinds.all, brdf::has_one_frame);
   std::vector<float> texels(kinds.all.size() * stride), turns(map.frames ? kinds.all.size() * turned : 0);
   for (std::size_t i = 0; i < kinds.all.size(); ++i)
@@ -295,6 +291,7 @@ Result<BuiltMap> built_map(const Options& options, const Surfaces& surfaces, con
         texture.turns.insert(texture.turns.end(), turn, turn + static_cast<std::ptrdiff_t>(turned));
       }
       if (!covers) texture.alpha.push_back(alpha[place]);
+      for (int c = 0; c < 3 && bent; ++c) texture.normals.push_back(static_cast<float>(normals[place][c]));
     }
   }
   for (const float value : alpha) map.alpha_mean += value / static_cast<double>(alpha.size());

@@ -92,7 +92,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "the "
       "map has an alpha below 1 and shows what lies beneath it, such as the paint of a car beneath a decal.",
       "Where surfaces meet in a texel, their reflections are mixed, and not the parameters of their lobes. The mean of "
-      "the parameters of two lobes is a third lobe that looks like neither.",
+      "the parameters of two lobes is a third lobe that looks like neither. Normals of maps stay; where texels with "
+      "different ones are mixed, the normal is their mean, and the lobes are as much wider.",
       "# Mixtures\nA mixture is the sum of the lobes of its surfaces, which is exact: where two surfaces are brushed "
       "in different directions, each lobe keeps its own. A renderer takes as much longer as there are more lobes. "
       "Where a texel has room for fewer, new lobes in one common direction are fitted to samples of that sum."};

@@ -128,6 +128,12 @@ brdf::LobeSurface Surface::texel(int column, int row) const {
   return {(1 / kPi) * color::Rgb{rgb[0], rgb[1], rgb[2]}, {}};
 }
 
+Vec3 Surface::normal(int column, int row) const {
+  if (!map) return {0, 0, 1};
+  return map->normal(static_cast<std::size_t>(row) * static_cast<std::size_t>(map->width) +
+                     static_cast<std::size_t>(column));
+}
+
 double Surface::alpha(int column, int row) const {
   if (kind == "nothing") return 0;
   if (!map || map->alpha.empty()) return 1;
@@ -162,7 +168,6 @@ Result<Surfaces> read_surfaces(const Options& options, cli::Session& session) {
       GONIO_TRY(add_paints(std::move(opened), names, result, slots, session));
     } else {
       GONIO_ASSIGN(brdf::SbrdfTexture map, image::read_sbrdf(std::move(opened)));
-      if (!map.normals.empty()) session.warn(fmt::format("{}: its normals are left out: the new map has none", file));
       slots.push_back({{file, "map", {}, std::make_shared<brdf::SbrdfTexture>(std::move(map)), nullptr, 0}, {}});
     }
   }

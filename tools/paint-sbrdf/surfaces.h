@@ -26,6 +26,7 @@ struct Surface {
   // The most lobes of a texel.
   int lobes() const { return map ? map->lobes : static_cast<int>(paint.lobes.size()); }
   brdf::LobeSurface texel(int column, int row) const;
+  Vec3 normal(int column, int row) const;
   // The part of what lies beneath that it covers there.
   double alpha(int column, int row) const;
 };

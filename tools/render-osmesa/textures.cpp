@@ -255,11 +255,6 @@ Result<void> lay_textures(const mesh::Mesh& mesh, const Options& options, Dresse
       return wrong(option,
                    "texture coordinates have no axis, scale, center and turn: name a projection, as project=planar");
     GONIO_ASSIGN(brdf::SbrdfTexture map, image::read_sbrdf(texture.file));
-    if (!map.normals.empty())
-      dress.remarks.push_back(
-          fmt::format("{}: its normals are left out: the map is drawn on the normals of the mesh, which flattens its "
-                      "relief; to keep the look of the photographs, fit it without --normals",
-                      texture.file));
     dress.textures.push_back(std::make_shared<brdf::SbrdfTexture>(std::move(map)));
     GONIO_ASSIGN(const render::TextureLaying laying,
                  laying_of(option, texture, projection, box_of(mesh, parts), *dress.textures.back()));

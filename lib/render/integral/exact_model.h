@@ -35,10 +35,10 @@ struct SurfacePoint {
   Vec3 position = {};                 // for lamps at a place
 };
 
-// A point of a texture.
+// Texels at a point whose normals are the same.
 struct TexturedPoint {
   Vec3 normal, to_viewer;
-  SurfaceLayer::Place place;
+  std::vector<SurfaceLayer::Piece> pieces;
   Vec3 position = {};
 };
 

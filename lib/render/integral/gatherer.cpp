@@ -413,7 +413,7 @@ TextureGatherer::TextureGatherer(const TexturedPoint& point, const color::Reflec
                                  double texel_rad, double most_spread)
     : point_(point), reflection_(reflection), grain_(texel_rad, most_spread) {
   const Vec3& n = point.normal;
-  for (const SurfaceLayer::Piece& piece : point.place.pieces) {
+  for (const SurfaceLayer::Piece& piece : point.pieces) {
     const brdf::SurfaceFrame frame = brdf::surface_frame(piece.texel, n, piece.tangent);
     const Vec3 viewer = frame.local(point.to_viewer);
     diffuse_ += piece.share * piece.texel.surface.diffuse;

@@ -68,7 +68,8 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
     light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
   }
   if (options.bounces > 0 && !correction_ && !over_ground_) receiver_ = transport.receiver(spot, painted_);
-  open_ = !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0);
+  open_ = !painted_.is_bent() && !transport.rays_->has_floor() &&
+          !transport.rays_->any_above(spot.start, spot.shading, 0);
   const bool free = open_ && options.correction;
   if (!free) {
     add_lights();
@@ -107,7 +108,7 @@ void PointTransport::add_lights() {
       continue;
     }
     const double sine = rays::dot(spot_.shading, rays::float3(light.direction));
-    if (sine <= -std::sin(light.radius_rad)) continue;
+    if (!painted_.is_bent() && sine <= -std::sin(light.radius_rad)) continue;
     const color::Rgb whole = reflect(painted_.toward_disc(light, !lamp.is_placed), kPi * light.white);
     const Sequence::Set probes = Sequence(mixed(0x1A3B, i), kFan).set(0);
     rays::Fan fan = lamp_fan(lamp);
@@ -134,7 +135,7 @@ rays::Fan PointTransport::lamp_fan(const Transport::SeenLamp& lamp) const {
 
 void PointTransport::aim(rays::Fan& fan, std::uint32_t ray, const Float3& direction) const {
   fan.x[ray] = direction.x, fan.y[ray] = direction.y, fan.z[ray] = direction.z;
-  if (rays::dot(direction, painted_.normal()) > 0) fan.wanted |= 1U << ray;
+  if (painted_.faces(direction)) fan.wanted |= 1U << ray;
 }
 
 // The light that lamps with an extent add to deterministic(), as the mean over samples. A place on the disc is drawn
@@ -253,7 +254,7 @@ PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbe
                               : painted_.direction((choice - places) / (1 - places), numbers[1], numbers[2]);
     }
   }
-  ray.above = rays::dot(ray.direction, spot_.shading) > 0;
+  ray.above = painted_.faces(ray.direction);
   return ray;
 }
 

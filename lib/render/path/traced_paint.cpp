@@ -182,10 +182,6 @@ float PaintedPoint::coat_mirror() const {
   return coat_reflectance(cos_o_, brdf::mirror_index(coat_index_));
 }
 
-Float3 PaintedPoint::diffuse_albedo() const {
-  return static_cast<float>(kPi * brdf::mean_coat_transmission(coat_index_)) * diffuse_ + kFloatPi * texel_diffuse_;
-}
-
 Vec3 PaintedPoint::local(const Float3& direction) const {
   return {rays::dot(direction, frame_.x), rays::dot(direction, frame_.y), rays::dot(direction, normal_)};
 }
@@ -240,14 +236,15 @@ void PaintedPoint::visit_texels(const Float3& to_light, const Visit& visit) cons
 
 PaintedPoint::Parts PaintedPoint::parts(const Float3& to_light) const {
   Parts parts;
-  const float cos_i = rays::dot(normal_, to_light);
-  if (!(cos_i > 0)) return parts;
+  const float cos_i = std::max(rays::dot(normal_, to_light), 0.0F);
+  if (!faces(to_light)) return parts;
   const float base = let_in(cos_i) * cos_i;
   parts.diffuse = base * diffuse_ + cos_i * texel_diffuse_;
-  if (paint_ != nullptr) parts.lobes = mapped(to_light);
+  if (paint_ != nullptr && cos_i > 0) parts.lobes = mapped(to_light);
   visit_texels(to_light, [&](const TexelLobe& lobe, float power) {
-    parts.lobes = parts.lobes + (std::exp(lobe.log_peak) * power * cos_i) * lobe.color;
+    parts.lobes = parts.lobes + (std::exp(lobe.log_peak) * power * lobe.cosine(to_light)) * lobe.color;
   });
+  if (!(cos_i > 0)) return parts;
   if (coat_ != nullptr) {
     const float sent = bare_ * static_cast<float>(coat_->sent(local(to_light), local(viewer_)).f_cos);
     parts.gloss = {sent, sent, sent};
@@ -264,16 +261,17 @@ PaintedPoint::Parts PaintedPoint::parts(const Float3& to_light) const {
 }
 
 Reflection PaintedPoint::at(const Float3& to_light) const {
-  const float cos_i = rays::dot(normal_, to_light);
-  if (!(cos_i > 0) || !(total_ > 0)) return {to_light, {}, 0};
+  const float cos_i = std::max(rays::dot(normal_, to_light), 0.0F);
+  if (!faces(to_light) || !(total_ > 0)) return {to_light, {}, 0};
   const float base = let_in(cos_i) * cos_i;
   Float3 f_cos = base * diffuse_ + cos_i * texel_diffuse_;
   float pdf = diffuse_chance_ * cos_i / kFloatPi;
-  if (paint_ != nullptr) f_cos = f_cos + mapped(to_light);
+  if (paint_ != nullptr && cos_i > 0) f_cos = f_cos + mapped(to_light);
   visit_texels(to_light, [&](const TexelLobe& lobe, float power) {
-    f_cos = f_cos + (std::exp(lobe.log_peak) * power * cos_i) * lobe.color;
+    f_cos = f_cos + (std::exp(lobe.log_peak) * power * lobe.cosine(to_light)) * lobe.color;
     pdf += lobe.chance * lobe.normalization * power;
   });
+  if (!(cos_i > 0)) return {to_light, f_cos, pdf / total_};
   if (coat_ != nullptr) {
     const brdf::CoatFacets::Sent sent = coat_->sent(local(to_light), local(viewer_));
     const float gray = bare_ * static_cast<float>(sent.f_cos);
@@ -335,7 +333,19 @@ PaintedPoint PaintedPoint::without_wide(std::size_t lobes) const {
 Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
   const Vec3 n = rays::vec3(normal_), viewer = rays::vec3(viewer_);
   const double cosine = dot(n, light.direction), radius = light.radius_rad;
-  if (cosine <= -std::sin(radius)) return {};
+  const auto add_texels = [&](Float3 f) {
+    for (const TexelLobe& lobe : texels_) {
+      const Vec3 axis = rays::vec3(lobe.axis), normal = rays::vec3(lobe.normal);
+      const double irradiance = brdf::disc_irradiance(dot(normal, light.direction), radius);
+      const double between = 2 * std::asin(std::min(1.0, 0.5 * length(axis - light.direction)));
+      const brdf::LobeOfDisc of = brdf::lobe_of_disc(lobe.exponent, radius, between);
+      const double gathered =
+          lobe.matt ? irradiance : of.by_light * irradiance + of.by_mirror * std::max(0.0, dot(normal, axis));
+      f = f + (std::exp(lobe.log_peak) * static_cast<float>(gathered)) * lobe.color;
+    }
+    return f;
+  };
+  if (cosine <= -std::sin(radius)) return bent_ ? add_texels({}) : Float3{};
   const double irradiance = brdf::disc_irradiance(cosine, radius), above = brdf::disc_above(cosine, radius);
   // Through the coat at the mean cosine of what is seen, and for the rest of a lobe at that of its axis.
   const double passing = above > 0 ? irradiance * let_in(static_cast<float>(std::min(1.0, irradiance / above))) : 0;
@@ -349,13 +359,7 @@ Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
     const float gray = bare_ * static_cast<float>(coat_->over_disc(local(viewer_), normalized(middle), radius));
     f = f + Float3{gray, gray, gray};
   }
-  for (const TexelLobe& lobe : texels_) {
-    const Vec3 axis = rays::vec3(lobe.axis);
-    const double between = 2 * std::asin(std::min(1.0, 0.5 * length(axis - light.direction)));
-    const brdf::LobeOfDisc of = brdf::lobe_of_disc(lobe.exponent, radius, between);
-    const double gathered = of.by_light * irradiance + of.by_mirror * std::max(0.0, dot(n, axis));
-    f = f + (std::exp(lobe.log_peak) * static_cast<float>(gathered)) * lobe.color;
-  }
+  f = add_texels(f);
   const auto coat = [&](const Vec3& toward) {
     return coat_reflectance(static_cast<float>(std::min(1.0, 0.5 * length(toward + viewer))));
   };

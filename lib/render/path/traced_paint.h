@@ -2,6 +2,7 @@
 // goniochrome-paths(7), "PATHS" and goniochrome-lobes(7), "LOBE MODEL".
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -154,11 +155,13 @@ class PaintedPoint {
   PaintedPoint without_wide(std::size_t lobes) const;
 
   const rays::Float3& normal() const { return normal_; }
+  // True where light may be reflected from: above the surface, or by texels whose own normals look elsewhere.
+  bool faces(const rays::Float3& to_light) const { return bent_ || rays::dot(normal_, to_light) > 0; }
+  bool is_bent() const { return bent_; }
   const rays::Float3& mirrored() const { return mirrored_; }  // where the mirror lobe looks
   const rays::Float3& mirror() const { return mirror_; }      // K_M F
-  // K_D T(theta_o), 1/sr, and its part of even light that the point sends back
+  // K_D T(theta_o), 1/sr
   const rays::Float3& diffuse() const { return diffuse_; }
-  rays::Float3 diffuse_albedo() const;
   // The transmission of the coat for the base's light from a direction of that cosine, and its reflection to the
   // viewer; without a coat 1, and the reflection of kCoatIndex.
   float passages(float cos_i) const { return let_out_ * let_in(cos_i); }
@@ -187,17 +190,22 @@ class PaintedPoint {
     rays::Float3 directional_diffuse, gloss;
     int number;  // among those of the paint
   };
-  // A lobe exp(log_peak) cos^exponent about its own axis.
+  // A lobe exp(log_peak) cos^exponent about its own axis, times the cosine of light to the normal of its texel. The diffuse
+  // part of a texel with a normal of its own is a matt one: exponent 1 about that normal, without a cosine.
   struct TexelLobe {
     rays::Float3 axis;
     float exponent, log_peak;
     rays::Float3 color;
     float normalization, chance;
+    rays::Float3 normal;
+    bool matt;
+    float cosine(const rays::Float3& to_light) const { return matt ? 1 : std::max(rays::dot(normal, to_light), 0.0F); }
   };
   friend class TracedPaint;
   void wear(const SurfaceLayer::Place& place);
   void dim(float share);
-  void add_texel_lobe(const Vec3& axis, double exponent, const color::Rgb& albedo);
+  void add_texel_lobe(const Vec3& axis, double exponent, const color::Rgb& albedo, const rays::Float3& normal,
+                      bool matt = false);
   rays::Float3 mapped(const rays::Float3& to_light) const;
   void set_axes(const std::vector<brdf::Tilt>& tilts);
   template <class Visit>
@@ -224,6 +232,7 @@ class PaintedPoint {
   float bare_ = 1;                      // the part of the paint that textures leave, which all of its weights hold
   rays::Float3 texel_diffuse_;          // of textures, 1/sr; no coat lies over it
   std::vector<TexelLobe> texels_;       // of textures
+  bool bent_ = false;                   // whether some texels have normals of their own
   const TracedPaint* paint_ = nullptr;  // of a color map
 };
 

@@ -45,7 +45,7 @@ PaintedPoint::PaintedPoint(const rays::Spot& spot, const TracedPaint& paint, con
   MeshPoint point;
   point.triangle = spot.triangle;
   point.shares = {1.0 - spot.u - spot.v, spot.u, spot.v};
-  wear(paint.layer_->place(paint.part_, point));
+  wear(paint.layer_->place(paint.part_, point, spot.inside));
 }
 
 // Leaves this part of all that the paint shows.
@@ -62,20 +62,29 @@ void PaintedPoint::dim(float share) {
 
 void PaintedPoint::wear(const SurfaceLayer::Place& place) {
   dim(static_cast<float>(place.bare));
-  const Vec3 normal = normalized(rays::vec3(normal_)), viewer = rays::vec3(viewer_);
+  const Vec3 surface = normalized(rays::vec3(normal_)), viewer = rays::vec3(viewer_);
   color::Rgb diffuse;
   for (const SurfaceLayer::Piece& piece : place.pieces) {
+    const Vec3 normal = piece.normal(surface, viewer);
     const brdf::SurfaceFrame frame = brdf::surface_frame(piece.texel, normal, piece.tangent);
     const Vec3 local = frame.local(viewer);
-    diffuse += piece.share * piece.texel.surface.diffuse;
+    const bool bent = !(normal == surface);
+    const Float3 turned = bent ? float3(normal) : normal_;
+    const color::Rgb matt = piece.share * piece.texel.surface.diffuse;
+    if (bent) {
+      bent_ = true;
+      add_texel_lobe(normal, 1, matt, turned, true);
+    } else {
+      diffuse += matt;
+    }
     for (const brdf::LafortuneLobe& lobe : piece.texel.surface.lobes)
-      add_texel_lobe(frame.world(lobe.axes * local), lobe.exponent, piece.share * lobe.albedo);
+      add_texel_lobe(frame.world(lobe.axes * local), lobe.exponent, piece.share * lobe.albedo, turned);
   }
   texel_diffuse_ = float3(diffuse);
   diffuse_chance_ += static_cast<float>(kPi) * mean_size(diffuse);
   total_ += static_cast<float>(kPi) * mean_size(diffuse);
   for (TexelLobe& lobe : texels_) {
-    const float wide = 1 / std::sqrt(lobe.exponent + 2), middle = std::max(rays::dot(lobe.axis, normal_), 0.0F);
+    const float wide = 1 / std::sqrt(lobe.exponent + 2), middle = lobe.cosine(lobe.axis);
     const float cosine = middle + (1 - middle) * wide;
     lobe.chance = std::exp(lobe.log_peak) * cosine * mean_size(rays::vec3(lobe.color)) / lobe.normalization;
     total_ += lobe.chance;
@@ -83,20 +92,22 @@ void PaintedPoint::wear(const SurfaceLayer::Place& place) {
 }
 
 // Neighboring texels often hold the same lobe in another color.
-void PaintedPoint::add_texel_lobe(const Vec3& axis, double exponent, const color::Rgb& albedo) {
+void PaintedPoint::add_texel_lobe(const Vec3& axis, double exponent, const color::Rgb& albedo, const Float3& normal,
+                                  bool matt) {
   const double size = length(axis);
   if (albedo == color::Rgb{} || !(size > 0)) return;
   const Float3 unit = float3((1 / size) * axis);
   const auto e = static_cast<float>(exponent),
              log_peak = static_cast<float>(std::clamp(exponent * std::log(size), -1000.0, kLargestLog));
   for (TexelLobe& lobe : texels_) {
-    const Float3 apart = lobe.axis - unit;
-    if (rays::dot(apart, apart) == 0 && lobe.exponent == e && lobe.log_peak == log_peak) {
+    const Float3 apart = lobe.axis - unit, turned = lobe.normal - normal;
+    if (rays::dot(apart, apart) == 0 && lobe.exponent == e && lobe.log_peak == log_peak &&
+        rays::dot(turned, turned) == 0 && lobe.matt == matt) {
       lobe.color = lobe.color + float3(albedo);
       return;
     }
   }
-  texels_.push_back({unit, e, log_peak, float3(albedo), static_cast<float>((exponent + 1) / (2 * kPi)), 0});
+  texels_.push_back({unit, e, log_peak, float3(albedo), static_cast<float>((exponent + 1) / (2 * kPi)), 0, normal, matt});
 }
 
 // cos_i map/pi: a map holds reflectance factors. Isolines do not change when both directions turn about the normal.

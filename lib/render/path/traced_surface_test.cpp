@@ -104,7 +104,7 @@ struct LayeredStage : PathStage {
     MeshPoint point;
     point.triangle = spot.triangle;
     point.shares = {1.0 - spot.u - spot.v, spot.u, spot.v};
-    return {normalized(rays::vec3(spot.shading)), to_viewer, layer->place(spot.part, point)};
+    return {normalized(rays::vec3(spot.shading)), to_viewer, layer->place(spot.part, point, spot.inside).pieces};
   }
 };
 
@@ -286,7 +286,7 @@ TEST(TracedSurface, AConvexShapeShowsTheReference) {
         if (textured) {
           TexturedPoint point = stage.textured_point(spot, -toward);
           truth = textured_radiance({point}, env, stage.scene.lights, &stage.scene.reflection)[0];
-          for (SurfaceLayer::Piece& piece : point.place.pieces)
+          for (SurfaceLayer::Piece& piece : point.pieces)
             piece.tangent = cross(normal, piece.tangent);  // control: brushed across
           other = textured_radiance({point}, env, stage.scene.lights, &stage.scene.reflection)[0];
         } else {
@@ -339,7 +339,7 @@ TEST(TracedSurface, BouncesFindTheTexelsAndTheMap) {
             if (textured) {
               textures.push_back(stage.textured_point(stage.spot(at + 0.01 * to_floor, at), to_floor));
               if (!as_it_is)
-                textures.back().place = stage.textured_point(stage.spot({0, 0.5, 0}, {0, 0.5, -1}), {0, 0, 1}).place;
+                textures.back().pieces = stage.textured_point(stage.spot({0, 0.5, 0}, {0, 0.5, -1}), {0, 0, 1}).pieces;
             }
           }
         }

@@ -264,7 +264,7 @@ Transport::Onward Transport::onward(const Spot& spot, const BrightPlaces::Receiv
   } else {
     onward.direction = painted.direction((choice - chance) / (1 - chance), u, v);
   }
-  if (!(rays::dot(onward.direction, painted.normal()) > 0)) return onward;
+  if (!painted.faces(onward.direction)) return onward;
   onward.hit = rays_->closest(spot.start, onward.direction);
   if (choice < chance && onward.hit.triangle != place.triangle) return onward;
   onward.lobes_chance = 1 - chance;

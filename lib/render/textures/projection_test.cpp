@@ -188,7 +188,7 @@ TEST(Projection, PlacesOfPixelsAreThoseOfPoints) {
     for (int x = 0; x < 32; ++x) {
       if (g.part(x, y) < 0) continue;
       const MeshPoint point = mesh_point(mesh, g, x, y);
-      const TexturePlace place = layout.place(0, point);
+      const TexturePlace place = layout.place(0, point, false);
       EXPECT_EQ(place.u, places[g.index(x, y)].u);
       const Vec3 from = point.position;
       const double x_of = std::abs(from.x), y_of = std::abs(from.y), z_of = std::abs(from.z);

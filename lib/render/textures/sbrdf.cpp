@@ -67,9 +67,11 @@ SbrdfShader::SbrdfShader(const envmap::PrefilteredEnvironment* env, const MipCub
     }
   }
   low = std::min(low, high);
+  // Lobes about normals that vary may become as wide as there are maps.
+  const bool bent = std::ranges::any_of(textures, [](const auto* texture) { return !texture->normals.empty(); });
   if (env != nullptr) {
-    make_maps(*env, mip, low, high);
-    make_horizon(low / kWider, high);
+    make_maps(*env, mip, low, high, bent ? 0 : low / kWider);
+    make_horizon(bent ? std::min(low, 1.0) : low / kWider, high);
   }
   given_ = textures;
   for (const brdf::SbrdfTexture* texture : textures) textures_.push_back(pack(*texture)), levels_.emplace_back();
@@ -101,7 +103,8 @@ Result<void> SbrdfShader::has_all_maps() const {
 }
 
 // Maps are made of the exponents between which those of the textures lie.
-void SbrdfShader::make_maps(const envmap::PrefilteredEnvironment& env, const MipCube* mip, double low, double high) {
+void SbrdfShader::make_maps(const envmap::PrefilteredEnvironment& env, const MipCube* mip, double low, double high,
+                            double widest) {
   std::vector<const envmap::CubeMap*> all;
   const auto add = [&](double exponent, const envmap::CubeMap& map) {
     exponents_.push_back(exponent), all.push_back(&map);
@@ -130,7 +133,7 @@ void SbrdfShader::make_maps(const envmap::PrefilteredEnvironment& env, const Mip
         wanted_exponents(exponents_, low, high, levels),
         mip != nullptr && too_wide ? ", and look them up in cubes: levels of one cube end with exponent 1" : "");
   }
-  const auto first = static_cast<std::size_t>(brdf::exponent_blend(low / kWider, exponents_).lower);
+  const auto first = static_cast<std::size_t>(brdf::exponent_blend(widest, exponents_).lower);
   const brdf::ExponentBlend top = brdf::exponent_blend(high, exponents_);
   const std::size_t last = static_cast<std::size_t>(top.lower) + (top.upper_weight > 0 ? 1 : 0);
   for (std::size_t i = first; i <= last; ++i) texels_.push_back(quads(*all[i]));
@@ -195,6 +198,8 @@ class Shapes {
       bytes.assign(reinterpret_cast<const char*>(at + 3), 2 * sizeof(float));
       for (std::size_t lobe = 0; lobe < lobes_; ++lobe)
         bytes.append(reinterpret_cast<const char*>(at + 5 + 7 * lobe + 3), 4 * sizeof(float));
+      if (!texture.normals.empty())
+        bytes.append(reinterpret_cast<const char*>(&texture.normals[3 * of.size()]), 3 * sizeof(float));
       if (!texture.turns.empty())
         bytes.append(reinterpret_cast<const char*>(&texture.turns[2 * lobes_ * of.size()]), 2 * lobes_ * sizeof(float));
       if (bytes != before || of.empty()) {
@@ -231,7 +236,7 @@ class Shapes {
 
 PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
   Shapes shapes(texture);
-  PackedTexture result{texture.width, texture.height, texture.lobes, {}, {}, {}, texture.alpha.empty()};
+  PackedTexture result{texture.width, texture.height, texture.lobes, {}, {}, {}, {}, texture.alpha.empty()};
   const auto lobes = static_cast<std::size_t>(texture.lobes), texels = shapes.of.size();
   const auto at = [&](std::size_t texel) {
     const auto wide = static_cast<std::size_t>(texture.width);
@@ -240,6 +245,8 @@ PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
   result.shapes.assign(result.shape_floats() * shapes.first.size(), 0.0F);
   for (std::size_t number = 0; number < shapes.first.size(); ++number) {
     const auto [column, row] = at(shapes.first[number]);
+    const Vec3 normal = texture.normal(shapes.first[number]);
+    for (int c = 0; c < 3 && !texture.normals.empty(); ++c) result.normals.push_back(static_cast<float>(normal[c]));
     const brdf::SbrdfTexel texel = brdf::sbrdf_texel(texture, column, row);
     for (std::size_t k = 0; k < lobes; ++k)
       pack_lobe(texel.surface.lobes[k], shapes.largest[number * lobes + k],
@@ -264,7 +271,7 @@ PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
 
 // No two texels of a level have one shape.
 PackedTexture SbrdfShader::pack(const TextureLevel& level) const {
-  PackedTexture result{level.width, level.height, 0, {}, {}, {}, level.alpha.empty()};
+  PackedTexture result{level.width, level.height, 0, {}, {}, {}, level.normals, level.alpha.empty()};
   for (const brdf::LobeSurface& texel : level.texels)
     result.lobes = std::max(result.lobes, static_cast<int>(texel.lobes.size()));
   result.colors.assign(result.color_floats() * level.texels.size(), 0.0F);
@@ -353,19 +360,30 @@ SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const 
   product_ = product_columns(light.reflection);
   shading_.product = product_.data();
   constexpr float kUp[3] = {0, 0, 1};
-  while (!full()) put(kUp, kUp, {}, kUp, {}, {});
+  while (!full()) put(kUp, kUp, {}, {}, {}, {});
   count_ = 0;
 }
 
 void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
-                             const float* tangent, std::span<const TexelShare> lobed,
+                             const TexturePlace& place, std::span<const TexelShare> lobed,
                              std::span<const TexelShare> diffuse) {
   SbrdfPoints& p = points_;
+  const std::uint32_t texel = lobed.empty() ? 0 : lobed.front().texel;
+  const float* tangent = place.tangent;
+  float turned[3];
+  if (!packed_.normals.empty()) {
+    const float* own = &packed_.normals[std::size_t{3} * packed_.shape[texel]];
+    const Vec3 n = brdf::texel_normal({own[0], place.mirrored ? -own[1] : own[1], own[2]},
+                                      {normal[0], normal[1], normal[2]}, {tangent[0], tangent[1], tangent[2]},
+                                      normalized({to_viewer[0], to_viewer[1], to_viewer[2]}));
+    for (int c = 0; c < 3; ++c) turned[c] = static_cast<float>(n[c]);
+    normal = turned;
+  }
   p.nx[count_] = normal[0], p.ny[count_] = normal[1], p.nz[count_] = normal[2];
   p.vx[count_] = to_viewer[0], p.vy[count_] = to_viewer[1], p.vz[count_] = to_viewer[2];
   p.tx[count_] = tangent[0], p.ty[count_] = tangent[1], p.tz[count_] = tangent[2];
   p.px[count_] = position[0], p.py[count_] = position[1], p.pz[count_] = position[2];
-  p.shape[count_] = packed_.shape_of(lobed.empty() ? 0 : lobed.front().texel);
+  p.shape[count_] = packed_.shape_of(texel);
   p.lobed[count_] = lobed, p.diffuse[count_] = diffuse;
   ++count_;
 }
@@ -400,7 +418,7 @@ std::vector<color::Rgb> SbrdfShader::shade(std::size_t texture, const SbrdfLight
     }
     each_shape(batch.texture(), texels[i], [&](std::span<const TexelShare> lobed, std::span<const TexelShare> diffuse) {
       number[batch.count()] = i;
-      batch.put(normal, to_viewer, from_origin(point.position, light.origin), point.place.tangent, lobed, diffuse);
+      batch.put(normal, to_viewer, from_origin(point.position, light.origin), point.place, lobed, diffuse);
       if (batch.full()) flush();
     });
   }

@@ -49,6 +49,7 @@ struct PackedTexture {
   std::vector<float> colors;
   std::vector<std::uint32_t> shape;  // the number of each texel's
   std::vector<float> shapes;
+  std::vector<float> normals;  // 3 a shape, in the frame of the surface; empty where all texels are flat
   bool covers = true;  // whether alpha is 1 everywhere
 
   std::size_t color_floats() const { return 4 * (1 + static_cast<std::size_t>(lobes)); }
@@ -61,12 +62,13 @@ struct PackedTexture {
 void sort_by_shape(const PackedTexture& texture, std::span<TexelShare> texels);
 
 // Calls put(lobed, diffuse) for each shape of texels that are sorted by shape: those of the shape, and with the first
-// of them all texels, whose diffuse parts are shaded together.
+// of them all texels, whose diffuse parts are shaded together unless they have normals of their own.
 template <class Put>
 void each_shape(const PackedTexture& texture, std::span<const TexelShare> texels, const Put& put) {
   for (std::size_t first = 0, end = 0; first < texels.size(); first = end) {
     while (end < texels.size() && texture.shape[texels[end].texel] == texture.shape[texels[first].texel]) ++end;
-    put(texels.subspan(first, end - first), first == 0 ? texels : std::span<const TexelShare>());
+    const std::span<const TexelShare> lobed = texels.subspan(first, end - first);
+    put(lobed, !texture.normals.empty() ? lobed : first == 0 ? texels : std::span<const TexelShare>());
   }
 }
 
@@ -107,9 +109,9 @@ class SbrdfShader {
     Batch& operator=(const Batch&) = delete;
     // `normal` and `to_viewer` on the same side, the first unit; the position from SbrdfLight::origin. The point shows
     // the lobes of some texels of one shape, and the diffuse parts of others or the same. They must be there until the
-    // batch is shaded.
-    void put(const float* normal, const float* to_viewer, const std::array<float, 3>& position, const float* tangent,
-             std::span<const TexelShare> lobed, std::span<const TexelShare> diffuse);
+    // batch is shaded. Of the place the tangent is read.
+    void put(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
+             const TexturePlace& place, std::span<const TexelShare> lobed, std::span<const TexelShare> diffuse);
     int count() const { return count_; }
     bool full() const { return count_ == kPointsAtOnce; }
     // The colors of all, 4 floats each; the batch is empty again.
@@ -129,7 +131,7 @@ class SbrdfShader {
 
  private:
   int levels(std::size_t texture) const;  // coarser ones
-  void make_maps(const envmap::PrefilteredEnvironment& env, const MipCube* mip, double low, double high);
+  void make_maps(const envmap::PrefilteredEnvironment& env, const MipCube* mip, double low, double high, double widest);
   void make_horizon(double low, double high);
   PackedTexture pack(const brdf::SbrdfTexture& texture) const;
   PackedTexture pack(const TextureLevel& level) const;

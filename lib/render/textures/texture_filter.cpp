@@ -16,11 +16,13 @@ namespace {
 
 using TexelAt = std::function<brdf::LobeSurface(int column, int row)>;
 
-TextureLevel half_size(int width, int height, const TexelAt& texel, const std::vector<float>& alpha, int most_lobes) {
+TextureLevel half_size(int width, int height, const TexelAt& texel, const std::vector<float>& alpha,
+                       const std::vector<float>& normals, int most_lobes) {
   TextureLevel level{std::max(width / 2, 1), std::max(height / 2, 1), {}};
-  if (!alpha.empty())
-    level.alpha.resize(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
-  level.texels.resize(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
+  const std::size_t texels = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height);
+  if (!alpha.empty()) level.alpha.resize(texels);
+  if (!normals.empty()) level.normals.resize(3 * texels);
+  level.texels.resize(texels);
   const auto alpha_at = [&](int column, int row) {
     return alpha.empty() ? 1.0
                          : alpha[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
@@ -31,12 +33,23 @@ TextureLevel half_size(int width, int height, const TexelAt& texel, const std::v
       for (int column = 0; column < level.width; ++column) {
         brdf::LobeSurface sum;
         double covered = 0;
-        for (const auto& [y, high] : brdf::covered_texels(row, level.height, height))
-          for (const auto& [x, wide] : brdf::covered_texels(column, level.width, width))
+        Vec3 normal;
+        for (const auto& [y, high] : brdf::covered_texels(row, level.height, height)) {
+          for (const auto& [x, wide] : brdf::covered_texels(column, level.width, width)) {
             brdf::add_surface(sum, texel(x, y), wide * high), covered += wide * high * alpha_at(x, y);
+            const std::size_t from = 3 * static_cast<std::size_t>(y * width + x);
+            for (int c = 0; c < 3 && !normals.empty(); ++c)
+              normal[c] += wide * high * normals[from + static_cast<std::size_t>(c)];
+          }
+        }
         const auto at = static_cast<std::size_t>(row * level.width + column);
         level.texels[at] = brdf::merged(std::move(sum), most_lobes);
         if (!alpha.empty()) level.alpha[at] = static_cast<float>(covered);
+        if (normals.empty()) continue;
+        const double size = length(normal);
+        for (brdf::TurnedLobe& lobe : level.texels[at].lobes) brdf::widen_by_normals(lobe.lobe, size);
+        for (int c = 0; c < 3; ++c)
+          level.normals[3 * at + static_cast<std::size_t>(c)] = static_cast<float>(size > 0 ? normal[c] / size : c == 2);
       }
     }
   });
@@ -51,7 +64,9 @@ std::vector<TextureLevel> texture_levels(const brdf::SbrdfTexture& texture, std:
   int width = texture.width, height = texture.height;
   TexelAt texel = [&](int column, int row) { return brdf::lobe_surface(texture, column, row, lobes); };
   while (width > 1 || height > 1) {
-    levels.push_back(half_size(width, height, texel, levels.empty() ? texture.alpha : levels.back().alpha, most));
+    levels.push_back(levels.empty()
+                         ? half_size(width, height, texel, texture.alpha, texture.normals, most)
+                         : half_size(width, height, texel, levels.back().alpha, levels.back().normals, most));
     width = levels.back().width, height = levels.back().height;
     texel = [&levels, width](int column, int row) {
       return levels.back().texels[static_cast<std::size_t>(row * width + column)];

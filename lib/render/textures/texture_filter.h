@@ -15,12 +15,13 @@
 namespace goniochrome::render {
 
 // A coarser map: each texel is the mean of those that it covers, with as many lobes as that takes up to
-// kMostLevelLobes, or up to those of the finest map if these are more.
+// kMostLevelLobes, or up to those of the finest map if these are more. Its normal is their mean, and its lobes are as
+// much wider as these normals vary.
 constexpr int kMostLevelLobes = 8;
 struct TextureLevel {
   int width = 0, height = 0;
   std::vector<brdf::LobeSurface> texels;  // row by row from the top
-  std::vector<float> alpha = {};          // as SbrdfTexture has it
+  std::vector<float> alpha = {}, normals = {};  // as SbrdfTexture has them
 };
 // Half as many texels along each side at each step, down to one texel; none of a texture of one texel. They have those
 // lobes of the texture whose bits are set.

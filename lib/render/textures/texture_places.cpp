@@ -94,10 +94,15 @@ Vec3 along_u(const std::array<Vec3, 3>& p, const std::array<Uv, 3>& uv) {
   return size > 0 ? (length(cross(a, b)) / size) * way : Vec3{};
 }
 
+// Corners that run clockwise on the texture.
+bool is_mirrored(const std::array<std::array<float, 2>, 3>& uv) {
+  return (uv[1][0] - uv[0][0]) * (uv[2][1] - uv[0][1]) < (uv[2][0] - uv[0][0]) * (uv[1][1] - uv[0][1]);
+}
+
 }  // namespace
 
 TextureLayout::TextureLayout(const mesh::Mesh& mesh, const std::vector<bool>& parts, std::vector<TextureLaying> layings)
-    : mesh_(mesh), layings_(std::move(layings)), faces_(mesh.parts.size()), tangents_(mesh.positions.size()) {
+    : mesh_(mesh), layings_(std::move(layings)), faces_(mesh.parts.size()), tangents_(2 * mesh.positions.size()) {
   const Unwrapped unwrapped(mesh);
   layings_.resize(mesh.parts.size());
   for (std::size_t part = 0; part < mesh.parts.size(); ++part) {
@@ -108,10 +113,8 @@ TextureLayout::TextureLayout(const mesh::Mesh& mesh, const std::vector<bool>& pa
       const Vec3 tangent =
           along_u({mesh.positions[triangle[0]], mesh.positions[triangle[1]], mesh.positions[triangle[2]]}, uv);
       Corners corners{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        corners[k] = {static_cast<float>(uv[k][0]), static_cast<float>(uv[k][1])};
-        tangents_[triangle[k]] += tangent;
-      }
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = {static_cast<float>(uv[k][0]), static_cast<float>(uv[k][1])};
+      for (const std::uint32_t vertex : triangle) tangents_[2 * vertex + is_mirrored(corners)] += tangent;
       faces_[part].push_back(corners);
     }
   }
@@ -124,14 +127,22 @@ TextureLayout::TextureLayout(const mesh::Mesh& mesh, const std::vector<bool>& pa
 TexturePlace TextureLayout::place(const MeshPoint& point, const Corners& corners) const {
   double u = 0, v = 0;
   Vec3 t;
+  const bool mirrored = is_mirrored(corners);
   for (std::size_t k = 0; k < 3; ++k) {
     const double share = point.shares[k];
     u += share * corners[k][0], v += share * corners[k][1];
-    t += share * tangents_[mesh_.triangles[point.triangle][k]];
+    t += share * tangents_[2 * mesh_.triangles[point.triangle][k] + mirrored];
   }
-  return {static_cast<float>(u),
-          static_cast<float>(v),
-          {static_cast<float>(t.x), static_cast<float>(t.y), static_cast<float>(t.z)}};
+  TexturePlace place;
+  place.u = static_cast<float>(u), place.v = static_cast<float>(v), place.mirrored = mirrored;
+  for (int c = 0; c < 3; ++c) place.tangent[c] = static_cast<float>(t[c]);
+  return place;
+}
+
+TexturePlace TextureLayout::place(int part, const MeshPoint& point, bool inside) const {
+  TexturePlace result = place(part, point);
+  result.mirrored = result.mirrored != inside;
+  return result;
 }
 
 TexturePlace TextureLayout::place(int part, const MeshPoint& point) const {
@@ -193,7 +204,7 @@ TexturePlace TextureLayout::place(const Gbuffer& gbuffer, int x, int y, bool foo
   point.triangle = gbuffer.triangles[gbuffer.index(x, y)];
   if (!plane.is_of(point.triangle)) plane.look_at(mesh_, point.triangle, gbuffer.rays.eye);
   point.shares = within(plane.hit(gbuffer.rays.direction(x + 0.5, y + 0.5)).shares);
-  TexturePlace result = place(gbuffer.part(x, y), point);
+  TexturePlace result = place(gbuffer.part(x, y), point, gbuffer.at(x, y)[3] < 0);
   if (footprint) add_footprint(gbuffer, x, y, point, plane, result);
   return result;
 }

@@ -15,7 +15,7 @@ class SeenPlane;
 // A mesh laid out for textures. Unless a part is projected, texture coordinates are the mesh's own; where it has none,
 // u runs once around the vertical axis through the middle of the bounding box and v upward in the same measure.
 // Tangents run along u and are the means over the triangles at a vertex, by area, so that a smooth surface has smooth
-// tangents.
+// tangents; those of a texture and of its mirror image are not mixed.
 class TextureLayout {
  public:
   // For these parts of the mesh, which must outlive it. Each is laid as `layings` has it, and in the way of the mesh
@@ -32,12 +32,13 @@ class TextureLayout {
   TexturePlace place(const Gbuffer& gbuffer, int x, int y) const;
 
   // The place of a point of the mesh, of which the triangle and the shares are read. The triangle is one of a part that
-  // the layout was made for.
-  TexturePlace place(int part, const MeshPoint& point) const;
+  // the layout was made for. `inside`: whether it is seen from its back.
+  TexturePlace place(int part, const MeshPoint& point, bool inside) const;
 
  private:
   using Corners = std::array<std::array<float, 2>, 3>;  // u and v of each corner
   TexturePlace place(const MeshPoint& point, const Corners& corners) const;
+  TexturePlace place(int part, const MeshPoint& point) const;
   template <class PlaceAt>
   std::vector<TexturePlace> each_pixel(const Gbuffer& gbuffer, const PlaceAt& place_at) const;
   TexturePlace place(const Gbuffer& gbuffer, int x, int y, bool footprint, SeenPlane& plane) const;
@@ -47,7 +48,7 @@ class TextureLayout {
   const mesh::Mesh& mesh_;
   std::vector<TextureLaying> layings_;       // of each part
   std::vector<std::vector<Corners>> faces_;  // of the triangles of each part, in order; none of parts without a texture
-  std::vector<Vec3> tangents_;               // of the vertices
+  std::vector<Vec3> tangents_;  // of the vertices, each in triangles whose texture is not mirrored and in those where it is
 };
 
 }  // namespace goniochrome::render

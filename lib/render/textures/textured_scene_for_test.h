@@ -101,9 +101,10 @@ class TexturedScene : public testing::Test {
                                            brdf::CriticalAngle::kSlide);
     scene.layer = layer.get();
   }
-  Frame drawn(const char* engine, const Effects& effects) const {
+  Frame drawn(const char* engine, const Effects& effects, int bounces = Effort::kUsualBounces) const {
     auto renderer = Renderer::create();
     EXPECT_TRUE(renderer.ok());
+    renderer->set_effort({bounces});
     const auto loaded = renderer->load(scene, effects, engine);
     EXPECT_TRUE(loaded.ok()) << loaded.error().message;
     Frame frame;
