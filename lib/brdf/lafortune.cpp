@@ -45,7 +45,8 @@ void widen(LafortuneLobe& lobe, double factor) {
 }
 
 // Normals whose mean has the length r have the variance (1 - r)/r along each axis. A normal that turns by an angle
-// turns the middle of a mirroring lobe by twice as much, and others by Cz - Cx along x. 1/(n + 1) grows by their variance.
+// turns the middle of a mirroring lobe by twice as much, and others by Cz - Cx along x. 1/(n + 1) grows by their
+// variance.
 void widen_by_normals(LafortuneLobe& lobe, double mean_length) {
   const Vec3& c = lobe.axes;
   const double longest = std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)});

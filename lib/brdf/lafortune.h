@@ -28,8 +28,8 @@ double scaled_power(double scale, double x, double exponent);
 // f(wi,wo) in 1/sr; 0 where a direction is below the surface.
 color::Rgb brdf(const Lafortune& surface, const Vec3& to_light, const Vec3& to_viewer);
 
-// Multiplies n + 1 by a factor; the lobe reflects as much light. Where its axes x and y are longer than z, they keep how
-// much it grows toward grazing angles: n (a^2 - 1) stays.
+// Multiplies n + 1 by a factor; the lobe reflects as much light. Where its axes x and y are longer than z, they keep
+// how much it grows toward grazing angles: n (a^2 - 1) stays.
 void widen(LafortuneLobe& lobe, double factor);
 
 // Widens a lobe for normals of its frame that vary about their mean, which has this length. [Toksvig2005]

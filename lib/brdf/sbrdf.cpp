@@ -178,7 +178,8 @@ SbrdfTexture mean_texture(const SbrdfTexture& texture) {
     const double odd = (c * lobe.odd[0] + s * lobe.odd[1]) / lobe.weight;
     LafortuneLobe all_of = {n1 * lobe.energy, {even + odd, even - odd, lobe.normal / lobe.weight}, n1 - 1};
     if (bent) widen_by_normals(all_of, mean_length);
-    for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(all_of.albedo[k]), to[3 + k] = static_cast<float>(all_of.axes[k]);
+    for (int k = 0; k < 3; ++k)
+      to[k] = static_cast<float>(all_of.albedo[k]), to[3 + k] = static_cast<float>(all_of.axes[k]);
     to[6] = static_cast<float>(all_of.exponent), to += 7;
   }
   return mean;

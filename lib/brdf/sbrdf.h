@@ -66,8 +66,8 @@ struct SurfaceFrame {
 };
 SurfaceFrame surface_frame(const SbrdfTexel& texel, const Vec3& normal, const Vec3& tangent);
 
-// The normal of a texel in the world, from the one in the frame of tangent, bitangent and unit normal. One that looks away
-// from the viewer, a unit direction, becomes the nearest that does not.
+// The normal of a texel in the world, from the one in the frame of tangent, bitangent and unit normal. One that looks
+// away from the viewer, a unit direction, becomes the nearest that does not.
 Vec3 texel_normal(const Vec3& own, const Vec3& normal, const Vec3& tangent, const Vec3& to_viewer);
 
 // The four texels around a place and their bilinear weights; u runs right, v up, both repeat beyond 0..1. The texels

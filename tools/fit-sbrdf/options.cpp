@@ -19,7 +19,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("normals", "FILE", "normals.png", &o.normals, "normal of each texel, where the surface is not flat")
       .more(
           "An image of whole numbers holds (n + 1)/2 of the unit normal, with y up, as normal maps of games do; one of "
-          "floats holds the normal itself. The map keeps the normal, its lobes are those of the frame whose z it is, and "
+          "floats holds the normal itself. The map keeps the normal, its lobes are those of the frame whose z it is, "
+          "and "
           "pictures are drawn with it.");
   spec.heading = "how it is fitted";
   spec.option("lobes,n", "N", "1", &o.lobes, "lobes of each texel").from(1, 4);

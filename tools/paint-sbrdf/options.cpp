@@ -58,8 +58,7 @@ void add_lobes(cli::ToolSpec& spec, Options& o) {
   spec.heading = "lobes";
   spec.option("lobes", "N", "3", &o.lobes, "most lobes of a texel; 0 for as many as mixtures need")
       .from(0, 16)
-      .more(
-          "With 0, a map that is resampled keeps its number of lobes, and no texel has more than 16. See Mixtures.");
+      .more("With 0, a map that is resampled keeps its number of lobes, and no texel has more than 16. See Mixtures.");
   spec.option("mirror", "EXPONENT", "3000", &o.mirror, "exponent of the lobes that mirrors become; 0 to choose")
       .from(0, 1e6)
       .in("the exponent of a cosine")

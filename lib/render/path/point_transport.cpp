@@ -68,8 +68,8 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
     light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
   }
   if (options.bounces > 0 && !correction_ && !over_ground_) receiver_ = transport.receiver(spot, painted_);
-  open_ = !painted_.is_bent() && !transport.rays_->has_floor() &&
-          !transport.rays_->any_above(spot.start, spot.shading, 0);
+  open_ =
+      !painted_.is_bent() && !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0);
   const bool free = open_ && options.correction;
   if (!free) {
     add_lights();

@@ -190,8 +190,8 @@ class PaintedPoint {
     rays::Float3 directional_diffuse, gloss;
     int number;  // among those of the paint
   };
-  // A lobe exp(log_peak) cos^exponent about its own axis, times the cosine of light to the normal of its texel. The diffuse
-  // part of a texel with a normal of its own is a matt one: exponent 1 about that normal, without a cosine.
+  // A lobe exp(log_peak) cos^exponent about its own axis, times the cosine of light to the normal of its texel. The
+  // diffuse part of a texel with a normal of its own is a matt one: exponent 1 about that normal, without a cosine.
   struct TexelLobe {
     rays::Float3 axis;
     float exponent, log_peak;

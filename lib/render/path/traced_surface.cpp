@@ -107,7 +107,8 @@ void PaintedPoint::add_texel_lobe(const Vec3& axis, double exponent, const color
       return;
     }
   }
-  texels_.push_back({unit, e, log_peak, float3(albedo), static_cast<float>((exponent + 1) / (2 * kPi)), 0, normal, matt});
+  texels_.push_back(
+      {unit, e, log_peak, float3(albedo), static_cast<float>((exponent + 1) / (2 * kPi)), 0, normal, matt});
 }
 
 // cos_i map/pi: a map holds reflectance factors. Isolines do not change when both directions turn about the normal.

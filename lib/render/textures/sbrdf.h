@@ -50,7 +50,7 @@ struct PackedTexture {
   std::vector<std::uint32_t> shape;  // the number of each texel's
   std::vector<float> shapes;
   std::vector<float> normals;  // 3 a shape, in the frame of the surface; empty where all texels are flat
-  bool covers = true;  // whether alpha is 1 everywhere
+  bool covers = true;          // whether alpha is 1 everywhere
 
   std::size_t color_floats() const { return 4 * (1 + static_cast<std::size_t>(lobes)); }
   std::size_t shape_floats() const { return kShapeFloats * static_cast<std::size_t>(lobes); }
@@ -98,7 +98,8 @@ class SbrdfShader {
   // called for, and that may be on many threads.
   FilterProbes probes(std::size_t texture, const TexturePlace& place, double scale) const;
 
-  // Returns a texture as the kernel reads it. Levels have these lobes of the texture alone, since theirs stand for several.
+  // Returns a texture as the kernel reads it. Levels have these lobes of the texture alone, since theirs stand for
+  // several.
   const PackedTexture& packed(std::size_t texture, int level = 0, std::uint32_t lobes = ~0U) const;
 
   // Shades up to kPointsAtOnce points that were put.

@@ -50,9 +50,7 @@ class TexelNormals : public TexturedScene {
     scene.lights = {{normalized({0.4, 0.5, 1}), {1, 0.8, 0.6}}, {normalized({-1, 0.3, 0.6}), {0.3, 0.3, 0.5}}};
     look_from({0.6, 0.5, 3});
   }
-  void look_from(const Vec3& eye) {
-    view = {{eye, {0, 0, 0}, {0, 1, 0}, 40}, 48, 48, 1, true};
-  }
+  void look_from(const Vec3& eye) { view = {{eye, {0, 0, 0}, {0, 1, 0}, 40}, 48, 48, 1, true}; }
   // Paths see lamps alone and do not bounce, which leaves no noise.
   Frame picture(const char* engine, const brdf::SbrdfTexture& map, const mesh::Mesh& on) {
     mesh = on, texture = map;
@@ -165,8 +163,8 @@ TEST_F(TexelNormals, WavesAreThoseOfAMeshWithTheseNormals) {
   }
 }
 
-// In even light a matt surface is as bright as that light wherever its normals look, and in any light lobes change little
-// where a normal comes to look away from the viewer.
+// In even light a matt surface is as bright as that light wherever its normals look, and in any light lobes change
+// little where a normal comes to look away from the viewer.
 TEST_F(TexelNormals, NormalsThatLookAwayHaveNoFringe) {
   env = constant_env({1, 1, 1}, {4, 16, 64, 256});
   brdf::SbrdfTexture matt{32, 32, 0, {}};

@@ -49,7 +49,8 @@ TextureLevel half_size(int width, int height, const TexelAt& texel, const std::v
         const double size = length(normal);
         for (brdf::TurnedLobe& lobe : level.texels[at].lobes) brdf::widen_by_normals(lobe.lobe, size);
         for (int c = 0; c < 3; ++c)
-          level.normals[3 * at + static_cast<std::size_t>(c)] = static_cast<float>(size > 0 ? normal[c] / size : c == 2);
+          level.normals[3 * at + static_cast<std::size_t>(c)] =
+              static_cast<float>(size > 0 ? normal[c] / size : c == 2);
       }
     }
   });

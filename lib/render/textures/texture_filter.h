@@ -20,7 +20,7 @@ namespace goniochrome::render {
 constexpr int kMostLevelLobes = 8;
 struct TextureLevel {
   int width = 0, height = 0;
-  std::vector<brdf::LobeSurface> texels;  // row by row from the top
+  std::vector<brdf::LobeSurface> texels;        // row by row from the top
   std::vector<float> alpha = {}, normals = {};  // as SbrdfTexture has them
 };
 // Half as many texels along each side at each step, down to one texel; none of a texture of one texel. They have those

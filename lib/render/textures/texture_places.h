@@ -48,7 +48,8 @@ class TextureLayout {
   const mesh::Mesh& mesh_;
   std::vector<TextureLaying> layings_;       // of each part
   std::vector<std::vector<Corners>> faces_;  // of the triangles of each part, in order; none of parts without a texture
-  std::vector<Vec3> tangents_;  // of the vertices, each in triangles whose texture is not mirrored and in those where it is
+  std::vector<Vec3>
+      tangents_;  // of the vertices, each in triangles whose texture is not mirrored and in those where it is
 };
 
 }  // namespace goniochrome::render
