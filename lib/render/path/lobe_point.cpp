@@ -30,11 +30,6 @@ double brightness(const color::Rgb& c) {
 
 }  // namespace
 
-struct LobePoint::Ray {
-  Float3 direction;
-  bool above = false, occluded = false;
-};
-
 // The light that a surface on a ray sends back along it, by class; apart from them, the light off a floor that no paint
 // changes.
 struct LobePoint::Sent {
@@ -236,7 +231,14 @@ void LobePoint::add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t 
     sums.emitted[first + k] += (scale / sums.directions * values[k]) * sent.fixed;
   if (total == color::Rgb{}) return;
   for (std::size_t k = begin; k < count; ++k) sums.bounced[first + k] += (scale / sums.directions * values[k]) * total;
-  add_classes(static_cast<float>(scale) * painted_.at(ray.direction).f_cos, hit, sent, 1.0 / sums.directions, sums);
+  const Float3 f_cos = begin > 0 ? beside_floor(ray.direction) : painted_.at(ray.direction).f_cos;
+  add_classes(static_cast<float>(scale) * f_cos, hit, sent, 1.0 / sums.directions, sums);
+}
+
+// f cos of the paint without the lobes whose light of a floor is known, which is none of bounced light.
+Float3 LobePoint::beside_floor(const Float3& direction) const {
+  const auto wide = painted_.wide_lobes(kWidestShared, GroundReceiver::kMostLobes);
+  return wide ? painted_.without_wide(wide->size()).at(direction).f_cos : painted_.at(direction).f_cos;
 }
 
 void LobePoint::add_emitter(const std::array<double, 4>& numbers, Sums& sums, int which) const {
@@ -258,12 +260,8 @@ void LobePoint::add_mirror(std::uint64_t seed, Sums& sums, int which) const {
     sums.emitted[mirror] += (share * kernels_.mirror()) * sent.fixed;
     add_classes(painted_.mirror(), mirror_hit_, sent, share, sums);
   };
-  if (sees_shaded_floor(mirror_hit_)) {
-    const LightShares floor =
-        transport_.shaded_ground(transport_.rays_->spot(mirror_hit_, spot_.start, painted_.mirrored()));
-    add({{}, {}, floor.into_diffuse, floor.direct}, 1);
-    return;
-  }
+  if (const auto floor = transport_.seen_floor(mirror_hit_, spot_.start, painted_.mirrored()))
+    return add({{}, {}, floor->into_diffuse, floor->direct}, 1);
   const int samples = std::max(1, sums.directions / kMirrorShare);
   const Sequence sequence(mixed(seed, 0x4D), static_cast<std::uint32_t>(sums.directions));
   for (int i = 0; i < samples; ++i)
@@ -279,8 +277,7 @@ std::size_t LobePoint::floor_lobes() const {
 void LobePoint::add_open_floor(color::Rgb* open_light) const {
   const std::size_t lobes = floor_lobes();
   if (lobes == 0) return;
-  GroundReceiver receiver{spot_.start, painted_.normal(), painted_.to_viewer(), painted_.mirrored(),
-                          static_cast<float>(painted_.coat_index())};
+  GroundReceiver receiver = ground_receiver(spot_, painted_);
   receiver.lobes = lobes;
   std::copy_n(columns_.exponents.begin(), lobes, receiver.exponents);
   const GroundColumns floor = transport_.open_floor_->columns(receiver);
@@ -385,22 +382,6 @@ class Scatter {
 
 }  // namespace
 
-LobeEstimate LobePoint::shaded_floor(std::span<const LobePoint* const> points) {
-  const LobePoint& any = *points.front();
-  LobeEstimate result;
-  result.direct.resize(any.columns_.count()), result.bounced.resize(any.columns_.count());
-  result.covariance.resize(any.columns_.count()), result.classes.resize(any.groups_.classes());
-  color::Rgb& bounced = result.bounced[LobeColumns::diffuse()];
-  for (const LobePoint* point : points) {
-    const LightShares shown = point->transport_.shaded_ground(point->spot_);
-    const double share = 1.0 / static_cast<double>(points.size());
-    result.direct[LobeColumns::diffuse()] += share * shown.direct, bounced += share * shown.into_diffuse;
-  }
-  const int floor = any.groups_.of_part[static_cast<std::size_t>(any.spot_.part)];
-  result.classes[any.groups_.at(floor, PaintGroups::kDeeper)] = bounced;
-  return result;
-}
-
 // All that a floor shows is light of its one column; what the mesh sends to it came through other surfaces.
 LobeEstimate LobePoint::floor_estimate(std::span<const LobePoint* const> points, int sequences, int directions,
                                        std::uint64_t seed) {
@@ -408,11 +389,20 @@ LobeEstimate LobePoint::floor_estimate(std::span<const LobePoint* const> points,
   LobeEstimate result;
   result.direct.resize(any.columns_.count()), result.bounced.resize(any.columns_.count());
   result.covariance.resize(any.columns_.count()), result.classes.resize(any.groups_.classes());
+  const int floor = any.groups_.of_part[static_cast<std::size_t>(any.spot_.part)];
+  color::Rgb &direct = result.direct[LobeColumns::diffuse()], &bounced = result.bounced[LobeColumns::diffuse()];
+  color::Rgb& deeper = result.classes[any.groups_.at(floor, PaintGroups::kDeeper)];
   std::vector<PointTransport> floors;
   bool certain = true;
   for (const LobePoint* point : points) {
+    const double share = 1.0 / static_cast<double>(points.size());
+    if (any.transport_.shaded_ != nullptr) {
+      const LightShares shown = any.transport_.shaded_ground(point->spot_);
+      direct += share * shown.direct, bounced += share * shown.into_diffuse, deeper = bounced;
+      continue;
+    }
     floors.emplace_back(point->transport_, point->options_, point->spot_, point->painted_.to_viewer());
-    result.direct[LobeColumns::diffuse()] += (1.0 / static_cast<double>(points.size())) * floors.back().deterministic();
+    direct += share * floors.back().deterministic();
     certain = certain && floors.back().certain();
   }
   if (certain) return result;
@@ -431,11 +421,9 @@ LobeEstimate LobePoint::floor_estimate(std::span<const LobePoint* const> points,
     shown.add(start, of_sequence.sum());
   }
   result.freedom = shown.freedom();
-  result.direct[LobeColumns::diffuse()] += mean.direct;
-  result.bounced[LobeColumns::diffuse()] = mean.into_lobes + mean.into_diffuse;
+  direct += mean.direct;
+  bounced = deeper = mean.into_lobes + mean.into_diffuse;
   result.covariance[LobeColumns::diffuse()] = shown.covariance();
-  const int floor = any.groups_.of_part[static_cast<std::size_t>(any.spot_.part)];
-  result.classes[any.groups_.at(floor, PaintGroups::kDeeper)] = result.bounced[LobeColumns::diffuse()];
   return result;
 }
 
@@ -458,9 +446,7 @@ void LobePoint::add_sequence(const std::vector<Ray>& rays, std::uint64_t seed, S
 LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const color::Rgb* open_light,
                                  const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed) {
   const LobePoint& any = *points.front();
-  if (any.on_projected_)
-    return any.transport_.shaded_ != nullptr ? shaded_floor(points)
-                                             : floor_estimate(points, sequences, directions, seed);
+  if (any.on_projected_) return floor_estimate(points, sequences, directions, seed);
   const Transport& transport = any.transport_;
   const LobeColumns& columns = any.columns_;
   const std::size_t count = columns.count();
@@ -526,108 +512,6 @@ LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const
     result.covariance[k] = shown.covariance(), result.freedom = shown.freedom();
   }
   return result;
-}
-
-// `values`: of the columns at the visible point toward the hit, over the density of that direction.
-void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* values, double scale,
-                          const Sequence& sequence, std::uint32_t index, Pairs& pairs) const {
-  const Transport& t = transport_;
-  // The tint of a column of the visible point; a floor that shows the environment has a color of its own.
-  const color::Rgb tint = on_projected_ ? rgb(painted_.diffuse()) : color::Rgb{1, 1, 1};
-  if (t.is_projected(hit)) {
-    const Transport::FloorLight floor = t.off_floor(hit, spot_.start, direction, options_.bounces, sequence, index, 4);
-    for (std::size_t k = 0; k < columns_.count(); ++k)
-      pairs.deeper[pairs.at(group_of(hit), k, LobeColumns::diffuse())] += (scale * values[k]) * tint * floor.bounced;
-    return;
-  }
-  const rays::Spot at = t.rays_->spot(hit, spot_.start, direction);
-  const PaintedPoint painted = t.painted(at, -direction);
-  const LobeKernels kernels(columns_, painted);
-  const std::size_t count = columns_.count();
-  std::vector<color::Rgb> once(count), deeper(count);
-  float sent[2 * kMostTracedLobes + 2];
-  const std::array<double, 4> of_lamp = sequence.point(index, 5);
-  for (std::size_t i = 0; i < t.lights_.size(); ++i) {
-    const Transport::LampSample lamp = Transport::drawn_from(t.seen_lamp(i, at.start), of_lamp[0], of_lamp[1]);
-    if (!(kernels.at(lamp.direction, sent) > 0) || t.rays_->occluded(at.start, lamp.direction, lamp.reach)) continue;
-    for (std::size_t l = 0; l < count; ++l) once[l] += static_cast<double>(sent[l]) * lamp.light;
-  }
-  const int further = options_.bounces - 1;
-  const auto add = [&](const Float3& toward, double share, std::uint32_t set) {
-    const Hit next = t.rays_->closest(at.start, toward);
-    color::Rgb light, bounced;
-    if (t.is_projected(next)) {
-      const Transport::FloorLight floor = t.off_floor(next, at.start, toward, further, sequence, index, set);
-      light = floor.fixed, bounced = floor.bounced;
-    } else if (!next.any()) {
-      if (t.environment_) light = t.environment_->at(toward).radiance;
-    } else {
-      light = t.emitters_.radiance(t.rays_->part(next.triangle));
-      if (further > 0) bounced = t.bounced(next, at.start, toward, further, sequence, index, set);
-    }
-    for (std::size_t l = 0; l < count; ++l)
-      once[l] += (share * sent[l]) * light, deeper[l] += (share * sent[l]) * bounced;
-  };
-  const std::array<double, 4> numbers = sequence.point(index, 4);
-  const float light_chance = t.environment_ ? kLightChance : 0;
-  Float3 toward;
-  if (numbers[0] < light_chance) {
-    toward = t.environment_->drawn(numbers[1], numbers[2]).direction;
-  } else {
-    toward = kernels.direction((numbers[0] - light_chance) / (1 - light_chance), numbers[1], numbers[2]);
-  }
-  const float kernels_pdf = kernels.at(toward, sent);
-  if (kernels_pdf > 0) {
-    const double light_pdf = t.environment_ ? t.environment_->at(toward).pdf : 0;
-    add(toward, 1 / (light_chance * light_pdf + (1 - light_chance) * kernels_pdf), 6);
-  }
-  std::fill_n(sent, count, 0.0F);
-  sent[columns_.mirror()] = kernels.mirror();
-  add(painted.mirrored(), 1, 40);
-  if (!t.lights_.empty())
-    once[columns_.mirror()] += kernels.mirror() * t.mirrored_lamps(at.start, painted.mirrored(),
-                                                                   t.rays_->closest(at.start, painted.mirrored()));
-  const int group = groups_.of_part[static_cast<std::size_t>(at.part)];
-  for (std::size_t k = 0; k < count; ++k) {
-    if (values[k] == 0 || (on_projected_ && k != LobeColumns::diffuse())) continue;
-    for (std::size_t l = 0; l < count; ++l) {
-      pairs.once[pairs.at(group, k, l)] += (scale * values[k]) * tint * once[l];
-      pairs.deeper[pairs.at(group, k, l)] += (scale * values[k]) * tint * deeper[l];
-    }
-  }
-}
-
-LobePoint::Pairs LobePoint::pairs(int sequences, int directions, std::uint64_t seed) const {
-  Pairs pairs{columns_.count(), {}, {}};
-  pairs.once.resize(static_cast<std::size_t>(groups_.count) * pairs.columns * pairs.columns);
-  pairs.deeper.resize(pairs.once.size());
-  if (open_ || options_.bounces == 0) return pairs;
-  bool any_occluded = false;
-  const double share = 1.0 / (static_cast<double>(sequences) * directions);
-  float values[2 * kMostTracedLobes + 2];
-  for (int which = 0; which < sequences; ++which) {
-    const std::uint64_t own = mixed(seed, static_cast<std::uint64_t>(which));
-    const Sequence sequence(own, static_cast<std::uint32_t>(directions));
-    const std::vector<Ray> rays = traced_rays(directions, own, any_occluded);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Ray& ray = rays[i];
-      if (!ray.above || !ray.occluded) continue;
-      const float kernels_pdf = kernels_.at(ray.direction, values);
-      const double light_pdf = transport_.environment_ ? transport_.environment_->at(ray.direction).pdf : 0;
-      const double pdf = light_chance_ * light_pdf + (1 - light_chance_) * kernels_pdf;
-      const Hit hit = pdf > 0 && kernels_pdf > 0 ? transport_.rays_->closest(spot_.start, ray.direction) : Hit{};
-      if (!hit.any()) continue;
-      add_pairs(hit, ray.direction, values, share / pdf, sequence, static_cast<std::uint32_t>(i), pairs);
-    }
-  }
-  if (!mirror_hit_.any()) return pairs;
-  std::fill_n(values, columns_.count(), 0.0F);
-  values[columns_.mirror()] = kernels_.mirror();
-  const Sequence sequence(mixed(seed, 0x4D), static_cast<std::uint32_t>(directions));
-  for (int i = 0; i < directions; ++i)
-    add_pairs(mirror_hit_, painted_.mirrored(), values, 1.0 / directions, sequence, static_cast<std::uint32_t>(i),
-              pairs);
-  return pairs;
 }
 
 }  // namespace goniochrome::render

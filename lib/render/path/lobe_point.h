@@ -79,7 +79,10 @@ class LobePoint {
   static constexpr std::size_t kMostPoints = 16;
 
  private:
-  struct Ray;
+  struct Ray {
+    rays::Float3 direction;
+    bool above = false, occluded = false;
+  };
   struct Sent;
   class Classes;
   struct Sums;
@@ -90,18 +93,14 @@ class LobePoint {
   void add_emitter(const std::array<double, 4>& numbers, Sums& sums, int which) const;
   void add_mirror(std::uint64_t seed, Sums& sums, int which) const;
   void add_classes(const rays::Float3& f, const rays::Hit& hit, const Sent& sent, double share, Sums& sums) const;
+  rays::Float3 beside_floor(const rays::Float3& direction) const;
   void add_pairs(const rays::Hit& hit, const rays::Float3& direction, const float* values, double scale,
                  const Sequence& sequence, std::uint32_t index, Pairs& pairs) const;
   bool lamp_values(std::size_t which, const Transport::SeenLamp& lamp, float* values) const;
   void add_sequence(const std::vector<Ray>& rays, std::uint64_t seed, Sums& sums, int which) const;
   void add_deterministic(const color::Rgb* open_mirror, double share, std::vector<color::Rgb>& direct) const;
-  // A floor whose light is on a grid is seen without samples.
-  bool sees_shaded_floor(const rays::Hit& hit) const {
-    return transport_.shaded_ != nullptr && transport_.is_projected(hit);
-  }
   // The diffuse part and so many lobes are told by the blocks of an open floor; 0: not even that part.
   std::size_t floor_lobes() const;
-  static LobeEstimate shaded_floor(std::span<const LobePoint* const> points);
   static LobeEstimate floor_estimate(std::span<const LobePoint* const> points, int sequences, int directions,
                                      std::uint64_t seed);
   int group_of(const rays::Hit& hit) const {

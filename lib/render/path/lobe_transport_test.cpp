@@ -338,7 +338,8 @@ TEST(LobeTransport, HoldsAFloorThatShowsTheEnvironment) {
     stage.ground = ground;
     paint::LobeFit other_paint = worn_paint;
     other_paint.diffuse = other_paint.diffuse * color::Rgb{0.4, 1.3, 1};
-    for (const paint::LobeFit& paint : {worn_paint, other_paint}) {
+    const std::vector<paint::LobeFit> paints = {worn_paint, other_paint};
+    for (const paint::LobeFit& paint : paints) {
       stage.scene.paints.assign(1, paint);
       stage.build();
       const VisibleSurface surface = visible_surface(stage.transport->rays(), *rays(camera, 16, 12), 16, 12);
@@ -355,6 +356,12 @@ TEST(LobeTransport, HoldsAFloorThatShowsTheEnvironment) {
         const auto& own = weights[static_cast<std::size_t>(t.part[i])];
         const color::Rgb direct = shown(t, i, own, false), bounced = shown(t, i, own, true) - direct;
         const color::Rgb ours = direct + bounce_factor(t, i, scale) * bounced;
+        color::Rgb classes;
+        for (std::size_t k = 0; k < 3 * t.worn.groups.classes(); ++k)
+          classes[static_cast<int>(k % 3)] += t.classes[3 * i * t.worn.groups.classes() + k];
+        if (&paint == &paints.front()) {
+          EXPECT_NEAR(classes.y, bounced.y, 1e-5 + 1e-3 * bounced.y) << "the classes are all of it";
+        }
         const double off = seen_difference(ours, truth.points[i].radiance, 1);
         if (t.part[i] == 1) {
           of_floor.push_back(off);

@@ -205,11 +205,9 @@ void PointTransport::add_mirror() {
     return;
   }
   if (correction_) deterministic_ += -1.0 * reflect(mirror, open);
-  if (transport_.is_projected(mirror_hit_) && transport_.shaded_ != nullptr) {
-    const LightShares floor =
-        transport_.shaded_ground(transport_.rays_->spot(mirror_hit_, spot_.start, painted_.mirrored()));
-    deterministic_ += reflect(mirror, floor.direct);
-    if (options_.bounces > 0 && options_.into_lobes) deterministic_ += reflect(mirror, floor.into_diffuse);
+  if (const auto floor = transport_.seen_floor(mirror_hit_, spot_.start, painted_.mirrored())) {
+    deterministic_ += reflect(mirror, floor->direct);
+    if (options_.bounces > 0 && options_.into_lobes) deterministic_ += reflect(mirror, floor->into_diffuse);
     return;
   }
   deterministic_ += reflect(mirror, transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle)));
@@ -306,8 +304,8 @@ LightShares PointTransport::shown(const Ray& ray, bool occluded, const Sequence&
   return shares;
 }
 
-// Over a floor that shows the environment. In a correction floor_light() and sharp_floor_light() tell the open floor, and rays what
-// the mesh takes from there and sends instead.
+// Over a floor that shows the environment. In a correction floor_light() and sharp_floor_light() tell the open floor,
+// and rays tell what the mesh takes from there and sends instead.
 LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, const Sequence& sequence,
                                               std::uint32_t index) const {
   LightShares shares;
@@ -342,8 +340,7 @@ color::Rgb PointTransport::floor_light() const {
   if (certain_ || !over_ground_ || !correction_) return {};
   const auto lobes = painted_.wide_lobes(kWidestShared, GroundReceiver::kMostLobes);
   if (!lobes) return {};
-  GroundReceiver receiver{spot_.start, painted_.normal(), painted_.to_viewer(), painted_.mirrored(),
-                          static_cast<float>(painted_.coat_index())};
+  GroundReceiver receiver = ground_receiver(spot_, painted_);
   for (const PaintedPoint::WideLobe& lobe : *lobes) receiver.exponents[receiver.lobes++] = lobe.exponent;
   const GroundColumns columns = transport_.open_floor_->columns(receiver);
   color::Rgb light = reflect(painted_.diffuse(), rays::vec3(columns.diffuse));

@@ -178,6 +178,16 @@ LightShares Transport::shown_ground(const Spot& spot, const GroundLight& light) 
   return {open * light.left, {}, open * light.bounced};
 }
 
+std::optional<LightShares> Transport::seen_floor(const Hit& hit, const Float3& origin, const Float3& direction) const {
+  if (shaded_ == nullptr || !is_projected(hit)) return std::nullopt;
+  return shaded_ground(rays_->spot(hit, origin, direction));
+}
+
+GroundReceiver ground_receiver(const Spot& spot, const PaintedPoint& painted) {
+  return {spot.start, painted.normal(), painted.to_viewer(), painted.mirrored(),
+          static_cast<float>(painted.coat_index())};
+}
+
 LightShares Transport::met_ground(const Hit& hit, const Float3& origin, const Float3& direction, double number) const {
   const Spot spot = rays_->spot(hit, origin, direction);
   return spot.inside ? LightShares{} : shown_ground(spot, shaded_->met(spot.position, number));

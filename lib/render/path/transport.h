@@ -90,8 +90,8 @@ constexpr LightShares operator*(double scale, const LightShares& a) {
   return {scale * a.direct, scale * a.into_lobes, scale * a.into_diffuse, scale * a.from_floor};
 }
 // In the order in which plans list the effects of rays.
-inline constexpr color::Rgb LightShares::*kShares[] = {&LightShares::direct, &LightShares::into_lobes,
-                                                       &LightShares::into_diffuse, &LightShares::from_floor};
+inline constexpr color::Rgb LightShares::* kShares[] = {&LightShares::direct, &LightShares::into_lobes,
+                                                        &LightShares::into_diffuse, &LightShares::from_floor};
 
 // How many samples are drawn together from one sequence. Their mean is one independent estimate.
 constexpr int kBatch = 16;
@@ -151,6 +151,10 @@ class Transport {
   FloorLight off_floor(const rays::Hit& hit, const rays::Float3& origin, const rays::Float3& direction, int bounces,
                        const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
   LightShares shown_ground(const rays::Spot& spot, const GroundLight& light) const;
+  // The light of a floor whose light is on a grid, as a ray sees it, without samples; none where it meets no such
+  // floor.
+  std::optional<LightShares> seen_floor(const rays::Hit& hit, const rays::Float3& origin,
+                                        const rays::Float3& direction) const;
   // The light of the floor where a path meets it, by a number in [0,1); nothing from below.
   LightShares met_ground(const rays::Hit& hit, const rays::Float3& origin, const rays::Float3& direction,
                          double number) const;
@@ -242,6 +246,9 @@ class Transport {
   // directions and lamps are drawn by.
   std::shared_ptr<const SpectralPaths> spectral_;
 };
+
+// The point over an open floor, without lobes.
+GroundReceiver ground_receiver(const rays::Spot& spot, const PaintedPoint& painted);
 
 // One visible point.
 class PointTransport {
