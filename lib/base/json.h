@@ -1,8 +1,12 @@
-// JSON for reports. Keys stay in the order in which they are written, and a number that is not finite becomes null.
+// JSON for reports and headers of files. Keys stay in the order in which they are written, and a number that is not
+// finite becomes null. Text is read and written here alone, because each unit that compiles a reader or a writer of
+// JSON takes seconds for it.
 #pragma once
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
 
 namespace goniochrome {
 
@@ -12,5 +16,11 @@ using Json = nlohmann::ordered_json;
 inline Json json_number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
+
+// The value of a text; is_discarded() where the text is no JSON.
+Json parse_json(std::string_view text);
+
+// The text of a value in one line, or with this indentation; bytes that are not UTF-8 become U+FFFD.
+std::string json_text(const Json& value, int indentation = -1);
 
 }  // namespace goniochrome

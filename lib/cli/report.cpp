@@ -13,7 +13,7 @@ std::string text_at(const Json& value, int depth) {
   // Strings hold no raw newline, so each one here begins a line of the document.
   const std::string margin = "\n" + std::string(depth * kIndent, ' ');
   std::string text;
-  for (const char c : value.dump(kIndent, ' ', false, Json::error_handler_t::replace)) {
+  for (const char c : json_text(value, kIndent)) {
     if (c == '\n')
       text += margin;
     else
@@ -53,11 +53,11 @@ Result<void> Report::write(const std::string& path, const Json& head) const {
   GONIO_ASSIGN(OutputFile file, OutputFile::create(path));
   GONIO_TRY(file.write("{\n"));
   for (const auto& [key, value] : head.items())
-    GONIO_TRY(file.write("  " + Json(key).dump() + ": " + text_at(value, 1) + ",\n"));
+    GONIO_TRY(file.write("  " + json_text(Json(key)) + ": " + text_at(value, 1) + ",\n"));
   GONIO_TRY(file.write("  \"results\": {"));
   const char* separator = "\n    ";
   for (const auto& [key, value] : results_.items()) {
-    GONIO_TRY(file.write(separator + Json(key).dump() + ": "));
+    GONIO_TRY(file.write(separator + json_text(Json(key)) + ": "));
     separator = ",\n    ";
     const auto spool = spools_.find(key);
     if (spool == spools_.end()) {

@@ -30,7 +30,7 @@ TEST(Report, ReadsAsOneDocumentInTheOrderWritten) {
   expected["results"]["none"] = Json::array();
   report.results()["last"] = expected["results"]["last"] = paint;
   ASSERT_TRUE(report.write(path(), head).ok());
-  EXPECT_EQ(*file_content(path()), expected.dump(2) + "\n");
+  EXPECT_EQ(*file_content(path()), json_text(expected, 2) + "\n");
 }
 
 TEST(Report, WithoutResultsIsADocument) {

@@ -124,7 +124,7 @@ Result<ReflectionOperator> chosen_operator(const std::string& text, const std::o
 std::string reflection_json(const ReflectionOperator& op, const Primaries* primaries) {
   Json json{{"k", op.k}};
   if (primaries) json["primaries"] = primaries->rgb, json["white"] = primaries->white;
-  return json.dump() + "\n";
+  return json_text(json) + "\n";
 }
 
 namespace {
@@ -163,12 +163,12 @@ Result<std::optional<Primaries>> source_primaries(const Json& json, const std::s
       return input_error(
           "{}: \"primaries\" are {}: give \"rec709\", \"rec2020\" or x and y of red, green and blue, such as "
           "[[0.64,0.33],[0.3,0.6],[0.15,0.06]]",
-          path, named.dump());
+          path, json_text(named));
     named.get_to(primaries.rgb);
   }
   if (json.contains("white")) {
     if (!is_list(json["white"], 2))
-      return input_error("{}: \"white\" is {}: give x and y, such as [0.3127,0.329]", path, json["white"].dump());
+      return input_error("{}: \"white\" is {}: give x and y, such as [0.3127,0.329]", path, json_text(json["white"]));
     json["white"].get_to(primaries.white);
   }
   return std::optional(primaries);
@@ -193,7 +193,7 @@ Result<void> check_coherent(const ReflectionOperator& op, const std::string& pat
 
 Result<Table> read_table(const std::string& path) {
   GONIO_ASSIGN(const std::string text, file_content(path));
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parse_json(text);
   if (!json.is_object() || !json.contains("k") || !is_table(json["k"]))
     return input_error("{}: a reflection operator is a JSON object with \"k\", three tables of 3 x 3 numbers", path);
   for (const auto& entry : json.items()) {

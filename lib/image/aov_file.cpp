@@ -85,7 +85,7 @@ Result<void> take_operator(const std::string& text, AovFile& file) {
 std::vector<std::string> names_of(const Attributes& attributes, const char* name) {
   const auto text = attribute_or<std::string>(attributes, name, "");
   std::vector<std::string> names;
-  for (const Json& entry : Json::parse(text.empty() ? "[]" : text, nullptr, false))
+  for (const Json& entry : parse_json(text.empty() ? "[]" : text))
     if (entry.is_string()) names.push_back(entry.get<std::string>());
   return names;
 }
@@ -111,7 +111,7 @@ namespace {
 
 // Reads the effects from the plan in a header.
 void take_plan(const std::string& plan, AovFile& file) {
-  const Json effects = Json::parse(plan.empty() ? "[]" : plan, nullptr, false);
+  const Json effects = parse_json(plan.empty() ? "[]" : plan);
   for (const Json& effect : effects) {
     if (!effect.is_object() || !effect.contains("effect") || !effect["effect"].is_string()) continue;
     const std::string decision =
@@ -179,7 +179,7 @@ Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::st
   file.parts = names_of(attributes, "goniochrome:parts");
   file.materials = names_of(attributes, "goniochrome:materials");
   file.materials.resize(file.parts.size());
-  for (const Json& number : Json::parse(text("goniochrome:trim"), nullptr, false))
+  for (const Json& number : parse_json(text("goniochrome:trim")))
     if (number.is_number_integer()) file.trim.push_back(number.get<int>());
   take_plan(text("goniochrome:plan"), file);
   file.transport = text("goniochrome:transport");

@@ -66,7 +66,7 @@ struct Guard {
 };
 
 Result<Guard> guard_of(const std::string& path) {
-  struct stat info {};
+  struct stat info{};
   if (stat(path.c_str(), &info) != 0) return input_error("{}: cannot be read: {}", path, std::strerror(errno));
   if (!S_ISREG(info.st_mode))
     return input_error("{}: is no plain file: a library is kept with its index beside it, so give a file", path);
@@ -89,7 +89,7 @@ class LibraryIndex::Bytes {
   static std::unique_ptr<Bytes> mapped(const std::string& path) {
     const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (fd < 0) return nullptr;
-    struct stat info {};
+    struct stat info{};
     void* data = MAP_FAILED;
     if (fstat(fd, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0)
       data = mmap(nullptr, static_cast<std::size_t>(info.st_size), PROT_READ, MAP_SHARED, fd, 0);
@@ -151,7 +151,7 @@ class Packer {
     return at;
   }
   std::string finish(const Json& directory) {
-    const std::string text = directory.dump();
+    const std::string text = json_text(directory);
     Head head;
     head.directory_at = add(text);
     head.directory_bytes = text.size();
@@ -313,7 +313,7 @@ class Unpacker {
     if (head.magic != Head{}.magic || head.file_bytes != bytes_.size() || head.directory_at > bytes_.size() ||
         head.directory_bytes > bytes_.size() - head.directory_at || head.sum != sum_of_index(bytes_))
       throw std::out_of_range("head");
-    return Json::parse(bytes_.substr(head.directory_at, head.directory_bytes));
+    return parse_json(bytes_.substr(head.directory_at, head.directory_bytes));
   }
 
  private:

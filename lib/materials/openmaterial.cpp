@@ -53,8 +53,9 @@ std::string table_file(const std::string& rows, const std::string& uuid, const N
   about["typicalSensorTechnology"] = "camera";
   std::string wavelengths;
   for (int band = 0; band < color::kBands; ++band) wavelengths += (band > 0 ? ", " : "") + meters(band);
-  return "{\n\"$schema\": " + Json(schema("material_brdf_schema")).dump() + ",\n\"metadata\": " + about.dump(1) +
-         ",\n\"brdf\": {\n\"wavelengths\": [" + wavelengths + "],\n\"lookupTable\": [\n" + rows + "]}}\n";
+  return "{\n\"$schema\": " + json_text(Json(schema("material_brdf_schema"))) +
+         ",\n\"metadata\": " + json_text(about, 1) + ",\n\"brdf\": {\n\"wavelengths\": [" + wavelengths +
+         "],\n\"lookupTable\": [\n" + rows + "]}}\n";
 }
 
 Result<Material> openmaterial_material(const paint::Paint& fitted, const Naming& naming) {
@@ -70,7 +71,7 @@ Result<Material> openmaterial_material(const paint::Paint& fitted, const Naming&
   const Json file = {{"$schema", schema("material_schema")},
                      {"metadata", metadata(naming, uuid, "A paint and its coat.")},
                      {"materialProperties", {{"brdfUris", {naming.file_stem + kOpenMaterial.companion}}}}};
-  material.bytes = file.dump(1) + "\n";
+  material.bytes = json_text(file, 1) + "\n";
   return material;
 }
 

@@ -74,7 +74,7 @@ std::optional<std::string> acceptable_to_library(std::string_view content) {
     text = content.substr(kText, word_at(content, kGlbHead));
     rest = content.substr(kText + text.size());
   }
-  Json json = Json::parse(text, nullptr, false);
+  Json json = parse_json(text);
   if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return std::nullopt;
   bool changed = gave_views_to_packed_indices(json);
   for (Json& buffer : json["buffers"])
@@ -83,7 +83,7 @@ std::optional<std::string> acceptable_to_library(std::string_view content) {
       changed = true;
     }
   if (!changed) return std::nullopt;
-  std::string made = json.dump();
+  std::string made = json_text(json);
   if (!binary) return made;
   made.resize((made.size() + 3) / 4 * 4, ' ');
   return std::string(content.substr(0, 8)) + word(kGlbHead + kChunkHead + made.size() + rest.size()) +

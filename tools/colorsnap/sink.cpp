@@ -95,7 +95,7 @@ Result<void> Sink::write(const Finding& finding, const library::LibraryIndex& in
     case Format::kTable:
       return file_.write(table_lines(finding, lights_, index));
     case Format::kJson:
-      return file_.write(finding_json(finding, index).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+      return file_.write(json_text(finding_json(finding, index)) + "\n");
     case Format::kPaints:
       break;
   }

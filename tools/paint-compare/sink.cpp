@@ -170,7 +170,7 @@ Result<Sink> Sink::begin(Format format, const quality::CompareOptions& compare, 
 std::string Sink::text(const Judgement& judgement) const {
   if (format_ == Format::kTable) return table_lines(judgement, compare_);
   if (format_ == Format::kPaints) return "";
-  return judgement_json(judgement, compare_).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(judgement_json(judgement, compare_)) + "\n";
 }
 
 Result<void> Sink::write(const Judgement& judgement, const std::string& text, const paint::Paint& sample) {

@@ -107,8 +107,7 @@ std::string gloss_border(const paint::Paint& paint) {
 std::string studio_address(const paint::Paint& paint, const StudioLink& studio) {
   const Json design = {
       {"file", "picked.paints.xml"}, {"board", plain_utf8(studio.board)}, {"paint", studio::paint_json(paint)}};
-  return percent_encoded(studio.address, "/") +
-         "#design=" + percent_encoded(design.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return percent_encoded(studio.address, "/") + "#design=" + percent_encoded(json_text(design));
 }
 
 std::string paint_card(const PageOfPaint& paint, const StudioLink& studio) {

@@ -71,7 +71,7 @@ Result<std::string> studio_session(const sketch::Board& board, const std::vector
       {"palette", std::move(palette)},
       {"pictures",
        {{"made", 1}, {"open", 0}, {"boards", Json::array({open_board})}, {"droppers", std::move(droppers)}}}};
-  return session.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(session) + "\n";
 }
 
 }  // namespace goniochrome::tool

@@ -101,7 +101,7 @@ class Sink {
       case Format::kPaints:
         return writer_->write(paint);
       case Format::kJson:
-        return file_->write(as_json(paint, figures).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+        return file_->write(json_text(as_json(paint, figures)) + "\n");
       case Format::kTable:
         break;
     }

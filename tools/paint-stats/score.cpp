@@ -149,8 +149,7 @@ Result<Scores> scores_of(const paint::Paint& paint, const Rows& rows, const std:
   };
   if (paint.measurement || paint.appearance) {
     GONIO_ASSIGN(const auto curve, paint::TargetCurve::make(paint, paint::TargetCurve::Kind::kMeasured));
-    add_score(
-        "curve", rows, [&](const Row& row) { return std::optional(curve.at(aspecular_deg(row))); }, scores);
+    add_score("curve", rows, [&](const Row& row) { return std::optional(curve.at(aspecular_deg(row))); }, scores);
   }
   if (paint.lobes) {
     add_score(
@@ -172,8 +171,7 @@ Result<Scores> scores_of(const paint::Paint& paint, const Rows& rows, const std:
                                  rows.white);
     };
     const std::string name = map.aspecular ? "aspecular map" : "isoline map";
-    add_score(
-        name, rows, [&](const Row& row) { return std::optional(at(row)); }, scores);
+    add_score(name, rows, [&](const Row& row) { return std::optional(at(row)); }, scores);
     if (!map.aspecular)
       add_score(
           "isoline map, within the critical angle", rows,
@@ -209,7 +207,7 @@ std::string line_of(const Json& json) {
   for (const Json& value : json)
     line += (line.empty() ? "" : "\t") + (value.is_string()         ? table_field(value.get<std::string>())
                                           : value.is_number_float() ? fmt::format("{:.3f}", value.get<double>())
-                                                                    : value.dump());
+                                                                    : json_text(value));
   return line + "\n";
 }
 
@@ -245,7 +243,7 @@ Result<cli::Verdict> score(const Options& options, cli::Session& session) {
     scored += !scores.list.empty();
     for (const Score& each : scores.list) {
       const Json json = as_json(paint.name, each, column, *rows);
-      text += format == Format::kTable ? line_of(json) : json.dump() + "\n";
+      text += format == Format::kTable ? line_of(json) : json_text(json) + "\n";
       session.add("scores", [&] { return json; });
     }
   }

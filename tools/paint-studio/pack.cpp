@@ -29,7 +29,7 @@ void PackedLibrary::add(const std::string& file, const paint::Paint& paint) {
       layout["gloss"].push_back(reading.angle_deg);
       numbers.push_back(reading.gloss_units);
     }
-    const auto number = numbers_.try_emplace(layout.dump(), layouts_.size());
+    const auto number = numbers_.try_emplace(json_text(layout), layouts_.size());
     if (number.second) layouts_.push_back(std::move(layout));
     line = {number.first->second, json["name"], json.value("code", ""), json.value("class", "")};
     line.insert(line.end(), numbers.begin(), numbers.end());
@@ -37,7 +37,7 @@ void PackedLibrary::add(const std::string& file, const paint::Paint& paint) {
     line = {{"file", file}, {"paint", std::move(json)}};
   }
   if (!lines_.empty()) lines_ += '\n';
-  lines_ += line.dump(-1, ' ', false, Json::error_handler_t::replace);
+  lines_ += json_text(line);
   paints_.push_back(paint);
 }
 

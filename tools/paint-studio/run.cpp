@@ -100,9 +100,8 @@ std::string plan_text(const Options& options) {
                                  : joined(options.transports, ", ") +
                                        ", the light of each lobe at every point in as few bits as change a paint by no "
                                        "more than 0.02 dE00",
-      options.transports.empty()
-          ? "light from one part to another, and "
-          : "light from one part to another beside the traced views, and ");
+      options.transports.empty() ? "light from one part to another, and "
+                                 : "light from one part to another beside the traced views, and ");
 }
 
 }  // namespace
@@ -183,7 +182,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_TRY(fill(page, "@INDEX@", compressed_text(index)));
   GONIO_TRY(fill(page, "@NUMBERS@", compressed_text(numbers.bytes())));
   GONIO_TRY(fill(page, "@PAINTS@", script_text(paints.lines())));
-  GONIO_TRY(fill(page, "@DATA@", script_text(data.dump(-1, ' ', false, Json::error_handler_t::replace))));
+  GONIO_TRY(fill(page, "@DATA@", script_text(json_text(data))));
   GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
   GONIO_TRY(file.write(page));
   GONIO_TRY(file.commit());

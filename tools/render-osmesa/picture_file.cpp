@@ -57,7 +57,7 @@ Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const 
                                                   const render::TransportParts* transport,
                                                   const cli::Session& session) {
   image::ImagePart part{"picture", frame.picture, provenance(session), image::PixelType::kHalf};
-  part.attributes["goniochrome:plan"] = plan_rows(plan).dump(-1, ' ', false, Json::error_handler_t::replace);
+  part.attributes["goniochrome:plan"] = json_text(plan_rows(plan));
   part.attributes["goniochrome:engine"] = plan.engine;
   const float gain = static_cast<float>(std::exp2(stops));
   for (std::size_t i = 0; i < part.image.data.size(); ++i) part.image.data[i] *= i % 4 == 3 ? 1 : gain;
@@ -89,10 +89,10 @@ Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const 
     Json trim = Json::array();
     for (const std::size_t i : dress.trim)
       if (dress.names[i] == kTrimName && !dress.worn[i]) trim.push_back(i + 1);
-    part.attributes["goniochrome:trim"] = trim.dump();
+    part.attributes["goniochrome:trim"] = json_text(trim);
     if (transport != nullptr && scene.ground) names.push_back("floor"), materials.push_back("");
-    part.attributes["goniochrome:parts"] = names.dump(-1, ' ', false, Json::error_handler_t::replace);
-    part.attributes["goniochrome:materials"] = materials.dump(-1, ' ', false, Json::error_handler_t::replace);
+    part.attributes["goniochrome:parts"] = json_text(names);
+    part.attributes["goniochrome:materials"] = json_text(materials);
   }
   std::vector<image::ImagePart> parts;
   if (transport != nullptr) part.attributes[render::kTransportAttribute] = transport->header;

@@ -79,7 +79,7 @@ std::string gltf_sphere(const Json& material, const Naming& naming) {
   Json document = {{"asset", {{"version", "2.0"}, {"generator", naming.provenance}}}, {"extensionsUsed", used}};
   document["materials"] = Json::array({material});
   document.update(sphere_json());
-  return document.dump(1) + "\n";
+  return json_text(document, 1) + "\n";
 }
 
 Json gltf_extras(const Naming& naming, const Shown& shown) {

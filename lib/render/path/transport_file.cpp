@@ -85,7 +85,7 @@ std::string header_of(const LobeTransport& t) {
   for (const paint::Anisotropy& alpha : t.worn.brushed) header["brushed"].push_back({alpha.alpha_x, alpha.alpha_y});
   header["coats"] = t.worn.coats;
   for (const BounceProbe& probe : t.probes) header["probes"].push_back(t.places[probe.point]);
-  return header.dump();
+  return json_text(header);
 }
 
 // Light of every point and of one column.
@@ -180,7 +180,7 @@ class Reader {
   }
 
   Result<void> read_header(const std::string& text) {
-    const Json header = Json::parse(text, nullptr, false);
+    const Json header = parse_json(text);
     if (!header.is_object()) return wrong(fmt::format("the attribute {} is no JSON object", kTransportAttribute));
     try {
       const int version = header.at("version").get<int>();

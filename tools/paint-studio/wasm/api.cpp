@@ -38,10 +38,10 @@ STUDIO_EXPORT(studio_request) char* studio_request(std::uint32_t bytes) {
 STUDIO_EXPORT(studio_call) std::uint32_t studio_call() {
   using goniochrome::Json;
   goniochrome::studio::written_text().clear();
-  const Json request = Json::parse(request_text, nullptr, false);
+  const Json request = goniochrome::parse_json(request_text);
   Json answer = request.is_discarded() ? Json{{"error", "the request is no JSON"}} : session().answer(request);
   if (!goniochrome::studio::written_text().empty()) answer["text"] = goniochrome::studio::written_text();
-  answer_text = answer.dump(-1, ' ', false, Json::error_handler_t::replace);
+  answer_text = goniochrome::json_text(answer);
   return static_cast<std::uint32_t>(answer_text.size());
 }
 
