@@ -181,7 +181,7 @@ setup() {
 }
 
 @test "--hud draws the rings of a paint where their angles are in a view" {
-  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --light 30,50 --size 480x300 --aov aspecular -o view.exr
+  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --light 30,50 --size 480x300 --samples 1 --effects auto,-rays --aov aspecular -o view.exr
   run --separate-stderr plot-paint --paint candy_red --hud view.exr "$paints" -o hud.svg
   [ "$status" -eq 0 ]
   xmllint --noout hud.svg
@@ -193,7 +193,7 @@ setup() {
   file candy_red.png jet_black.png | grep -c '480 x 392' | grep -qx 2
   run plot-paint --hud view.exr --color-map --paint candy_red "$paints" -o x.svg
   [ "$status" -eq 2 ]
-  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --light 30,50 --size 32x20 -o bare.exr
+  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --light 30,50 --size 32x20 --samples 1 --effects auto,-rays -o bare.exr
   run plot-paint --hud bare.exr --paint candy_red "$paints" -o x.svg
   [ "$status" -eq 3 ]
   [[ "$output" =~ "aspecular" ]]
@@ -205,7 +205,7 @@ setup() {
 
 @test "--hud draws each ring of a ball as one closed line" {
   /usr/bin/python3 "$BATS_TEST_DIRNAME/hud_test.py" --ball >ball.obj
-  render-osmesa -q --mesh ball.obj --light 30,50 --size 480x300 --aov aspecular -o ball.exr
+  render-osmesa -q --mesh ball.obj --light 30,50 --size 480x300 --samples 1 --effects auto,-rays --aov aspecular -o ball.exr
   plot-paint -q --paint candy_red --hud ball.exr "$paints" -o ball.svg
   /usr/bin/python3 "$BATS_TEST_DIRNAME/hud_test.py" ball.exr ball.svg --closed
 }
