@@ -27,7 +27,7 @@ struct World {
     scene.mesh = &mesh;
     scene.paints.assign(mesh.parts.size(), paint);
     scene.env = &env;
-    view = {Camera::orbit(mesh, 30, 35, 1, 30, 1), 48, 48, 1, true};
+    view = {Camera::orbit(mesh, 30, 35, 1, 30, 1), 32, 32, 1, true};
   }
   World(const World&) = delete;
 };
@@ -187,7 +187,7 @@ TEST(RayEffects, SeveralSamplesAreCorrectedEach) {
 
 TEST(RayEffects, SelfAndBounceNeedShadow) {
   const World world(ball_in_a_cup());
-  const Plan forced = drawn(world, {Start::kNone, {{"bounce", true}}}, true).plan;
+  const Plan forced = drawn(world, {Start::kNone, {{"bounce", true}}}, true, 1, 20).plan;
   EXPECT_EQ(item(forced, "shadow").decision, Decision::kForcedOn);
   EXPECT_EQ(item(forced, "bounce").decision, Decision::kForcedOn);
   EXPECT_EQ(item(forced, "self").decision, Decision::kDropped);

@@ -147,10 +147,11 @@ Moments moments(const PathStage& stage, const Rays& through, int batches) {
 // behind the shade; with two rays from each group to each other it is 1.7 and 3.9.
 void expect_same_with_less_noise(PathStage& stage, const Rays& through, double times) {
   stage.build();
-  const Moments by_lobes = moments(stage, through, 1500);
+  constexpr int kBatches = 500;
+  const Moments by_lobes = moments(stage, through, kBatches);
   stage.transport->draw_toward(stage.transport->find_bright_places(12, 1));
   ASSERT_NE(stage.transport->bright_places(), nullptr);
-  const Moments by_places = moments(stage, through, 1500);
+  const Moments by_places = moments(stage, through, kBatches);
   EXPECT_LT(times * by_places.relative, by_lobes.relative);
   EXPECT_NEAR(by_places.mean, by_lobes.mean, 4 * std::hypot(by_places.error, by_lobes.error));
 }

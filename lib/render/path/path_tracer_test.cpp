@@ -326,7 +326,7 @@ TEST(PathPicture, PointsWithoutSamplesAreToldByTheirNeighbors) {
   const std::vector<VisibleSurface> samples = four_samples(*stage, camera, kWidth, kHeight);
   PathRequest request;
   request.options.bounces = 2;
-  request.tolerance_de00 = 0.5, request.seed = 9;
+  request.tolerance_de00 = 1, request.seed = 9;
   const PathPicture truth = path_picture(*stage->transport, samples, nullptr, request);
   request.reconstruct = true, request.tolerance_de00 = 0, request.most_samples = 8, request.seed = 1;
   const PathPicture dense = path_picture(*stage->transport, samples, nullptr, request);
