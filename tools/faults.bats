@@ -33,7 +33,7 @@ goniogeom-index -q one.xml --lights 30,45 --views as15,as45
 trompe-fit -q one.xml --angle 2
 colorsnap -q -l many.xml -k 3 one.xml
 relight -q --from D65 --to A $TESTDATA/outdoor.exr
-sketch-fit -q -i seen.png -b seen.exr
+sketch-fit -q -i seen.exr -b seen.exr
 paint-pick -q --face seen.png@40,25 --flop seen.png@60,30
 plot-paint -q --paint $name fitted.xml
 draw-plot -q table.csv
