@@ -95,7 +95,7 @@ void main() {
   float angle = degrees(atan(length(cross(r, toward)), dot(r, toward)));
   float pixel = clamp(fwidth(angle), 0.02, 3.0);
   color = vec4(0.0);
-  if (abs(point.w) != 1.0 || dot(point.xyz, toward) <= 0.0) return;  // the first row of weights is the paint
+  if ((int(abs(point.w)) & 7) != 1 || dot(point.xyz, toward) <= 0.0) return;  // the first row of weights is the paint
   if (angle < edge) {
     bool even = ((at.x / 6 + at.y / 6) & 1) == 0;
     color = over(color, vec3(even ? 1.0 : 0.0), 0.45);

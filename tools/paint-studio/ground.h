@@ -8,10 +8,10 @@
 
 namespace goniochrome::tool {
 
-// The part of its light that the ground keeps beside the mesh, per channel, on a square around the mesh and for several
-// turns of the environment. Members: size (texels along a side), turns, low[x, z] and side of the square, and texels,
-// of one byte a channel: 255 is all of the light. Null for an environment without a mirror part, from which the light
-// is taken.
+// The part of its light that the ground keeps beside the mesh, per channel, and the light that the mesh would send
+// there if it were white and matt, on a square around the mesh and for several turns of the environment. Members: size
+// (texels along a side), turns, low[x, z] and side of the square, and texels, of one byte a channel: 255 is all of the
+// light that the open ground has. Null for an environment without a mirror part, from which the light is taken.
 Json packed_ground(const rays::RayScene& scene, const mesh::Mesh& mesh, const envmap::PrefilteredEnvironment& env,
                    studio::PackedNumbers& numbers);
 

@@ -10,20 +10,21 @@ constexpr const char* kMoments = R"(uniform sampler2D moments_0, moments_1, mome
 uniform int moment_columns;  // of these pictures, which have a texel for each vertex; 0: nothing is lost
 out vec4 first;  // x y z, xx
 out vec4 second;  // yy zz xy yz
-out vec2 third;  // zx; the light that the other side loses
+out vec3 third;  // zx; the light that the other side loses; the share of lamps that is hidden
 void occlude() {
-  first = second = vec4(0.0), third = vec2(0.0);
+  first = second = vec4(0.0), third = vec3(0.0);
   if (moment_columns == 0) return;
   ivec2 at = ivec2(gl_VertexID % moment_columns, gl_VertexID / moment_columns);
-  first = texelFetch(moments_0, at, 0), second = texelFetch(moments_1, at, 0), third = texelFetch(moments_2, at, 0).xy;
+  first = texelFetch(moments_0, at, 0), second = texelFetch(moments_1, at, 0), third = texelFetch(moments_2, at, 0).xyz;
 }
 )";
 
 // The bands of spherical harmonics of what is lost about a direction: their zonal kernels are 2 l + 1 times the
 // Legendre polynomials.
 constexpr const char* kBands = R"(uniform vec2 turn;  // cosine and sine by which the environment was turned
+uniform float reach;  // 1 over a depth that no point has
 in vec4 first, second;
-in vec2 third;
+in vec3 third;
 layout(location = 1) out vec4 occlusion;
 vec3 bands(vec3 d) {
   d.xz = vec2(dot(turn, d.xz), turn.x * d.z - turn.y * d.x);
@@ -63,8 +64,10 @@ void main() {
   // Near an outline the smooth normal can look away from the viewer: the nearest that does not.
   float cos_o = dot(n, wo);
   if (cos_o < 1e-3) n = normalize(n + (1e-3 - cos_o) * wo);
-  gbuffer = vec4(n, side * float(part + 1));
-)" +
+  gbuffer = vec4(n, side * )" +
+         (on_page ? "(float(part + 1 + 8 * int(15.0 * clamp(third.z, 0.0, 1.0) + 0.5)) + reach / gl_FragCoord.w)"
+                  : "float(part + 1)") +
+         ");\n" +
          (on_page ? "  occlusion = vec4(dot(bands(n), vec3(1.0, 2.0 / 3.0, 0.25)), bands(2.0 * dot(n, wo) * n - wo));\n"
                     "  if (!gl_FrontFacing) occlusion = vec4(third.yy, 0.0, 0.0);\n}\n"
                   : "  triangle = uint(first + gl_PrimitiveID);\n}\n");

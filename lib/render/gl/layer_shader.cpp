@@ -13,8 +13,8 @@ std::string map_light_function(const Effects& effects, bool shaded) {
   std::string text = "\nvec4 map_light(vec3 r, int slot, vec3 n) {\n  vec3 light = vec3(0.0);\n";
   for (const LightLayer& layer : light_layers(effects)) {
     if (layer.of_lamps) continue;
-    std::string toward = layer.sampler == "diffuse" || layer.sampler == "coat_diffuse" ? "n" : "r";
-    if (layer.shift_slot >= 0) toward = fmt::format("r + W({}).{} * n", layer.shift_slot, "rgba"[layer.shift_channel]);
+    std::string toward = layer.exponent == kDiffusePart ? "n" : looking(shaded, layer.exponent);
+    if (layer.shift_slot >= 0) toward += fmt::format(" + W({}).{} * n", layer.shift_slot, "rgba"[layer.shift_channel]);
     text += fmt::format(
         "  if (slot == {}) light = {};\n", layer.slot,
         light_left(shaded, layer.exponent, fmt::format("textureLod({}, {}, 0.0).rgb", layer.sampler, toward)));
@@ -39,21 +39,22 @@ float lamp_light(vec3 r, int slot, vec3 l, vec3 n, vec3 wo, int light, vec2 seen
 }
 
 // Sums over the lamps for each of the layers.
-std::string lamp_layers(const Effects& effects) {
+std::string lamp_layers(const Effects& effects, bool shaded) {
   const WeightTable slots = slots_of(effects);
   // Layers of maps are drawn without going through the lamps.
   std::string text =
       fmt::format("  if (max(max(slots[0], slots[1]), max(slots[2], slots[3])) >= {0}) {{\n  index2 = W({0}).a;\n",
                   slots.light_slot()) +
       disc_loop(effects, "index2");
-  text += fmt::format(R"(    vec3 white = {} * light_white[i];
+  text += fmt::format(R"(    vec3 white = {}{} * light_white[i];
     vec2 let = vec2(seen.x, seen.y * {});
     for (int o = 0; o < {}; ++o) {{
       int slot = slots[o];
       float part = 0.0;
       if (slot == {}) part = seen.x;
 )",
-                      glsl(kPi), disc_fresnel(effects), kLayersAtOnce, slots.light_slot());
+                      shaded ? "(i < own_lamps ? 1.0 : lit) * " : "", glsl(kPi), disc_fresnel(effects), kLayersAtOnce,
+                      slots.light_slot());
   if (effects.mirror)
     text += fmt::format("      if (slot == {} && distance(r, l) <= disc.y) part = disc.z;\n", slots.lamp_mirror_slot());
   if (!effects.lobes.empty())
@@ -106,13 +107,14 @@ std::string gathering_fragment_shader(const Effects& effects, bool on_page) {
   if (projected_ground) text += ground_functions(effects);
   std::string beside, sums, written;
   for (int o = 0; o < kLayersAtOnce; ++o) {
-    beside += fmt::format("    layers[{0}] = slots[{0}] == {1} ? vec4(shown.rgb / scales[{0}], shown.a) : vec4(0.0);\n",
-                          o, kBesideLayer);
+    beside += fmt::format(
+        "    layers[{0}] = slots[{0}] == {1} ? vec4(shown.rgb / scales[{0}], shown.a) : vec4(sent / scales[{0}], "
+        "0.0);\n",
+        o, kBesideLayer);
     sums += fmt::format("{}vec4(0.0)", o == 0 ? "" : ", ");
     written += fmt::format("  layers[{0}] = sums[{0}] / scales[{0}];\n", o);
   }
-  text += start_of_main(effects, "",
-                        fmt::format("    vec4 shown = {};\n", background_color(effects, projected_ground)) + beside);
+  text += start_of_main(effects, on_page, "", background_colors(effects, projected_ground) + beside);
   if (shaded) text += occlusion_start(effects);
   text += tilt_frame(effects) + fmt::format("  vec4 sums[{0}] = vec4[{0}]({1});\n", kLayersAtOnce, sums);
   if (effects.environment) {
@@ -127,7 +129,7 @@ std::string gathering_fragment_shader(const Effects& effects, bool on_page) {
       text += "  " + whole;
     text += "  }\n";
   }
-  if (lamps) text += lamp_layers(effects);
+  if (lamps) text += lamp_layers(effects, shaded);
   return text + written + "}\n";
 }
 
@@ -143,11 +145,13 @@ uniform float scales[{0}], beside_scale;
 layout(location = 0) out vec4 color;
 )",
       kMostLayers);
-  text += std::string(kRays) + kWeight;
+  text += std::string(kRays) + kMeshColor + kWeight;
   if (effects.reflection) text += reflection_function(op);
-  text += start_of_main(effects, "  ivec2 at = ivec2(gl_FragCoord.xy);\n",
-                        "    vec4 shown = texelFetch(layers, ivec3(at, 0), 0);\n"
-                        "    color = vec4(beside_scale * shown.rgb, shown.a);\n");
+  text += start_of_main(
+      effects, true, "  ivec2 at = ivec2(gl_FragCoord.xy);\n",
+      "    vec4 shown = texelFetch(layers, ivec3(at, 0), 0);\n"
+      "    color = vec4(beside_scale * shown.rgb, shown.a);\n"
+      "    if (count > 0) color.rgb += mesh_color * scales[0] * texelFetch(layers, ivec3(at, used[0].y), 0).rgb;\n");
   return text + fmt::format(R"(  {0} products = {0}(0.0);
   for (int o = 0; o < count; ++o) {{
     vec3 light = scales[o] * texelFetch(layers, ivec3(at, used[o].y), 0).rgb;

@@ -75,10 +75,11 @@ std::string lobe_functions(const Effects& effects, bool shaded) {
     const WeightTable slots = slots_of(effects);
     for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
       const bool shifted = is_shifted(effects, effects.lobes[j].exponent);
-      const std::string toward = shifted ? fmt::format("r + W({}).{} * n", slots.shift_slot(j), "rgba"[j % 4]) : "r";
+      const std::string shift = shifted ? fmt::format(" + W({}).{} * n", slots.shift_slot(j), "rgba"[j % 4]) : "";
       text +=
           fmt::format("  sum += {};\n", product_with_map(effects, WeightTable::lobe_slot(j), fmt::format("lobe_{}", j),
-                                                         toward, effects.lobes[j].exponent, shaded));
+                                                         looking(shaded, effects.lobes[j].exponent) + shift,
+                                                         effects.lobes[j].exponent, shaded));
     }
     text += "  return sum;\n}\n";
   }
@@ -100,25 +101,27 @@ std::string lobe_functions(const Effects& effects, bool shaded) {
 // L = K_D pi P_1(n) + sum W_j P_Ej(r) + K_M F P_inf(r)
 std::string environment_terms(const Effects& effects, bool tilted, bool shaded) {
   std::string text = "\n  // the environment\n";
-  const auto term = [&](int slot, const char* map, const char* direction, double exponent) {
+  const auto term = [&](int slot, const char* map, const std::string& direction, double exponent) {
     text += fmt::format("  products += {};\n", product_with_map(effects, slot, map, direction, exponent, shaded));
   };
   if (effects.diffuse) term(WeightTable::diffuse_slot(), "diffuse", "n", kDiffusePart);
   if (effects.diffuse && effects.coat) term(slots_of(effects).coat_diffuse_slot(), "coat_diffuse", "n", kDiffusePart);
   if (!effects.lobes.empty()) text += over_tilts(effects, "products", "lobes", ", n");
-  if (effects.mirror) term(slots_of(effects).mirror_slot(), "mirror", "r", paint::kMirrorExponent);
+  if (effects.mirror)
+    term(slots_of(effects).mirror_slot(), "mirror", looking(shaded, paint::kMirrorExponent), paint::kMirrorExponent);
   if (tilted) text += "  products += tilted_lobes(r, n, wo);\n";
   return text;
 }
 
 // The end of a loop over lamps.
-std::string lit_sum(const Effects& effects) {
+std::string lit_sum(const Effects& effects, bool shaded) {
+  const char* share = shaded ? "(i < own_lamps ? 1.0 : lit) * " : "";
   return fmt::format("    products += {};\n  }}\n",
-                     product(effects, fmt::format("{} * {}", glsl(kPi), lamp_white(effects)), "reflected"));
+                     product(effects, fmt::format("{}{} * {}", share, glsl(kPi), lamp_white(effects)), "reflected"));
 }
 
 // The terms of discs, with their mirror images.
-std::string disc_terms(const Effects& effects) {
+std::string disc_terms(const Effects& effects, bool shaded) {
   std::string text = fmt::format(
       R"(
   // the lamps
@@ -133,12 +136,12 @@ std::string disc_terms(const Effects& effects) {
   if (effects.mirror)
     text += fmt::format("    if (distance(r, l) <= disc.y) reflected += disc.z * W({}).rgb;\n",
                         slots_of(effects).lamp_mirror_slot());
-  return text + lit_sum(effects);
+  return text + lit_sum(effects, shaded);
 }
 
 // The exact BRDF times cos_i, so that the gloss term's 1/cos_i is gone.
-std::string light_terms(const Effects& effects) {
-  if (effects.discs()) return disc_terms(effects);
+std::string light_terms(const Effects& effects, bool shaded) {
+  if (effects.discs()) return disc_terms(effects, shaded);
   std::string text = fmt::format(
       R"(
   // the lights
@@ -156,7 +159,7 @@ std::string light_terms(const Effects& effects) {
     const char* fresnel = lit_gloss(effects) ? "fresnel(sqrt(0.5 + 0.5 * dot(l, wo)))" : "1.0";
     text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, base, {}", fresnel));
   }
-  return text + lit_sum(effects);
+  return text + lit_sum(effects, shaded);
 }
 
 }  // namespace
@@ -186,13 +189,17 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   const bool projected_ground = on_page && effects.background == Background::kEnvironment;
   if (projected_ground) text += ground_functions(effects);
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
-  text += start_of_main(effects, "", fmt::format("    color = {};\n", background_color(effects, projected_ground)));
+  if (projected_ground) text += kMeshColor;
+  text += start_of_main(
+      effects, on_page, "",
+      background_colors(effects, projected_ground) +
+          (projected_ground ? "    color = shown + vec4(mesh_color * sent, 0.0);\n" : "    color = shown;\n"));
   text += fmt::format("  {0} products = {0}(0.0);\n", sum_type(effects));
   if (shaded) text += occlusion_start(effects);
   // 3. The sum of what the environment and the lights show.
   text += tilt_frame(effects);
   if (effects.environment) text += environment_terms(effects, !tilted.empty(), shaded);
-  if (effects.single_lights() > 0) text += light_terms(effects);
+  if (effects.single_lights() > 0) text += light_terms(effects, shaded);
   return text + fmt::format("  color = vec4({}, 1.0);\n}}\n", color_of(effects, "products"));
 }
 

@@ -15,6 +15,10 @@ namespace {
 
 constexpr double kSharpestBands = 8;  // exponent
 
+bool is_sharp(double exponent) {
+  return exponent > 2 * kSharpestBands;
+}
+
 }  // namespace
 
 std::string glsl(double value) {
@@ -142,40 +146,56 @@ std::string occlusion_functions() {
 }
 
 std::string occlusion_start(const Effects& effects) {
-  std::string text = "  occluded = texelFetch(occlusion, ivec2(gl_FragCoord.xy), 0);\n";
+  std::string text =
+      "  occluded = texelFetch(occlusion, ivec2(gl_FragCoord.xy), 0);\n"
+      "  lit = 1.0 - float(int(abs(point.w)) >> 3) / 15.0;\n";
   const auto off = [](const Effects::LobeUse& lobe) { return std::abs(std::log(lobe.exponent / kSharpestBands)); };
   const auto wide = std::ranges::min_element(effects.lobes, {}, off);
   if (wide == effects.lobes.end()) return text;
   const std::string map = fmt::format("textureLod(lobe_{}, r, 0.0).rgb", wide - effects.lobes.begin());
-  return text + fmt::format("  vec3 wide = {};\n  sharp = dot(luminance, {}) / max(dot(luminance, wide), 1e-6);\n", map,
-                            light_left(true, wide->exponent, "wide"));
+  text += fmt::format("  vec3 wide = {};\n  sharp = vec3(dot(luminance, {}) / max(dot(luminance, wide), 1e-6));\n", map,
+                      light_left(true, wide->exponent, "wide"));
+  return text + R"(  float depth = fract(abs(point.w)) / reach;  // 0 where no light is lost
+  vec3 from = ground_eye + depth * (corner + gl_FragCoord.x * right + gl_FragCoord.y * down);
+  if (depth > 0.0 && meets_ground(from, r)) {
+    vec3 at = on_ground(from, r);
+    sharp = kept_light(at).rgb;
+    ground_shift = normalize(at) - r;
+  }
+)";
 }
 
 std::string light_left(bool shaded, double exponent, const std::string& look_up) {
   if (!shaded) return look_up;
   if (exponent == kDiffusePart) return fmt::format("left({}, occluded.x)", look_up);
-  if (exponent > 2 * kSharpestBands) return "sharp * " + look_up;
+  if (is_sharp(exponent)) return "sharp * " + look_up;
   return fmt::format("left({}, vec2({}, {}))", look_up, glsl((exponent + 1) / (exponent + 2)),
                      glsl(exponent / (exponent + 3)));
+}
+
+std::string looking(bool shaded, double exponent) {
+  return shaded && is_sharp(exponent) ? "r + ground_shift" : "r";
 }
 
 std::string ground_functions(const Effects& effects) {
   return std::string(kProjectedGround) + (effects.lobes.size() <= kMostLobesOverShade ? kKeptLight : "");
 }
 
-std::string background_color(const Effects& effects, bool projected_ground) {
-  switch (effects.background) {
-    case Background::kEnvironment: {
-      const std::string seen = fmt::format("textureLod(mirror, {}, 0.0)", projected_ground ? "projected(-wo)" : "-wo");
-      const char* kept = projected_ground && effects.lobes.size() <= kMostLobesOverShade ? "kept_light(-wo) * " : "";
-      return fmt::format("vec4({}{}.rgb, 1.0)", kept, seen);
-    }
-    case Background::kColor:
-      return "vec4(background, 1.0)";
-    case Background::kNone:
-      break;
+std::string background_colors(const Effects& effects, bool projected_ground) {
+  std::string shown = "vec4(0.0)", sent = "vec3(0.0)";
+  if (effects.background == Background::kColor) shown = "vec4(background, 1.0)";
+  if (effects.background == Background::kEnvironment) shown = "vec4(textureLod(mirror, -wo, 0.0).rgb, 1.0)";
+  std::string before;
+  if (effects.background == Background::kEnvironment && projected_ground) {
+    const bool kept = effects.lobes.size() <= kMostLobesOverShade;
+    before = fmt::format(
+        "    bool ground = meets_ground(ground_eye, -wo);\n"
+        "    vec3 at = ground ? on_ground(ground_eye, -wo) : -wo, seen = textureLod(mirror, at, 0.0).rgb;\n{}",
+        kept ? "    vec4 kept = ground ? kept_light(at) : vec4(1.0, 1.0, 1.0, 0.0);\n" : "");
+    shown = kept ? "vec4(kept.rgb * seen, 1.0)" : "vec4(seen, 1.0)";
+    if (kept) sent = "kept.a * seen";
   }
-  return "vec4(0.0)";
+  return before + fmt::format("    vec4 shown = {};\n    vec3 sent = {};\n", shown, sent);
 }
 
 bool finds_lamps(const Effects& effects) {
@@ -233,7 +253,7 @@ std::string disc_fresnel(const Effects& effects) {
   return lit_gloss(effects) ? "fresnel(sqrt(max(0.5 + 0.5 * dot(l, wo), 0.0)))" : "1.0";
 }
 
-std::string start_of_main(const Effects& effects, const std::string& more, const std::string& beside) {
+std::string start_of_main(const Effects& effects, bool on_page, const std::string& more, const std::string& beside) {
   return fmt::format(R"(
 void main() {{
   vec4 point = texelFetch(gbuffer, ivec2(gl_FragCoord.xy), 0);
@@ -244,9 +264,10 @@ void main() {{
   vec3 n = point.xyz;
   float c = dot(n, wo);  // = n.r
   vec3 r = 2.0 * c * n - wo;
-  row = int(abs(point.w)) - 1;
+  row = {} - 1;
 {}{})",
-                     more, beside, row_of_view(effects), placed_lamp_start(effects));
+                     more, beside, on_page ? "(int(abs(point.w)) & 7)" : "int(abs(point.w))", row_of_view(effects),
+                     placed_lamp_start(effects));
 }
 
 std::string tilt_frame(const Effects& effects) {

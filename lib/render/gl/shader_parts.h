@@ -33,48 +33,52 @@ float let_in(float c, float index2) {
 }
 )";
 
-// The direction in which the eye of the environment, at 0, saw the place where a ray meets the ground; elsewhere the
-// ray's own direction.
-inline constexpr const char* kProjectedGround = R"(uniform vec3 ground_eye;
-uniform float ground_drop;
-vec3 projected(vec3 ray) {
-  float rise = ground_eye.y + ground_drop;
-  return ground_drop > 0.0 && rise > 0.0 && ray.y < 0.0 ? ground_eye - (rise / ray.y) * ray : ray;
+// The place where a ray meets the ground, from the eye of the environment, which is at 0 and saw it there.
+inline constexpr const char* kProjectedGround = R"(uniform vec3 ground_eye;  // the viewer
+uniform float ground_drop, reach;  // reach: see the G-buffer
+bool meets_ground(vec3 from, vec3 ray) {
+  return ground_drop > 0.0 && ray.y < 0.0 && from.y + ground_drop > -1e-3 * ground_drop;
 }
+vec3 on_ground(vec3 from, vec3 ray) { return from - max(from.y + ground_drop, 0.0) / ray.y * ray; }
 )";
 
-// The part of its light that the ground keeps beside the mesh, where a ray meets it. WebGL 2 promises 16 textures, so
-// that there is no room for it beside more lobes.
+// The part of its light that the ground keeps beside the mesh, where a ray meets it, and the light that a white matt
+// mesh sends there. WebGL 2 promises 16 textures, so that there is no room for it beside more lobes.
 inline constexpr std::size_t kMostLobesOverShade = 8;
 inline constexpr const char* kKeptLight = R"(uniform sampler2D ground_light;
 uniform vec3 ground_place;  // where its square begins, in x and z, and squares to a unit of length; 0 for none
 uniform vec2 ground_turn;  // cosine and sine by which the environment was turned
-vec3 kept_light(vec3 ray) {
-  vec3 at = projected(ray);
-  if (ground_place.z == 0.0 || at == ray) return vec3(1.0);
+vec4 kept_light(vec3 at) {
+  if (ground_place.z == 0.0) return vec4(1.0, 1.0, 1.0, 0.0);
   vec2 place = ground_place.z * (vec2(dot(ground_turn, at.xz), ground_turn.x * at.z - ground_turn.y * at.x) - ground_place.xy);
-  return place == clamp(place, 0.0, 1.0) ? texture(ground_light, place).rgb : vec3(1.0);
+  return place == clamp(place, 0.0, 1.0) ? texture(ground_light, place) : vec4(1.0, 1.0, 1.0, 0.0);
 }
 )";
+inline constexpr const char* kMeshColor = "uniform vec3 mesh_color;  // reflectance of the paint in even light\n";
 // The share of a lobe's light that the mesh and its ground leave on a page. `bands` are the bands 1 and 2 of the lobe
 // itself, about whose axis `occluded` holds the bands of the luminance that is lost; of the diffuse part it holds the
-// sum. Bands tell little of sharp lobes, which keep the share of a wider lobe.
+// sum. Bands tell little of sharp lobes: they see the ground where their axis meets it, and else keep the share of a
+// wider lobe.
 inline constexpr const char* kOcclusion = R"(uniform sampler2D occlusion;
 vec4 occluded;
-float sharp = 1.0;
+vec3 sharp = vec3(1.0), ground_shift = vec3(0.0);  // by which sharp lobes look beside r
+uniform int own_lamps;  // the first, which no shadow dims
+float lit = 1.0;  // of the light of other lamps
 vec3 left(vec3 light, float lost) { return light * clamp(1.0 - lost / max(dot(luminance, light), 1e-6), 0.0, 1.5); }
 vec3 left(vec3 light, vec2 bands) { return left(light, occluded.y + dot(bands, occluded.zw)); }
 )";
 std::string occlusion_functions();
-// A statement that takes the occlusion of a point, where r is known.
+// Statements that take the occlusion of a point, where r is known.
 std::string occlusion_start(const Effects& effects);
 // A look-up of the light of a lobe cos^E, whose bands are (E+1)/(E+2) and E/(E+3), of the mirror (infinite), or of the
 // diffuse part (kDiffusePart), less what is lost where the program is `shaded`.
 std::string light_left(bool shaded, double exponent, const std::string& look_up);
+// The direction in which a lobe about r looks.
+std::string looking(bool shaded, double exponent);
 constexpr double kDiffusePart = 0;
 // True if a page has room for the texture of occlusion too.
 inline bool is_shaded(const Effects& effects, bool on_page) {
-  return on_page && effects.lobes.size() < kMostLobesOverShade;
+  return on_page && effects.background == Background::kEnvironment && effects.lobes.size() < kMostLobesOverShade;
 }
 
 // The functions of a ground on which the environment may lie.
@@ -123,7 +127,7 @@ std::string reflection_function(const color::ReflectionOperator& op);
 
 // The start of main(): at points beside the mesh the program does what `beside` says and returns; of others it finds n,
 // c = n.wo, r, and where the weights are. `more` stands before both.
-std::string start_of_main(const Effects& effects, const std::string& more, const std::string& beside);
+std::string start_of_main(const Effects& effects, bool on_page, const std::string& more, const std::string& beside);
 
 // The frame of the tilted normals of a brushed surface; nothing without the effect.
 std::string tilt_frame(const Effects& effects);
@@ -131,7 +135,8 @@ std::string tilt_frame(const Effects& effects);
 std::string over_tilts(const Effects& effects, const std::string& sum, const std::string& function,
                        const std::string& more);
 
-// The color of a ray that meets nothing.
-std::string background_color(const Effects& effects, bool projected_ground);
+// Statements that find what a ray shows that meets nothing: `shown`, and `sent`, the light of the ground from a white
+// matt mesh, to which paints send their reflectance of it.
+std::string background_colors(const Effects& effects, bool projected_ground);
 
 }  // namespace goniochrome::render

@@ -65,6 +65,7 @@ async function main() {
   await variant("groundless", "app.stage.ground = false;", "app.stage.ground = true;");
   await variant("shadeless", "window.shade = app.data.environments[app.stageView.environment].ground_light; delete app.data.environments[app.stageView.environment].ground_light;",
                 "app.data.environments[app.stageView.environment].ground_light = window.shade;");
+  await variant("unsent", "weights.meshColor = [0, 0, 0];", "");
   // With the shadow of the mesh on itself, and with the shadows that the page finds by itself.
   await browser.evaluate("studio.stage.occlusion.columns = vertexColumns");
   await variant("shaded", "", "");

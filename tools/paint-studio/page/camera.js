@@ -64,7 +64,7 @@ function projected(camera, width, height, box, shift) {
   const z = scaled(forward, (far + near) / (far - near)), e = camera.eye;
   const clip = [0, 1, 2].flatMap((axis) => [x[axis], y[axis], z[axis], forward[axis]]);
   clip.push(-dotted(x, e), -dotted(y, e), -dotted(z, e) - (2 * far * near) / (far - near), -dotted(forward, e));
-  return { corner, right: scaled(right, pixel), down: scaled(down, pixel), clip: new Float32Array(clip) };
+  return { corner, right: scaled(right, pixel), down: scaled(down, pixel), clip: new Float32Array(clip), reach: 1 / far };
 }
 
 // Where the samples of a pixel lie: a grid turned so that no two share a row or a column.

@@ -174,6 +174,7 @@ class GatheredLight {
     });
     gl.activeTexture(gl.TEXTURE0);
     for (const one of ["corner", "right", "down"]) gl.uniform3fv(program.at(one), gbuffer.view[one]);
+    gl.uniform3fv(program.at("mesh_color"), weights.meshColor);
     gl.uniform1i(program.at("count"), list.length);
     gl.uniform1f(program.at("beside_scale"), held.scales.get(this.layers.beside));
     if (list.length > 0) {

@@ -65,6 +65,7 @@ layout(location = 0) out uvec4 seen;
 void main() { seen = uvec4(bits); }
 `;
 const ofLight = `
+const vec3 luminance = vec3(0.2627, 0.678, 0.0593);  // of Rec.2020
 uniform vec3 around[${aroundCount}];
 uniform usampler2D seen;
 uniform samplerCube light;
@@ -73,17 +74,20 @@ vec3 shine(vec3 d) {
   return textureLod(light, vec3(turn.x * d.x - turn.y * d.z, d.y, turn.y * d.x + turn.x * d.z), 0.0).rgb;
 }
 `;
-const lossVertex = `${occlusionHead}${ofLight}
-const vec3 luminance = vec3(0.2627, 0.678, 0.0593);  // of Rec.2020
+const ofLamps = `
+uniform int lamps;
+uniform vec3 lamp_toward[${atOnce}], lamp_white[${atOnce}];
+`;
+const lossVertex = `${occlusionHead}${inTiles}${ofLight}${ofLamps}
 uniform sampler2D ground_light;
 uniform vec3 ground_place, seen_from;
 uniform float ground_height;
 flat out vec4 first, second;
-flat out vec2 third;
+flat out vec3 third;
 void main() {
 ${inTexel}
   first = second = vec4(0.0);
-  third = vec2(0.0);
+  third = vec3(0.0);
   uvec4 all = texelFetch(seen, texel, 0);
   for (int i = 0; i < ${aroundCount}; ++i) {
     vec3 d = around[i];
@@ -108,21 +112,27 @@ ${inTexel}
     second += lost * vec4(d.yz * d.yz + other.yz * other.yz, d.x * d.y + other.x * other.y, d.y * d.z + other.y * other.z);
     third.x += lost * (d.z * d.x + other.z * other.x);
   }
+  vec3 p = position + 6.0 / (${tile}.0 * ball.w) * normal;
+  float whole = 0.0;
+  for (int i = 0; i < lamps; ++i) {
+    float given = max(dot(lamp_toward[i], normal), 0.0) * dot(luminance, lamp_white[i]);
+    whole += given;
+    if (lamp_toward[i].y < 0.0 || is_hidden(p, lamp_toward[i], i)) third.z += given;
+  }
+  third.z /= max(whole, 1e-9);
 }
 `;
 const lossFragment = `#version 300 es
 precision highp float;
 flat in vec4 first, second;
-flat in vec2 third;
+flat in vec3 third;
 layout(location = 0) out vec4 moments_0;
 layout(location = 1) out vec4 moments_1;
 layout(location = 2) out vec4 moments_2;
-void main() { moments_0 = first, moments_1 = second, moments_2 = vec4(third, 0, 0); }
+void main() { moments_0 = first, moments_1 = second, moments_2 = vec4(third, 0); }
 `;
 // The part of its light that a place of the ground keeps. Neighbors smooth the few directions; lamps are looked up by themselves.
-const groundVertex = `${occlusionHead}${inTiles}${ofLight}
-uniform int lamps;
-uniform vec3 lamp_toward[${atOnce}], lamp_white[${atOnce}];
+const groundVertex = `${occlusionHead}${inTiles}${ofLight}${ofLamps}
 flat out vec3 kept;
 void main() {
 ${inTexel}
@@ -153,7 +163,7 @@ const groundFragment = `#version 300 es
 precision highp float;
 flat in vec3 kept;
 layout(location = 0) out vec4 color;
-void main() { color = vec4(kept, 1.0); }
+void main() { color = vec4(kept, 0.0); }  // light that the mesh sends is not found
 `;
 
 class Occlusion {
@@ -289,13 +299,25 @@ class Occlusion {
     this.keys[what] = [environment, stage.turn];
     return this.keys[what].join();
   }
+  // Draws the depths of the mesh as lamps see it, where their light is to be taken; returns what sets them in a program.
+  lamps(what, environment, program) {
+    const { stage } = this, { gl } = stage, lamps = stage.data.environments[environment].lamps.slice(0, atOnce), toward = lamps.map(({ direction }) => turnedAgainst(direction, -stage.turn));
+    if (!this.has(what, environment)) toward.forEach((direction, i) => this.drawDepth(direction, i));
+    return () => {
+      gl.uniform1i(program.at("lamps"), lamps.length);
+      if (lamps.length > 0) gl.uniform3fv(program.at("lamp_toward[0]"), toward.flat());
+      if (lamps.length > 0) gl.uniform3fv(program.at("lamp_white[0]"), lamps.flatMap(({ white }) => white));
+    };
+  }
   // The moments of the light that is lost in an environment; returns the name of their state.
   takeLoss(environment) {
     const { stage } = this, { gl } = stage;
     if (this.columns === 0 || !stage.ground || !stage.data.environments[environment].cubes.some(({ sampler }) => sampler === this.sampler)) return "none";
     const { texture, place } = stage.groundShade(environment), program = (this.lossProgram ??= stage.program(lossVertex, lossFragment));
     this.moments ??= this.picture(this.mesh, gl.RGBA16F, 3);
-    return this.take("mesh", environment, program, this.mesh, this.moments, around, [["ground_light", gl.TEXTURE_2D, texture ?? this.depths.texture]], () => {
+    const setLamps = this.lamps("mesh", environment, program);
+    return this.take("mesh", environment, program, this.mesh, this.moments, around, [["ground_light", gl.TEXTURE_2D, texture ?? this.depths.texture], ["depths", gl.TEXTURE_2D, this.depths.depth]], () => {
+      setLamps();
       gl.uniform3fv(program.at("ground_place"), place);
       gl.uniform3fv(program.at("seen_from"), stage.data.mesh.ground.seen_from);
       gl.uniform1f(program.at("ground_height"), stage.mesh.low[1]);
@@ -303,14 +325,8 @@ class Occlusion {
   }
   // The shadow on the ground, which is known: {texture, low, side}.
   groundLight(environment) {
-    const { stage, ground } = this, { gl } = stage, lamps = stage.data.environments[environment].lamps.slice(0, atOnce), program = (this.groundProgram ??= stage.program(groundVertex, groundFragment));
-    const toward = lamps.map(({ direction }) => turnedAgainst(direction, -stage.turn));
-    if (!this.has("ground", environment)) toward.forEach((direction, i) => this.drawDepth(direction, i));
-    this.take("ground", environment, program, ground, ground.shade, above, [["depths", gl.TEXTURE_2D, this.depths.depth]], () => {
-      gl.uniform1i(program.at("lamps"), lamps.length);
-      if (lamps.length > 0) gl.uniform3fv(program.at("lamp_toward[0]"), toward.flat());
-      if (lamps.length > 0) gl.uniform3fv(program.at("lamp_white[0]"), lamps.flatMap(({ white }) => white));
-    });
+    const { stage, ground } = this, { gl } = stage, program = (this.groundProgram ??= stage.program(groundVertex, groundFragment));
+    this.take("ground", environment, program, ground, ground.shade, above, [["depths", gl.TEXTURE_2D, this.depths.depth]], this.lamps("ground", environment, program));
     return { texture: ground.shade.textures[0], low: ground.low, side: ground.side };
   }
 }

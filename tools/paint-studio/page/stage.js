@@ -116,7 +116,17 @@ class Stage {
     if (made.tilts) gl.deleteTexture(made.tilts);
     const brushed = tilts.length > 4;
     made.tilts = brushed ? this.tiltTexture(tilts) : null;
-    return Object.assign(made, { values, tiltValues: brushed ? tilts : null, version: ++this.versions });
+    return Object.assign(made, { values, tiltValues: brushed ? tilts : null, version: ++this.versions, meshColor: this.reflectance(values) });
+  }
+  // The part of even light that a surface of these weights reflects, over all views.
+  reflectance(values) {
+    const { layers, segments, numbersAt } = this.gathered, slots = layers.list.filter(({ lamps }) => !lamps).map(({ slot }) => slot), sum = [0, 0, 0];
+    for (let segment = 0; segment < segments; ++segment) {
+      const root = (segment + 0.5) / segments, share = segments > 1 ? (4 * root ** 3) / segments : 1, t = segments > 1 ? 0.5 : 2 / 3;  // 2 c dc, where c = root^2
+      for (const slot of slots)
+        for (const c of [0, 1, 2]) sum[c] += share * (values[numbersAt(slot, segment) + c] + t * values[numbersAt(slot, segment) + 4 + c]);
+    }
+    return sum;
   }
   // The tilts of a brushed paint; finishes have their own normal alone.
   tiltTexture(tilts) {
@@ -251,6 +261,7 @@ class Stage {
     gl.uniform2fv(program.at("turn"), this.turnVector);
     gl.uniformMatrix4fv(program.at("clip"), false, view.clip);
     for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), view[name]);
+    gl.uniform1f(program.at("reach"), light === "none" ? 0 : view.reach);
     gl.bindVertexArray(this.meshVertices);
     for (const part of this.shownParts) {
       gl.uniform1i(program.at("part"), part.row);
@@ -289,7 +300,7 @@ class Stage {
     return target;
   }
   // Chooses a program of shading(), with all that it reads.
-  useShading(gbuffer, { texture, tilts }, environment, program) {
+  useShading(gbuffer, { texture, tilts, meshColor }, environment, program) {
     const gl = this.gl, made = this.environment(environment);
     gl.useProgram(program.program);
     let unit = 0;
@@ -308,8 +319,11 @@ class Stage {
     const { seen_from, drop } = this.data.mesh.ground, shade = this.groundShade(environment);
     gl.uniform3fv(program.at("ground_eye"), turnedAgainst(added(gbuffer.view.eye, seen_from, -1), this.turn));
     gl.uniform1f(program.at("ground_drop"), this.ground ? drop : 0);
+    gl.uniform1f(program.at("reach"), gbuffer.view.reach);
+    gl.uniform1i(program.at("own_lamps"), this.lamp ? 1 : 0);
     bind("ground_light", gl.TEXTURE_2D, shade.texture ?? gbuffer.texture);
     gl.uniform3fv(program.at("ground_place"), shade.place);
+    gl.uniform3fv(program.at("mesh_color"), meshColor);
     gl.uniform2fv(program.at("ground_turn"), this.turnVector);
     for (const [uniform, member] of [["light_direction", "direction"], ["light_white", "white"], ["light_disc", "disc"]])
       if (program.lamps.length > 0) gl.uniform3fv(program.at(uniform + "[0]"), program.lamps.flatMap((lamp) => lamp[member]));
@@ -457,7 +471,7 @@ class Stage {
     if (values[at + 3] === 0) return null;
     const { corner, right, down } = gbuffer.view;
     const ray = added(added(corner, right, column + 0.5), down, row + 0.5);
-    return { normal: [...values.subarray(at, at + 3)], wo: scaled(unit(ray), -1), painted: Math.abs(values[at + 3]) === 1 };
+    return { normal: [...values.subarray(at, at + 3)], wo: scaled(unit(ray), -1), painted: (Math.abs(values[at + 3]) & 7) === 1 };
   }
 
   // The parts wear other rows than before. `second` has the weights of the second paint, where there is one.
