@@ -1,8 +1,8 @@
 #include "brdf/flake_tree.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <vector>
 
 #include "math/elementary.h"
 
@@ -10,17 +10,15 @@ namespace goniochrome::brdf {
 
 namespace {
 
-// The mean count of a tile, the side of which is a power of two of a meter. The count of a box is its mean beyond so
-// many tiles: there the relative deviation of all flakes is below 2e-4.
-constexpr double kOfTile = 1 << 16;
+// The mean count of a tile of all flakes, and of one of a range of tilts, of which a box holds few. The count of a box
+// is its mean beyond so many tiles.
+constexpr double kOfTile = 4096, kOfTiltedTile = 6;
 constexpr double kMostTiles = 512;
 // A node of no more flakes places them one by one.
-constexpr double kFew = 8;
+constexpr double kFew = 16;
 // A node of more flakes than these is not split any more where it is no wider than that many times the box.
 constexpr double kMany = 32, kNarrow = 2;
-// In a node of more flakes than these the box may be narrower in tilts, which are not split any more.
-constexpr double kVeryMany = 1024;
-constexpr int kMostTiltSplits = 12;
+constexpr double kMostCells = 64;  // of tilts, in each coordinate
 // Means up to here are drawn by summing probabilities; the others by the normal quantile with its skewness.
 constexpr double kSummed = 24;
 
@@ -36,11 +34,26 @@ double unit(std::uint64_t bits) {
 }
 
 // The normal quantile by a rational approximation with an absolute error of 4.5e-4.
-double normal_quantile(double u) {
+double computed_quantile(double u) {
   const double p = std::min(u, 1 - u), t = std::sqrt(-2 * math::log(p));
   const double x =
       t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
   return u < 0.5 ? -x : x;
+}
+
+// The same from a table, apart from the tails.
+double normal_quantile(double u) {
+  constexpr int kSteps = 1024, kEnd = 16;
+  static const std::array<double, kSteps + 1> table = [] {
+    std::array<double, kSteps + 1> quantiles{};
+    for (int i = kEnd; i <= kSteps - kEnd; ++i)
+      quantiles[static_cast<std::size_t>(i)] = computed_quantile(1.0 * i / kSteps);
+    return quantiles;
+  }();
+  const double at = u * kSteps;
+  if (!(at >= kEnd && at < kSteps - kEnd)) return computed_quantile(u);
+  const auto step = static_cast<std::size_t>(at);
+  return table[step] + (at - static_cast<double>(step)) * (table[step + 1] - table[step]);
 }
 
 // A count of this mean, variance and skewness: the first terms of Cornish and Fisher.
@@ -49,26 +62,28 @@ double near_normal(double mean, double variance, double skewness, double u) {
   return std::max(0.0, std::round(mean + std::sqrt(variance) * (z + skewness * (z * z - 1) / 6)));
 }
 
+// The number of bits that are 1. Without an instruction for it, std::popcount calls a function that looks up bytes.
+int ones(std::uint64_t bits) {
+  bits -= (bits >> 1) & 0x5555555555555555U;
+  bits = (bits & 0x3333333333333333U) + ((bits >> 2) & 0x3333333333333333U);
+  return static_cast<int>((((bits + (bits >> 4)) & 0x0F0F0F0F0F0F0F0FU) * 0x0101010101010101U) >> 56);
+}
+
 // The flakes of a node in one half: as many as random bits are 1, a binomial draw. Of very many flakes, a
 // sum of 256 bits, dithered by half a bit, stands for the normal deviate.
 double half_of(double count, std::uint64_t key) {
   if (count > 512) {
     double sum = unit(mixed(key, 7)) - 128.5;
-    for (std::uint64_t word = 0; word < 4; ++word) sum += std::popcount(mixed(key, 8 + word));
+    for (std::uint64_t word = 0; word < 4; ++word) sum += ones(mixed(key, 8 + word));
     constexpr double kDeviation = 8.005206;  // the root of 256/4 + 1/12
     return std::clamp(std::round(0.5 * count + 0.5 * std::sqrt(count) * sum / kDeviation), 0.0, count);
   }
   int left = static_cast<int>(count), sum = 0;
   for (std::uint64_t word = 0; left > 0; ++word, left -= 64) {
     const std::uint64_t bits = mixed(key, 8 + word);
-    sum += std::popcount(left >= 64 ? bits : bits >> (64 - left));
+    sum += ones(left >= 64 ? bits : bits >> (64 - left));
   }
   return sum;
-}
-
-// An even number.
-int tilt_splits_of(double tilts) {
-  return 2 * static_cast<int>(std::clamp(-0.5 * math::log(tilts) / math::log(2), 0.0, 0.5 * kMostTiltSplits));
 }
 
 }  // namespace
@@ -96,171 +111,167 @@ double binomial_draw(double count, double part, double u) {
   return drawn;
 }
 
-// A box of flakes in units of a tile: place, place, tilt, tilt.
-struct FlakeTree::Corners {
-  std::array<double, 4> low, high;
-
-  bool holds(const std::array<double, 5>& flake) const {
-    for (std::size_t d = 0; d < 3; ++d)
-      if (flake[d] < low[d] || flake[d] >= high[d]) return false;
-    return (flake[3] >= low[3] && flake[3] < high[3]) || flake[3] + 1 < high[3];
-  }
-};
-
-// A box of the tree in units of its tile: place, place, tilt, tilt.
-struct FlakeTree::Node {
-  std::array<double, 4> low = {0, 0, 0, 0}, size = {1, 1, 1, 1};
-  double count = 0;
-  std::uint64_t key = 0;
-  int tilt_splits = 0, depth = 0;
-
-  // The part of it that lies between two values in that dimension. Angles come again after a turn.
-  double overlap(std::size_t d, const Corners& box) const {
-    const auto part = [&](double at) {
-      return std::clamp((std::min(box.high[d], at + size[d]) - std::max(box.low[d], at)) / size[d], 0.0, 1.0);
-    };
-    return part(low[d]) + (d == 3 ? part(low[d] + 1) : 0);
-  }
-  double overlap(const Corners& box) const {
-    return overlap(0, box) * overlap(1, box) * overlap(2, box) * overlap(3, box);
-  }
-  std::array<Node, 2> halves() const {
-    const std::size_t d = static_cast<std::size_t>(depth & 1) + (depth < tilt_splits ? 2 : 0);
-    std::array<Node, 2> halves = {*this, *this};
-    const double left = half_of(count, key);
-    for (std::size_t i = 0; i < 2; ++i) {
-      Node& half = halves[i];
-      half.size[d] *= 0.5;
-      if (i == 1) half.low[d] += half.size[d];
-      half.count = i == 0 ? left : count - left;
-      half.key = mixed(key, 2 + i);
-      ++half.depth;
-    }
-    return halves;
-  }
-  // Where its flake of that number lies, and the number in [0,1) that decides whether it is shown.
-  std::array<double, 5> flake(int number) const {
-    std::array<double, 5> at{};
-    const std::uint64_t own = mixed(key, 64 + static_cast<std::uint64_t>(number));
-    for (std::size_t d = 0; d < 5; ++d) at[d] = unit(mixed(own, d));
-    for (std::size_t d = 0; d < 4; ++d) at[d] = low[d] + size[d] * at[d];
-    return at;
-  }
-};
-
 namespace {
 
-// The flakes of a node within a box, and those of them within a narrower range of turns: those of a small node over the
-// edge of the box by binomial draws, since they are even in the node, first by place and then by tilt; all others one
-// by one.
-template <class Node, class Corners>
-FlakeCounts counted(const Node& node, const Corners& box, const Corners& inner, double shown) {
-  if (node.count == 0 || node.overlap(box) == 0) return {};
-  FlakeCounts sum;
-  if (node.count <= kFew) {
-    for (int i = 0; i < static_cast<int>(node.count); ++i) {
-      const std::array<double, 5> flake = node.flake(i);
-      if (!(flake[4] < shown) || !box.holds(flake)) continue;
-      sum += {1, inner.holds(flake) ? 1.0 : 0};
+// Poisson draws of one mean by inversion, which a table begins near their end.
+class TileCounts {
+ public:
+  explicit TileCounts(double mean) {
+    const double reach = 8 * std::sqrt(mean) + 8;
+    first_ = std::max(0.0, std::floor(mean - reach));
+    double sum = 0;
+    for (double count = first_; count <= mean + reach; ++count)
+      cumulated_.push_back(sum += math::exp(count * math::log(mean) - mean - std::lgamma(count + 1)));
+    for (std::size_t i = 0, count = 0; i < starts_.size(); ++i) {
+      while (cumulated_[count] < static_cast<double>(i) / kStarts) ++count;
+      starts_[i] = count;
     }
-    return sum;
   }
-  bool narrow = node.count > kMany;
-  std::uint64_t window = 4;  // of tilts that are narrower than a node: the draw is another one where they move
-  for (std::size_t d = 0; d < 4 && narrow; ++d) {
-    const double wide = box.high[d] - box.low[d];
-    if (node.size[d] <= kNarrow * wide || node.overlap(d, box) >= 1) continue;
-    narrow = d > 1 && node.depth >= node.tilt_splits && node.count > kVeryMany;
-    window = mixed(window, static_cast<std::uint64_t>(box.low[d] / wide));
+  double at(double u) const {
+    std::size_t count = starts_[static_cast<std::size_t>(u * kStarts)];
+    while (count + 1 < cumulated_.size() && cumulated_[count] < u) ++count;
+    return first_ + static_cast<double>(count);
   }
-  if (!narrow) {
-    for (const Node& half : node.halves()) sum += counted(half, box, inner, shown);
-    return sum;
-  }
-  const double turns = node.overlap(3, box);
-  const auto drawn = [&](double count, double part, std::uint64_t number) {
-    return binomial_draw(count, part, unit(mixed(node.key, number)));
-  };
-  const double placed = drawn(node.count, node.overlap(0, box) * node.overlap(1, box) * shown, 6);
-  sum.all = drawn(placed, node.overlap(2, box) * turns, window);
-  sum.inner = drawn(sum.all, node.overlap(3, inner) / turns, 3);
-  return sum;
+
+ private:
+  static constexpr int kStarts = 256;
+  double first_ = 0;
+  std::vector<double> cumulated_;
+  std::array<std::size_t, kStarts> starts_{};
+};
+
+double tile_count(bool tilted, double u) {
+  static const TileCounts all(kOfTile), some(kOfTiltedTile);
+  return (tilted ? some : all).at(u);
 }
 
-template <class Node, class Corners, class Visit>
-void enumerate(const Node& node, const Corners& box, const Visit& visit) {
-  if (node.count == 0 || node.overlap(box) == 0) return;
-  if (node.count > kFew) {
-    for (const Node& half : node.halves()) enumerate(half, box, visit);
+// A range of tilts in units of a cell of tilts. A range of turns that comes again to the cell has those below `again`
+// too.
+struct Window {
+  std::array<double, 2> low = {0, 0}, high = {1, 1};
+  double again = 0;
+
+  double part() const {
+    const auto overlap = [&](std::size_t d) {
+      return std::max(0.0, std::min(high[d], 1.0) - std::max(low[d], 0.0));
+    };
+    return overlap(0) * (overlap(1) + again);
+  }
+};
+
+// A node of the tree, which is a unit square, and a box in units of it.
+struct Node {
+  std::uint64_t key = 0;
+  double count = 0;
+  int depth = 0;
+  std::array<double, 2> low = {}, high = {};
+
+  double overlap(std::size_t d) const { return std::max(0.0, std::min(high[d], 1.0) - std::max(low[d], 0.0)); }
+};
+
+// Flakes that are shown: those counted one by one or drawn, and those of whole nodes, of which a part is yet to be
+// drawn.
+struct Shown {
+  double counted = 0, whole = 0;
+  std::uint64_t key = 0;  // of the first whole node
+};
+
+// A range of a coordinate that has 16 bits.
+struct Range {
+  unsigned low, width;
+
+  Range(double from, double to) : low(step(from)), width(step(to) - low) {}
+  static unsigned step(double at) { return static_cast<unsigned>(65536 * std::clamp(at, 0.0, 1.0) + 0.5); }
+  bool holds(std::uint64_t at) const { return static_cast<unsigned>(at & 0xFFFF) - low < width; }
+};
+
+// Adds the flakes of a node within a box and a window, of which some are shown: those of a small node over the edge of
+// the box by binomial draws, since they are even in the node; those of a node with few of them one by one.
+void count_node(const Node& node, const Window& window, double shown, Shown& sum) {
+  const double x = node.overlap(0), y = node.overlap(1);
+  if (node.count <= kFew) {
+    const Range columns(node.low[0], node.high[0]), rows(node.low[1], node.high[1]),
+        tilts(window.low[0], window.high[0]), turns(window.low[1], window.high[1]), again(0, window.again);
+    for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(node.count); ++i) {
+      const std::uint64_t own = mixed(node.key, 64 + i);
+      if (static_cast<int>(columns.holds(own)) & static_cast<int>(rows.holds(own >> 16)) &
+          static_cast<int>(tilts.holds(own >> 32)) &
+          (static_cast<int>(turns.holds(own >> 48)) | static_cast<int>(again.holds(own >> 48))))
+        sum.counted += unit(mixed(own, 0)) < shown ? 1 : 0;
+    }
     return;
   }
-  for (int i = 0; i < static_cast<int>(node.count); ++i) {
-    const std::array<double, 5> flake = node.flake(i);
-    if (box.holds(flake)) visit(flake);
+  if (x * y >= 1) {
+    if (sum.whole == 0) sum.key = node.key;
+    sum.whole += node.count;
+    return;
   }
+  const auto narrow = [&](std::size_t d, double part) {
+    return part >= 1 || kNarrow * (node.high[d] - node.low[d]) >= 1;
+  };
+  if (node.count > kMany && narrow(0, x) && narrow(1, y)) {
+    sum.counted += binomial_draw(node.count, x * y * window.part() * shown, unit(mixed(node.key, 6)));
+    return;
+  }
+  const auto d = static_cast<std::size_t>(node.depth & 1);
+  double left = -1;
+  for (int i = 0; i < 2; ++i) {
+    Node half = node;
+    half.low[d] = 2 * node.low[d] - i, half.high[d] = 2 * node.high[d] - i;
+    if (half.overlap(d) == 0) continue;
+    if (left < 0) left = half_of(node.count, node.key);
+    half.count = i == 0 ? left : node.count - left;
+    half.key = mixed(node.key, 2 + static_cast<std::uint64_t>(i));
+    ++half.depth;
+    count_node(half, window, shown, sum);
+  }
+}
+
+std::uint64_t bits(double number) {
+  return static_cast<std::uint64_t>(static_cast<std::int64_t>(number));
 }
 
 }  // namespace
 
 FlakeTree::FlakeTree(double density, std::uint64_t seed, double tilts)
-    : density_(density), tile_m_(1), seed_(seed), tilt_splits_(tilt_splits_of(tilts)) {
-  if (density > 0)
-    tile_m_ = std::ldexp(1.0, static_cast<int>(std::lround(0.5 * math::log(kOfTile / density) / math::log(2))));
+    : density_(density),
+      tile_m_(1),
+      seed_(seed),
+      cells_(std::clamp(std::floor(1 / std::sqrt(tilts)), 1.0, kMostCells)) {
+  const double of_cell = density / (cells_ * cells_);
+  if (density > 0) tile_m_ = std::sqrt((cells_ > 1 ? kOfTiltedTile : kOfTile) / of_cell);
 }
 
-FlakeTree::Node FlakeTree::root(std::int64_t column, std::int64_t row) const {
-  Node node;
-  node.tilt_splits = tilt_splits_;
-  node.key = mixed(mixed(seed_, static_cast<std::uint64_t>(column)), static_cast<std::uint64_t>(row));
-  node.count = poisson_draw(density_ * tile_m_ * tile_m_, unit(mixed(node.key, 5)));
-  return node;
-}
-
-// The tiles that the box meets, with its corners in units of each.
-template <class Visit>
-void FlakeTree::visit_tiles(const FlakeBox& box, const Visit& visit) const {
-  const double turn = box.tilt[1] - std::floor(box.tilt[1]);
-  std::array<std::int64_t, 2> first{}, last{};
-  for (std::size_t d = 0; d < 2; ++d) {
-    first[d] = static_cast<std::int64_t>(std::floor(box.place[d] / tile_m_));
-    last[d] = static_cast<std::int64_t>(std::floor((box.place[d] + box.size[d]) / tile_m_));
-  }
-  for (std::int64_t row = first[1]; row <= last[1]; ++row) {
-    for (std::int64_t column = first[0]; column <= last[0]; ++column) {
-      const double x = box.place[0] / tile_m_ - static_cast<double>(column),
-                   y = box.place[1] / tile_m_ - static_cast<double>(row);
-      visit(root(column, row),
-            Corners{{x, y, box.tilt[0], turn},
-                    {x + box.size[0] / tile_m_, y + box.size[1] / tile_m_, box.tilt[0] + box.tilts[0],
-                     turn + std::min(1.0, box.tilts[1])}},
-            column, row);
+double FlakeTree::count(const FlakeBox& box) const {
+  const double mean = density_ * box.area() * box.part();
+  if (!(mean > 0)) return 0;
+  if (!(box.area() < kMostTiles * tile_m_ * tile_m_)) return mean;
+  const bool all_turns = box.tilts[1] >= 1;
+  const double turn = all_turns ? 0 : cells_ * (box.tilt[1] - std::floor(box.tilt[1])),
+               turned = turn + cells_ * (all_turns ? 1 : box.tilts[1]), tilt = cells_ * box.tilt[0],
+               tilted = tilt + cells_ * box.tilts[0];
+  std::array<double, 2> low{}, high{};
+  for (std::size_t d = 0; d < 2; ++d) low[d] = box.place[d] / tile_m_, high[d] = low[d] + box.size[d] / tile_m_;
+  double sum = 0;
+  for (double i = std::floor(tilt); i < std::min(tilted, cells_); ++i) {
+    for (double j = std::floor(turn); j < std::min(turned, std::floor(turn) + cells_); ++j) {
+      const Window window{
+          {tilt - i, turn - j}, {tilted - i, turned - j}, std::clamp(turned - j - cells_, 0.0, 1.0)};
+      Shown of_cell;
+      const std::uint64_t cell = mixed(seed_, bits(i * cells_ + (j < cells_ ? j : j - cells_)));
+      for (double row = std::floor(low[1]); row < high[1]; ++row) {
+        for (double column = std::floor(low[0]); column < high[0]; ++column) {
+          Node tile{mixed(mixed(cell, bits(column)), bits(row)), 0, 0,
+                    {low[0] - column, low[1] - row},
+                    {high[0] - column, high[1] - row}};
+          tile.count = tile_count(cells_ > 1, unit(mixed(tile.key, 5)));
+          count_node(tile, window, box.shown, of_cell);
+        }
+      }
+      sum += of_cell.counted + binomial_draw(of_cell.whole, window.part() * box.shown, unit(mixed(of_cell.key, 9)));
     }
   }
-}
-
-FlakeCounts FlakeTree::counts(const FlakeBox& box, const FlakeBox& inner) const {
-  const double mean = density_ * box.area() * box.part();
-  if (!(mean > 0)) return {};
-  if (!(box.area() < kMostTiles * tile_m_ * tile_m_)) return {mean, mean * inner.tilts[1] / box.tilts[1]};
-  FlakeCounts sum;
-  visit_tiles(box, [&](const Node& tile, const Corners& corners, std::int64_t, std::int64_t) {
-    Corners within = corners;
-    within.low[3] = inner.tilt[1] - std::floor(inner.tilt[1]), within.high[3] = within.low[3] + inner.tilts[1];
-    sum += counted(tile, corners, within, box.shown);
-  });
   return sum;
-}
-
-std::vector<FlakeTree::Flake> FlakeTree::flakes(const FlakeBox& box) const {
-  std::vector<Flake> found;
-  visit_tiles(box, [&](const Node& tile, const Corners& corners, std::int64_t column, std::int64_t row) {
-    enumerate(tile, corners, [&](const std::array<double, 5>& flake) {
-      found.push_back(
-          {{(static_cast<double>(column) + flake[0]) * tile_m_, (static_cast<double>(row) + flake[1]) * tile_m_},
-           {flake[2], flake[3]}});
-    });
-  });
-  return found;
 }
 
 }  // namespace goniochrome::brdf

@@ -61,20 +61,24 @@ class Plate {
   std::vector<Flake> flakes_;
 };
 
+FlakeLamp lamp_of(double exponent, double radius_rad, double spread_deg) {
+  return {{{exponent, 1, nullptr, nullptr}}, radius_rad, spread_deg};
+}
+
 // The pixels by counts, lit by one disc of radiance 1.
 std::vector<double> counted(const Plate& plate, double exponent, double per_m2, double side_m, int pixels,
                             const Vec3& toward, double radius_rad, double spread_deg) {
-  const FlakeLamp lamp(exponent, radius_rad, spread_deg);
+  const FlakeLamp lamp = lamp_of(exponent, radius_rad, spread_deg);
   FlakeBox box = tilts_that_show(lamp, plate.mirrored, plate.across, toward);
   box.size = {side_m / pixels, side_m / pixels};
   box.shown = dot(plate.normal, toward);
   const FlakeTree tree(per_m2, 1, lamp.part_that_shows(0));
   const double white = std::pow(std::sin(radius_rad), 2);
-  const DiscGrain grain = disc_grain(lamp, plate.normal, plate.mirrored, toward, paint::kNoCoat);
+  const double light = disc_light(lamp, 0, plate.normal, plate.mirrored, toward, paint::kNoCoat);
   std::vector<double> radiance;
   for (int i = 0; i < pixels * pixels; ++i) {
     box.place = {(i % pixels) * box.size[0], (i / pixels) * box.size[1]};
-    radiance.push_back(white * grain.mean * tree.count(box) / (per_m2 * box.area() * box.part()));
+    radiance.push_back(white * light * tree.count(box) / (per_m2 * box.area() * box.part()));
   }
   return radiance;
 }
@@ -139,11 +143,12 @@ TEST(Flakes, PredictTheirVariance) {
     const double radius = shown_radius(0.265 * kDegree, 1);
     const auto light = [&](const Vec3& d) { return length(d - toward) <= 2 * std::sin(radius / 2) ? 1.0 : 0; };
     const Spread truth = spread_of(plate.pixels(kPixels, light));
-    const DiscGrain grain =
-        disc_grain({kExponent, 0.265 * kDegree, 1}, plate.normal, plate.mirrored, toward, paint::kNoCoat);
-    const double predicted = grain.relative_variance * kPixels * kPixels / (kPer_m2 * kSide_m * kSide_m);
+    const FlakeLamp sun = lamp_of(kExponent, 0.265 * kDegree, 1);
+    const double predicted = disc_variance(sun, plate.normal, plate.mirrored, toward) * kPixels * kPixels /
+                             (kPer_m2 * kSide_m * kSide_m);
     EXPECT_NEAR(truth.variance / (truth.mean * truth.mean) / predicted, 1, 0.12) << view_deg;
-    EXPECT_NEAR(grain.mean * std::pow(std::sin(0.265 * kDegree), 2) /
+    const double gathered = disc_light(sun, 0, plate.normal, plate.mirrored, toward, paint::kNoCoat);
+    EXPECT_NEAR(gathered * std::pow(std::sin(0.265 * kDegree), 2) /
                     (truth.mean * std::pow(std::sin(0.265 * kDegree) / std::sin(radius), 2)),
                 1, 0.05)
         << view_deg;
@@ -151,16 +156,16 @@ TEST(Flakes, PredictTheirVariance) {
 }
 
 TEST(Flakes, ASpotWiderThanTheLobeIsShownByAllFlakes) {
-  EXPECT_NEAR(FlakeLamp(5000, 0.4, 0).part_that_shows(0), 1, 1e-3);
-  const FlakeBox box = tilts_that_show({5000, 0.4, 0}, {0, 0, 1}, {1, 0, 0}, {0, 0, 1});
+  EXPECT_NEAR(lamp_of(5000, 0.4, 0).part_that_shows(0), 1, 1e-3);
+  const FlakeBox box = tilts_that_show(lamp_of(5000, 0.4, 0), {0, 0, 1}, {1, 0, 0}, {0, 0, 1});
   EXPECT_NEAR(box.tilts[0] * box.tilts[1], 1, 1e-3);
-  EXPECT_LT(FlakeLamp(5000, 0.4, 0).part_that_shows(2 * std::sin(0.6)), 1e-6);
+  EXPECT_LT(lamp_of(5000, 0.4, 0).part_that_shows(2 * std::sin(0.6)), 1e-6);
   // At every angle the box is within all tilts and has the flakes of the disc.
   for (const double between : {0.0, 1e-9, 0.01, 0.3, 1.0, 1.57, 2.5})
     for (const double exponent : {1.3, 20.0, 1e5}) {
       const Vec3 toward{std::sin(between), 0, std::cos(between)};
-      const FlakeBox at = tilts_that_show({exponent, 0.02, 0}, {0, 0, 1}, {1, 0, 0}, toward);
-      EXPECT_NEAR(at.tilts[0] * at.tilts[1], FlakeLamp(exponent, 0.02, 0).part_that_shows(2 * std::sin(0.5 * between)),
+      const FlakeBox at = tilts_that_show(lamp_of(exponent, 0.02, 0), {0, 0, 1}, {1, 0, 0}, toward);
+      EXPECT_NEAR(at.tilts[0] * at.tilts[1], lamp_of(exponent, 0.02, 0).part_that_shows(2 * std::sin(0.5 * between)),
                   1e-9);
       EXPECT_GE(at.tilt[0], 0);
       EXPECT_LE(at.tilt[0] + at.tilts[0], 1 + 1e-12);

@@ -28,16 +28,17 @@ double variance_m2(const paint::LobeFit& fit, const paint::Flakes& flakes, doubl
   const auto luminance = [](const color::Rgb& rgb) { return color::xyz_d65_from_rgb(rgb).Y; };
   const double mean = kPi * to_light.z * luminance(brdf::brdf(seen, to_light, to_viewer, normal));
   const std::vector<double> shares = brdf::flake_shares(fit);
-  double variance = 0;
-  for (std::size_t j = 0; j < shares.size(); ++j) {
-    if (shares[j] == 0) continue;
-    const brdf::DiscGrain grain =
-        brdf::disc_grain({seen.lobes[j].exponent, 0.5 * brdf::kSunExtent_deg * kDegree, flakes.spread_deg}, normal,
-                         mirrored, to_light, seen.coat_index);
-    const double light = grain.mean * brdf::coat_transmission(to_viewer.z, seen.coat_index) *
-                         luminance(seen.lobes[j].directional_diffuse);
-    variance += light * light * grain.relative_variance / (shares[j] * flakes.per_m2());
-  }
+  std::vector<brdf::FlakeLamp::Lobe> lobes;
+  for (std::size_t j = 0; j < shares.size(); ++j) lobes.push_back({fit.lobes[j].exponent, shares[j], nullptr, nullptr});
+  std::erase_if(lobes, [](const brdf::FlakeLamp::Lobe& lobe) { return lobe.share == 0; });
+  const brdf::FlakeLamp sun(lobes, 0.5 * brdf::kSunExtent_deg * kDegree, flakes.spread_deg);
+  double light = 0;
+  for (std::size_t j = 0; j < sun.lobes.size(); ++j)
+    for (const paint::Lobe& lobe : seen.lobes)
+      if (lobe.exponent == sun.lobes[j].exponent)
+        light += brdf::disc_light(sun, j, normal, mirrored, to_light, seen.coat_index) *
+                 brdf::coat_transmission(to_viewer.z, seen.coat_index) * luminance(lobe.directional_diffuse);
+  const double variance = light * light * brdf::disc_variance(sun, normal, mirrored, to_light) / flakes.per_m2();
   return mean > 0 ? variance * to_viewer.z / (mean * mean) : 0;
 }
 

@@ -1,10 +1,10 @@
 #include "render/internal/sparkle.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <ranges>
 #include <set>
 
 #include "base/angles.h"
@@ -28,11 +28,14 @@ namespace {
 
 // Deviations of less than this part of a pixel's luminance are not drawn.
 constexpr double kLeast = 0.004;
-// So many lamps and lobes stay single, and so do all that no more flakes show than these.
-constexpr int kSingle = 2;
-constexpr double kManyShown = 16;
+// Lamps that more flakes show than these vary together with the rest of the light.
+constexpr double kManyShown = 32;
+// Light whose variance is less than this part of what varies more is not seen beside it.
+constexpr double kMasked = 0.01;
 // Maps of the root mean square and of the mean differ by rounding and filtering alone up to this relative variance.
 constexpr double kMapVariance = 6e-3;
+// The light of flakes is computed once in a block of so many pixels across and down.
+constexpr int kBlock = 4;
 // A surface that is seen at a smaller cosine has no footprint.
 constexpr double kGrazing = 0.02;
 
@@ -42,6 +45,13 @@ double seen_luminance(const color::Rgb& rgb) {
 
 std::array<int, 2> other_axes(int axis) {
   return {(axis + 1) % 3, (axis + 2) % 3};
+}
+
+int steepest_axis(const Vec3& face) {
+  int steepest = 0;
+  for (int axis = 1; axis < 3; ++axis)
+    if (std::abs(face[axis]) > std::abs(face[steepest])) steepest = axis;
+  return steepest;
 }
 
 Vec3 unit_axis(int axis) {
@@ -64,44 +74,55 @@ struct Sparkle::Footprint {
 // those of a level one, of which the others show a part.
 struct Sparkle::Source {
   std::array<brdf::FlakeTree, 3> trees;
+
+  Source(double per_m2, std::uint64_t number, double tilts)
+      : trees{tree(per_m2, number, 0, tilts), tree(per_m2, number, 1, tilts), tree(per_m2, number, 2, tilts)} {}
+  static brdf::FlakeTree tree(double per_m2, std::uint64_t number, std::uint64_t axis, double tilts) {
+    return {std::numbers::sqrt3 * per_m2, mixed(number, axis), tilts};
+  }
 };
 
-struct Sparkle::Lobe {
-  double exponent = 1, per_m2 = 0;
-  std::vector<brdf::FlakeLamp> shown;    // each lamp, which has one radius: those at a place are points
-  std::vector<Source> lamps;             // of the same
-  envmap::MapPointer mean;               // without the bright spots; null where no deviation from it is known
-  const envmap::CubeMap* rms = nullptr;  // the root of the mean square of the same
+// Each lamp has one radius: those at a place are points.
+struct Sparkle::Lamp {
+  brdf::FlakeLamp shown;
+  Source source;
 };
 
 struct Sparkle::Part {
+  // The light of a lobe without the bright spots, where its deviation is known.
+  struct Maps {
+    envmap::MapPointer mean;
+    const envmap::CubeMap* rms = nullptr;  // the root of the mean square of the same
+  };
   paint::LobeFit paint;
-  paint::Flakes flakes;
-  std::vector<Lobe> lobes;
-  std::vector<Source> rest;  // one, of all flakes
+  double per_m2 = 0;
+  std::vector<brdf::FlakeLamp::Lobe> lobes;
+  std::vector<Maps> maps;  // of each lobe
+  std::vector<Lamp> lamps;
+  Source rest;  // all flakes
 };
 
-// Light that varies: of one lamp by one lobe, or of the rest of the light by all lobes.
+// Light that varies: of one lamp, or the rest.
 struct Sparkle::Grain {
-  const Lobe* lobe = nullptr;  // null: the rest
-  std::size_t lamp = 0;
-  Light light;  // as seen from the point
+  std::optional<std::size_t> lamp;  // none: the rest
+  Light light;                      // of the lamp, as seen from the point
   color::Rgb mean;
-  double variance = 0;        // relative
-  double flake_variance = 0;  // relative, of the light that one flake shows; of the rest
+  double variance_m2 = 0;  // over patches of a square meter, relative to the mean squared
+  double further_m2 = 0;   // the variance of its luminance and of all further light of the place together
+  bool is_seen = false;    // at the last pixel
 
-  double deviation() const { return std::sqrt(variance) * seen_luminance(mean); }
+  double deviation_m() const { return std::sqrt(variance_m2) * seen_luminance(mean); }
+};
+
+// The light of flakes at a place, from which that at the pixels around it hardly differs.
+struct Sparkle::Place {
+  int part = -1;
+  Footprint at;
+  std::vector<Grain> grains;
+  color::Rgb steady;  // light that hardly varies
 };
 
 namespace {
-
-std::array<brdf::FlakeTree, 3> trees_of(double per_m2, double exponent, std::uint64_t source, double tilts) {
-  const std::uint64_t seed = mixed(std::bit_cast<std::uint64_t>(exponent), source);
-  const auto tree = [&](std::uint64_t axis) {
-    return brdf::FlakeTree(std::numbers::sqrt3 * per_m2, mixed(seed, axis), tilts);
-  };
-  return {tree(0), tree(1), tree(2)};
-}
 
 // Why a part has no sparkle although its paint has flakes; "" where it has.
 std::string hindrance(const Scene& scene, std::size_t part) {
@@ -129,30 +150,29 @@ Sparkle::Sparkle(const Scene& scene, const Effects& effects)
       left_out.insert(why);
       continue;
     }
-    auto part = std::make_shared<Part>();
-    part->paint = with_effects(scene.paints[i], effects);
-    part->flakes = scene.flakes[i]->flakes;
-    const std::vector<double> shares = brdf::flake_shares(part->paint);
+    const paint::Flakes& flakes = scene.flakes[i]->flakes;
+    Part part{with_effects(scene.paints[i], effects), flakes.per_m2(), {}, {}, {}, {flakes.per_m2(), 0, 1}};
+    const std::vector<double> shares = brdf::flake_shares(part.paint);
     for (std::size_t j = 0; j < shares.size(); ++j) {
       if (shares[j] == 0) continue;
-      Lobe lobe{part->paint.lobes[j].exponent, shares[j] * part->flakes.per_m2(), {}, {}, nullptr, nullptr};
-      for (std::size_t k = 0; k < lamps_.size(); ++k) {
-        lobe.shown.emplace_back(lobe.exponent, lamps_[k].place ? 0 : lamps_[k].radius_rad, part->flakes.spread_deg);
-        const double tilts = std::max(1e-6, lobe.shown.back().part_that_shows(0));
-        lobe.lamps.push_back({trees_of(lobe.per_m2, lobe.exponent, k, tilts)});
-      }
-      const envmap::PrefilteredLobe* filtered = scene.env != nullptr ? scene.env->lobe(lobe.exponent) : nullptr;
-      if (filtered != nullptr && filtered->rms != nullptr) {
-        lobe.rms = filtered->rms.get(), squares = true;
-        lobe.mean = envmap::open_map(*scene.env, *filtered, scene.env->spots.size());
-      }
-      part->lobes.push_back(std::move(lobe));
+      part.lobes.push_back({part.paint.lobes[j].exponent, shares[j], nullptr, nullptr});
+      const envmap::PrefilteredLobe* filtered =
+          scene.env != nullptr ? scene.env->lobe(part.lobes.back().exponent) : nullptr;
+      const bool has_square = filtered != nullptr && filtered->rms != nullptr;
+      part.maps.emplace_back();
+      if (has_square)
+        part.maps.back() = {open_map(*scene.env, *filtered, scene.env->spots.size()), filtered->rms.get()};
+      squares |= has_square;
     }
-    if (part->lobes.empty()) continue;
-    part->rest.push_back({trees_of(part->flakes.per_m2(), 0, lamps_.size(), 0.5)});
-    told.insert(fmt::format("{} um, coverage {}{}", shortest(part->flakes.diameter_um), shortest(part->flakes.coverage),
+    if (part.lobes.empty()) continue;
+    for (std::size_t k = 0; k < lamps_.size(); ++k) {
+      brdf::FlakeLamp shown(part.lobes, lamps_[k].place ? 0 : lamps_[k].radius_rad, flakes.spread_deg);
+      const double tilts = std::max(1e-6, shown.part_that_shows(0));
+      part.lamps.push_back({std::move(shown), {part.per_m2, k + 1, tilts}});
+    }
+    told.insert(fmt::format("{} um, coverage {}{}", shortest(flakes.diameter_um), shortest(flakes.coverage),
                             scene.flakes[i]->assumed ? " (assumed by class)" : ""));
-    parts_[i] = std::move(part);
+    parts_[i] = std::make_shared<const Part>(std::move(part));
   }
   const std::string without =
       left_out.empty() ? ""
@@ -173,10 +193,14 @@ Sparkle::Sparkle(const Scene& scene, const Effects& effects)
                             : "");
 }
 
-std::optional<Sparkle::Footprint> Sparkle::footprint(const Gbuffer& g, int x, int y) const {
-  const MeshPoint point = mesh_point(*scene_.mesh, g, x, y);
-  Footprint at;
-  at.normal = g.normal(x, y), at.to_viewer = g.to_viewer(x, y), at.position = point.position;
+void Sparkle::move(Footprint& to, const Gbuffer& g, int x, int y, const Vec3& position) const {
+  const std::array<int, 2> axes = other_axes(to.axis);
+  to.normal = g.normal(x, y), to.to_viewer = g.to_viewer(x, y), to.position = position;
+  to.mirrored = 2 * dot(to.normal, to.to_viewer) * to.normal - to.to_viewer;
+  for (std::size_t i = 0; i < 2; ++i) to.box.place[i] = unit_m_ * position[axes[i]] - 0.5 * to.box.size[i];
+}
+
+std::optional<Sparkle::Footprint> Sparkle::footprint(const Gbuffer& g, int x, int y, const MeshPoint& point) const {
   const auto reached = [&](double dx, double dy) -> std::optional<Vec3> {
     const Vec3 direction = g.rays.direction(x + 0.5 + dx, y + 0.5 + dy);
     const double along = dot(direction, point.face), away = dot(point.position - g.rays.eye, point.face);
@@ -186,128 +210,145 @@ std::optional<Sparkle::Footprint> Sparkle::footprint(const Gbuffer& g, int x, in
   const auto here = reached(0, 0), right = reached(1, 0), down = reached(0, 1);
   if (!here || !right || !down) return std::nullopt;
   const Vec3 a = unit_m_ * (*right - *here), b = unit_m_ * (*down - *here);
+  Footprint at;
+  at.axis = steepest_axis(point.face);
   at.area_m2 = length(cross(a, b));
-  for (int axis = 1; axis < 3; ++axis)
-    if (std::abs(point.face[axis]) > std::abs(point.face[at.axis])) at.axis = axis;
   at.steep = std::abs(point.face[at.axis]);
   const std::array<int, 2> axes = other_axes(at.axis);
+  at.across = unit_axis(axes[0]);
   for (std::size_t i = 0; i < 2; ++i) at.box.size[i] = std::abs(a[axes[i]]) + std::abs(b[axes[i]]);
   const double covered = at.box.area();
   if (!(covered > 0) || !(at.area_m2 > 0) || !std::isfinite(covered)) return std::nullopt;
   const double scale = std::sqrt(at.area_m2 * at.steep / covered);
-  for (std::size_t i = 0; i < 2; ++i) {
-    at.box.size[i] *= scale;
-    at.box.place[i] = unit_m_ * point.position[axes[i]] - 0.5 * at.box.size[i];
-  }
-  at.mirrored = 2 * dot(at.normal, at.to_viewer) * at.normal - at.to_viewer;
-  at.across = unit_axis(axes[0]);
+  for (double& size : at.box.size) size *= scale;
+  move(at, g, x, y, point.position);
   return at;
 }
 
-// Lists the light that varies enough to be seen. The light of all flakes is no more than what the pixel shows. The
-// lamps that vary most stay single; others that many flakes show are near normal, and vary with the rest of the light.
-std::vector<Sparkle::Grain> Sparkle::grains(const Part& part, const Footprint& at, const color::Rgb& shown,
-                                            const Lit& lit) const {
-  const double cos_o = std::clamp(dot(at.normal, at.to_viewer), 0.0, 1.0), least = kLeast * seen_luminance(shown);
+// Lists the light that varies enough to be seen, what varies most first. Lamps that many flakes show are near normal,
+// and vary with the rest of the light.
+Sparkle::Place Sparkle::place(const Part& part, const Footprint& at) const {
+  const double cos_o = std::clamp(dot(at.normal, at.to_viewer), 0.0, 1.0);
   const paint::LobeFit paint =
       part.paint.views.empty() ? part.paint : brdf::at_view(part.paint, math::acos(cos_o) / kDegree);
   const double let_out = brdf::coat_transmission(cos_o, paint.coat_index);
   const auto met = [&](const color::Rgb& weight, const color::Rgb& light) {
     return reflection_ ? color::reflected(scene_.reflection, weight, light) : weight * light;
   };
-  std::vector<Grain> grains;
+  Place place;
+  place.at = at;
   Grain rest;
-  color::Rgb sum;
+  for (std::size_t k = 0; k < lamps_.size(); ++k) {
+    const brdf::FlakeLamp& shown = part.lamps[k].shown;
+    Grain grain{k, light_at(lamps_[k], at.position), {}, 0};
+    grain.variance_m2 =
+        brdf::disc_variance(shown, at.normal, at.mirrored, grain.light.direction) / part.per_m2;
+    if (!std::isfinite(grain.variance_m2)) continue;
+    color::Rgb weight;
+    for (std::size_t j = 0; j < part.lobes.size(); ++j)
+      if (const paint::Lobe* worn = find_lobe(paint, part.lobes[j].exponent))
+        weight += brdf::disc_light(shown, j, at.normal, at.mirrored, grain.light.direction, paint.coat_index) *
+                  worn->directional_diffuse;
+    grain.mean = let_out * met(weight, grain.light.white);
+    place.grains.push_back(std::move(grain));
+  }
   double rest_variance = 0;
-  for (const Lobe& lobe : part.lobes) {
-    const paint::Lobe* worn = find_lobe(paint, lobe.exponent);
-    if (worn == nullptr) continue;
-    const color::Rgb weight = let_out * worn->directional_diffuse;
-    for (std::size_t k = 0; k < lamps_.size(); ++k) {
-      Grain grain{&lobe, k, light_at(lamps_[k], at.position), {}, 0, 0};
-      const brdf::DiscGrain disc =
-          brdf::disc_grain(lobe.shown[k], at.normal, at.mirrored, grain.light.direction, paint.coat_index);
-      if (!(disc.mean > 0)) continue;
-      grain.mean = disc.mean * met(weight, grain.light.white);
-      grain.variance = disc.relative_variance / (lobe.per_m2 * at.area_m2);
-      const bool varies = grain.deviation() > least;
-      if (varies && !lit(k, grain.light)) continue;
-      sum += grain.mean;
-      if (varies) grains.push_back(std::move(grain));
-    }
-    if (lobe.rms == nullptr) continue;
-    const LobeIntegrals whole = lobe_integrals(lobe.exponent, cos_o, false, paint.coat_index);
-    const Vec3 mean = envmap::bilinear(*lobe.mean, at.mirrored), rms = envmap::bilinear(*lobe.rms, at.mirrored);
-    const color::Rgb light = whole.cosine * met(weight, {mean.x, mean.y, mean.z});
+  for (std::size_t j = 0; j < part.lobes.size(); ++j) {
+    const paint::Lobe* worn = find_lobe(paint, part.lobes[j].exponent);
+    if (worn == nullptr || part.maps[j].rms == nullptr) continue;
+    const LobeIntegrals whole = lobe_integrals(worn->exponent, cos_o, false, paint.coat_index);
+    const Vec3 mean = envmap::bilinear(*part.maps[j].mean, at.mirrored),
+               rms = envmap::bilinear(*part.maps[j].rms, at.mirrored);
+    const color::Rgb light =
+        let_out * whole.cosine * met(worn->directional_diffuse, {mean.x, mean.y, mean.z});
     const double of_mean = seen_luminance({mean.x, mean.y, mean.z}), of_rms = seen_luminance({rms.x, rms.y, rms.z});
     const double variance = of_mean > 0 ? of_rms * of_rms / (of_mean * of_mean) - 1 : 0;
-    rest.mean += light, sum += light;
-    rest_variance += variance > kMapVariance ? variance * std::pow(seen_luminance(light), 2) / lobe.per_m2 : 0;
+    rest.mean += light;
+    if (variance > kMapVariance)
+      rest_variance += variance * std::pow(seen_luminance(light), 2) / (part.lobes[j].share * part.per_m2);
   }
-  std::ranges::stable_sort(grains, std::greater<>(), &Grain::deviation);
-  std::erase_if(grains, [&, number = 0](const Grain& grain) mutable {
-    if (++number <= kSingle || grain.variance * kManyShown > 1) return false;
-    rest.mean += grain.mean;
-    rest_variance += std::pow(grain.deviation(), 2) * at.area_m2;
+  std::erase_if(place.grains, [&](const Grain& grain) {
+    if (grain.variance_m2 * kManyShown > at.area_m2) return false;
+    rest.mean += grain.mean, rest_variance += std::pow(grain.deviation_m(), 2);
     return true;
   });
   // Lobes share out the flakes, and their variances add.
-  if (const double light = seen_luminance(rest.mean); light > 0 && rest_variance > 0) {
-    rest.variance = rest_variance / (light * light * at.area_m2);
-    rest.flake_variance = rest.variance * part.flakes.per_m2() * at.area_m2;
-    if (rest.deviation() > least) grains.push_back(std::move(rest));
+  if (const double light = seen_luminance(rest.mean); light > 0) rest.variance_m2 = rest_variance / (light * light);
+  place.grains.push_back(std::move(rest));
+  color::Rgb sum;
+  for (const Grain& grain : place.grains) sum += grain.mean;
+  const double least_m = kLeast * seen_luminance(sum) * std::sqrt(at.area_m2);
+  std::erase_if(place.grains, [&](const Grain& grain) {
+    if (grain.deviation_m() > least_m) return false;
+    place.steady += grain.mean;
+    return true;
+  });
+  std::ranges::stable_sort(place.grains, std::greater<>(), &Grain::deviation_m);
+  double further = 0;
+  for (Grain& grain : place.grains | std::views::reverse)
+    grain.further_m2 = further += std::pow(grain.deviation_m(), 2);
+  return place;
+}
+
+// The light of all flakes is no more than what the pixel shows.
+template <class Lit, class See>
+void Sparkle::visit_seen(Place& place, const color::Rgb& shown, const Lit& lit, const See& see) {
+  const double least_m = kLeast * seen_luminance(shown) * std::sqrt(place.at.area_m2);
+  color::Rgb sum = place.steady;
+  double seen_m2 = 0;
+  for (Grain& grain : place.grains) {
+    const bool varies = grain.deviation_m() > least_m && grain.further_m2 > kMasked * seen_m2;
+    grain.is_seen = varies && (!grain.lamp || lit(grain));
+    if (grain.is_seen) seen_m2 += std::pow(grain.deviation_m(), 2);
+    if (grain.is_seen || !varies) sum += grain.mean;
   }
-  for (Grain& grain : grains)
-    for (int c = 0; c < 3; ++c)
-      if (sum[c] > shown[c]) grain.mean[c] *= std::max(0.0, shown[c]) / sum[c];
-  return grains;
+  color::Rgb part{1, 1, 1};
+  for (int c = 0; c < 3; ++c)
+    if (sum[c] > shown[c]) part[c] = std::max(0.0, shown[c]) / sum[c];
+  for (const Grain& grain : place.grains)
+    if (grain.is_seen) see(grain, part * grain.mean);
 }
 
 color::Rgb Sparkle::deviation(const Gbuffer& gbuffer, int x, int y, const color::Rgb& shown) const {
   const int number = gbuffer.part(x, y);
   const Part* part = number < 0 ? nullptr : parts_[static_cast<std::size_t>(number)].get();
   if (part == nullptr) return {};
-  const std::optional<Footprint> at = footprint(gbuffer, x, y);
+  const std::optional<Footprint> at = footprint(gbuffer, x, y, mesh_point(*scene_.mesh, gbuffer, x, y));
   if (!at) return {};
   color::Rgb variance;
-  const auto open = [](std::size_t, const Light&) { return true; };
-  for (const Grain& grain : grains(*part, *at, shown, open)) variance += grain.variance * (grain.mean * grain.mean);
+  Place seen = place(*part, *at);
+  visit_seen(seen, shown, [](const Grain&) { return true; },
+             [&](const Grain& grain, const color::Rgb& mean) {
+               variance += (grain.variance_m2 / at->area_m2) * (mean * mean);
+             });
   return {std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)};
 }
 
-// Flakes that show a lamp are Poisson with a mean of `expected`. Of the rest, the flakes in one part of all tilts,
-// about the brightest, show more than the mean and the others less: half of all flakes, or fewer where the others are
-// black.
-color::Rgb Sparkle::change(const Part& part, const Footprint& at, const std::vector<Grain>& grains) const {
+// The relative change of light that the flakes of a pixel make: those that show the lamp or, of the rest of the light,
+// those that are brighter than the others, or all of them. They are Poisson with a mean of `expected`.
+double Sparkle::change(const Part& part, const Footprint& at, const Grain& grain) const {
   const auto axis = static_cast<std::size_t>(at.axis);
-  const double projected = 1 / (std::numbers::sqrt3 * at.steep);
-  color::Rgb change;
-  for (const Grain& grain : grains) {
-    brdf::FlakeBox box = at.box;
-    if (grain.lobe != nullptr) {
-      const brdf::FlakeBox tilts =
-          brdf::tilts_that_show(grain.lobe->shown[grain.lamp], at.mirrored, at.across, grain.light.direction);
-      box.tilt = tilts.tilt, box.tilts = tilts.tilts;
-      box.shown = projected * std::min(1.0, dot(at.normal, grain.light.direction));
-      const double expected = std::numbers::sqrt3 * grain.lobe->per_m2 * box.area() * box.part();
-      if (expected > 0) change += (grain.lobe->lamps[grain.lamp].trees[axis].count(box) / expected - 1) * grain.mean;
-      continue;
-    }
-    const brdf::FlakeTree& tree = part.rest.front().trees[axis];
-    const Vec3 x = at.across - dot(at.across, at.mirrored) * at.mirrored, y = cross(at.mirrored, x);
-    const double bright = std::min(0.5, 1 / (1 + grain.flake_variance)),
-                 low = std::max(0.0, 1 - std::sqrt(grain.flake_variance)), high = (1 - (1 - bright) * low) / bright;
-    box.shown = projected;
-    brdf::FlakeBox brighter = box;
-    brighter.tilts[1] = bright, brighter.tilt[1] = math::atan2(y.y, x.y) / (2 * kPi) - 0.5 * bright + 1;
-    const brdf::FlakeCounts flakes = tree.counts(box, brighter);
-    if (flakes.all > 0) change += (low + (high - low) * flakes.inner / flakes.all - 1) * grain.mean;
+  brdf::FlakeBox box = at.box;
+  box.shown = 1 / (std::numbers::sqrt3 * at.steep);
+  double varying = 1;
+  if (grain.lamp) {
+    const Vec3& toward = grain.light.direction;
+    const brdf::FlakeBox tilts = brdf::tilts_that_show(part.lamps[*grain.lamp].shown, at.mirrored, at.across, toward);
+    box.tilt = tilts.tilt, box.tilts = tilts.tilts;
+    box.shown *= std::clamp(dot(at.normal, toward), 0.0, 1.0);
+  } else {
+    const double of_flake = grain.variance_m2 * part.per_m2, bright = std::min(1.0, 1 / of_flake);
+    box.shown *= bright;
+    varying = std::sqrt(bright * of_flake);
   }
-  return change;
+  const double expected = std::numbers::sqrt3 * part.per_m2 * box.area() * box.part();
+  const Source& source = grain.lamp ? part.lamps[*grain.lamp].source : part.rest;
+  return expected > 0 ? varying * (source.trees[axis].count(box) / expected - 1) : 0;
 }
 
 void Sparkle::add(const Gbuffer& g, const rays::RayScene* blockers, image::Image& picture) const {
-  parallel_for(static_cast<std::size_t>(g.height), 4, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(g.height), kBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<Place> places(static_cast<std::size_t>(g.width) / kBlock + 1);
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < g.width; ++x) {
         const int number = g.part(x, y);
@@ -315,24 +356,29 @@ void Sparkle::add(const Gbuffer& g, const rays::RayScene* blockers, image::Image
         const double covered = pixel[3];
         if (number < 0 || !(covered > 0)) continue;
         const Part* part = parts_[static_cast<std::size_t>(number)].get();
-        const std::optional<Footprint> at = part != nullptr ? footprint(g, x, y) : std::nullopt;
-        if (!at) continue;
-        std::optional<RayPoint> from;
-        std::vector<std::optional<bool>> known(lamps_.size());
-        const auto lit = [&](std::size_t lamp, const Light& light) {
+        if (part == nullptr) continue;
+        const MeshPoint point = mesh_point(*scene_.mesh, g, x, y);
+        Place& place = places[static_cast<std::size_t>(x) / kBlock];
+        if (place.part == number && place.at.axis == steepest_axis(point.face)) {
+          move(place.at, g, x, y, point.position);
+        } else {
+          const std::optional<Footprint> at = footprint(g, x, y, point);
+          place = at ? this->place(*part, *at) : Place();
+          if (!at) continue;
+          place.part = number;
+        }
+        const auto lit = [&](const Grain& grain) {
           if (blockers == nullptr) return true;
-          if (known[lamp]) return *known[lamp];
-          if (!from) from = ray_point(*blockers, *scene_.mesh, g, x, y);
-          const auto& place = lamps_[lamp].place;
-          const double reach = place ? length(place->position - at->position) * blockers->scale() : 1e30;
-          known[lamp] = !blockers->occluded(from->spot.start, rays::float3(light.direction), static_cast<float>(reach));
-          return *known[lamp];
+          const auto& from = lamps_[*grain.lamp].place;
+          const double reach = from ? length(from->position - place.at.position) * blockers->scale() : 1e30;
+          return !blockers->occluded(ray_point(*blockers, *scene_.mesh, g, x, y).spot.start,
+                                     rays::float3(grain.light.direction), static_cast<float>(reach));
         };
-        const std::vector<Grain> grains =
-            this->grains(*part, *at, {pixel[0] / covered, pixel[1] / covered, pixel[2] / covered}, lit);
-        if (grains.empty()) continue;
-        const color::Rgb change = this->change(*part, *at, grains);
-        for (int c = 0; c < 3; ++c) pixel[c] += static_cast<float>(covered * change[c]);
+        visit_seen(place, {pixel[0] / covered, pixel[1] / covered, pixel[2] / covered}, lit,
+                   [&](const Grain& grain, const color::Rgb& mean) {
+                     const double change = covered * this->change(*part, place.at, grain);
+                     for (int c = 0; c < 3; ++c) pixel[c] += static_cast<float>(change * mean[c]);
+                   });
       }
     }
   });

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,14 +37,17 @@ class Sparkle {
  private:
   struct Footprint;
   struct Source;
-  struct Lobe;
+  struct Lamp;
   struct Part;
   struct Grain;
-  std::optional<Footprint> footprint(const Gbuffer& gbuffer, int x, int y) const;
-  // True where nothing stands between the point and the lamp of that number, which is seen there as `light`.
-  using Lit = std::function<bool(std::size_t lamp, const Light& light)>;
-  std::vector<Grain> grains(const Part& part, const Footprint& at, const color::Rgb& shown, const Lit& lit) const;
-  color::Rgb change(const Part& part, const Footprint& at, const std::vector<Grain>& grains) const;
+  struct Place;
+  std::optional<Footprint> footprint(const Gbuffer& gbuffer, int x, int y, const MeshPoint& point) const;
+  void move(Footprint& to, const Gbuffer& gbuffer, int x, int y, const Vec3& position) const;
+  Place place(const Part& part, const Footprint& at) const;
+  // Calls see(grain, mean) for each lit grain that is seen at a pixel that shows this radiance.
+  template <class Lit, class See>
+  static void visit_seen(Place& place, const color::Rgb& shown, const Lit& lit, const See& see);
+  double change(const Part& part, const Footprint& at, const Grain& grain) const;
 
   const Scene& scene_;
   bool reflection_;
