@@ -163,6 +163,39 @@ TEST(Sparkle, ShowsTheSameFlakesFromNearAndFar) {
   EXPECT_LT(std::abs(turned) / std::sqrt(of_fine * of_coarse), 0.2) << "other flakes are no measure";
 }
 
+double correlation(const image::Image& a, const image::Image& a_mean, const image::Image& b,
+                   const image::Image& b_mean) {
+  double product = 0, of_a = 0, of_b = 0;
+  for (std::size_t i = 1; i < a.data.size(); i += 4) {
+    const double x = a.data[i] - a_mean.data[i], y = b.data[i] - b_mean.data[i];
+    product += x * y, of_a += x * x, of_b += y * y;
+  }
+  return product / std::sqrt(of_a * of_b);
+}
+
+// Ten frames of a turn: a frame drawn again is the same, a small turn leaves most flakes lit, a large one lights
+// others, and the mean over all frames stays.
+TEST(Sparkle, FlakesFlashInATurnThatKeepsTheMean) {
+  Panel panel(0.3, 200, 60);
+  double drawn = 0, mean = 0, squares = 0;
+  image::Image before, before_mean;
+  for (int frame = 0; frame < 10; ++frame) {
+    panel.lit_by_sun(8 + 3 * frame);
+    const image::Image now = panel.drawn(), now_mean = panel.mean();
+    EXPECT_EQ(now.data, panel.drawn().data);
+    const Statistics of_frame = statistics_of(now);
+    drawn += 0.1 * of_frame.mean.y, mean += 0.1 * statistics_of(now_mean).mean.y;
+    squares += 0.01 * std::pow(of_frame.contrast * of_frame.mean.y, 2) / 3600;
+    if (frame > 0) {
+      EXPECT_LT(correlation(now, now_mean, before, before_mean), 0.2);
+    }
+    panel.lit_by_sun(8.05 + 3 * frame);
+    EXPECT_GT(correlation(now, now_mean, panel.drawn(), panel.mean()), 0.8);
+    before = now, before_mean = now_mean;
+  }
+  EXPECT_NEAR(drawn, mean, 4 * std::sqrt(squares));
+}
+
 TEST(Sparkle, IsNothingUnderAnEvenSky) {
   Panel panel(0.3, 200, 40);
   panel.env = constant_env({1, 1, 1}, {20, 100});
