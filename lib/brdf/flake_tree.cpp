@@ -41,7 +41,7 @@ double computed_quantile(double u) {
   return u < 0.5 ? -x : x;
 }
 
-// The same from a table, apart from the tails.
+// A table gives it too, but for the tails.
 double normal_quantile(double u) {
   constexpr int kSteps = 1024, kEnd = 16;
   static const std::array<double, kSteps + 1> table = [] {
@@ -152,9 +152,7 @@ struct Window {
   double again = 0;
 
   double part() const {
-    const auto overlap = [&](std::size_t d) {
-      return std::max(0.0, std::min(high[d], 1.0) - std::max(low[d], 0.0));
-    };
+    const auto overlap = [&](std::size_t d) { return std::max(0.0, std::min(high[d], 1.0) - std::max(low[d], 0.0)); };
     return overlap(0) * (overlap(1) + again);
   }
 };
@@ -255,13 +253,14 @@ double FlakeTree::count(const FlakeBox& box) const {
   double sum = 0;
   for (double i = std::floor(tilt); i < std::min(tilted, cells_); ++i) {
     for (double j = std::floor(turn); j < std::min(turned, std::floor(turn) + cells_); ++j) {
-      const Window window{
-          {tilt - i, turn - j}, {tilted - i, turned - j}, std::clamp(turned - j - cells_, 0.0, 1.0)};
+      const Window window{{tilt - i, turn - j}, {tilted - i, turned - j}, std::clamp(turned - j - cells_, 0.0, 1.0)};
       Shown of_cell;
       const std::uint64_t cell = mixed(seed_, bits(i * cells_ + (j < cells_ ? j : j - cells_)));
       for (double row = std::floor(low[1]); row < high[1]; ++row) {
         for (double column = std::floor(low[0]); column < high[0]; ++column) {
-          Node tile{mixed(mixed(cell, bits(column)), bits(row)), 0, 0,
+          Node tile{mixed(mixed(cell, bits(column)), bits(row)),
+                    0,
+                    0,
                     {low[0] - column, low[1] - row},
                     {high[0] - column, high[1] - row}};
           tile.count = tile_count(cells_ > 1, unit(mixed(tile.key, 5)));

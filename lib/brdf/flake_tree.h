@@ -1,7 +1,7 @@
 // Countless flakes as trees of counts. The flakes of a plane are a Poisson process over their place and their tilt. A
 // node of a tree is a square of places, and its count is shared out between its two halves by a binomial draw whose
-// random bits are a hash of the node. So a box always holds the same flakes, seen from near or far, in any order and by any
-// number of threads. goniochrome-flakes(7), "COUNTS".
+// random bits are a hash of the node. So a box always holds the same flakes, seen from near or far, in any order and by
+// any number of threads. goniochrome-flakes(7), "COUNTS".
 #pragma once
 
 #include <array>

@@ -144,8 +144,8 @@ TEST(Flakes, PredictTheirVariance) {
     const auto light = [&](const Vec3& d) { return length(d - toward) <= 2 * std::sin(radius / 2) ? 1.0 : 0; };
     const Spread truth = spread_of(plate.pixels(kPixels, light));
     const FlakeLamp sun = lamp_of(kExponent, 0.265 * kDegree, 1);
-    const double predicted = disc_variance(sun, plate.normal, plate.mirrored, toward) * kPixels * kPixels /
-                             (kPer_m2 * kSide_m * kSide_m);
+    const double predicted =
+        disc_variance(sun, plate.normal, plate.mirrored, toward) * kPixels * kPixels / (kPer_m2 * kSide_m * kSide_m);
     EXPECT_NEAR(truth.variance / (truth.mean * truth.mean) / predicted, 1, 0.12) << view_deg;
     const double gathered = disc_light(sun, 0, plate.normal, plate.mirrored, toward, paint::kNoCoat);
     EXPECT_NEAR(gathered * std::pow(std::sin(0.265 * kDegree), 2) /

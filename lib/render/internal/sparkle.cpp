@@ -241,8 +241,7 @@ Sparkle::Place Sparkle::place(const Part& part, const Footprint& at) const {
   for (std::size_t k = 0; k < lamps_.size(); ++k) {
     const brdf::FlakeLamp& shown = part.lamps[k].shown;
     Grain grain{k, light_at(lamps_[k], at.position), {}, 0};
-    grain.variance_m2 =
-        brdf::disc_variance(shown, at.normal, at.mirrored, grain.light.direction) / part.per_m2;
+    grain.variance_m2 = brdf::disc_variance(shown, at.normal, at.mirrored, grain.light.direction) / part.per_m2;
     if (!std::isfinite(grain.variance_m2)) continue;
     color::Rgb weight;
     for (std::size_t j = 0; j < part.lobes.size(); ++j)
@@ -259,8 +258,7 @@ Sparkle::Place Sparkle::place(const Part& part, const Footprint& at) const {
     const LobeIntegrals whole = lobe_integrals(worn->exponent, cos_o, false, paint.coat_index);
     const Vec3 mean = envmap::bilinear(*part.maps[j].mean, at.mirrored),
                rms = envmap::bilinear(*part.maps[j].rms, at.mirrored);
-    const color::Rgb light =
-        let_out * whole.cosine * met(worn->directional_diffuse, {mean.x, mean.y, mean.z});
+    const color::Rgb light = let_out * whole.cosine * met(worn->directional_diffuse, {mean.x, mean.y, mean.z});
     const double of_mean = seen_luminance({mean.x, mean.y, mean.z}), of_rms = seen_luminance({rms.x, rms.y, rms.z});
     const double variance = of_mean > 0 ? of_rms * of_rms / (of_mean * of_mean) - 1 : 0;
     rest.mean += light;
@@ -317,10 +315,11 @@ color::Rgb Sparkle::deviation(const Gbuffer& gbuffer, int x, int y, const color:
   if (!at) return {};
   color::Rgb variance;
   Place seen = place(*part, *at);
-  visit_seen(seen, shown, [](const Grain&) { return true; },
-             [&](const Grain& grain, const color::Rgb& mean) {
-               variance += (grain.variance_m2 / at->area_m2) * (mean * mean);
-             });
+  visit_seen(
+      seen, shown, [](const Grain&) { return true; },
+      [&](const Grain& grain, const color::Rgb& mean) {
+        variance += (grain.variance_m2 / at->area_m2) * (mean * mean);
+      });
   return {std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)};
 }
 
