@@ -252,8 +252,8 @@ void add_report(cli::ToolSpec& spec) {
        "noise of the picture, samples of a point, and the share of points that needed none"},
       {"engine, engine_reason", "what shaded the picture: gl, cpu, integral, path or transport"},
       {"transport: points, columns, bytes_per_point", "visible pixels, columns of light, memory of a pixel"},
-      {"transport: noise_de00_p95, noise_de00_mean, samples_mean, open_share, trace_s, reached",
-       "with --aov transport: noise of the worst column, and directions traced"},
+      {"transport: noise_de00_p95, noise_de00_mean, shown_noise_de00_p95, samples_mean, open_share, trace_s, reached",
+       "with --aov transport: noise of the worst column, noise in these paints, directions traced"},
       {"transport: maps_miss_de00, summed", "with --aov transport: what maps miss, and whether wide lobes were summed"},
       {"transport: float_parts, half_error_de00", "parts written as floats, and the error of those in halves"},
       {"transport: load_ms, scale_ms, bounced_de00_p95, trace_again",
@@ -274,8 +274,7 @@ void add_report(cli::ToolSpec& spec) {
       {"exposure_stops, view, white_luminance",
        "exposure, display and view of a PNG, and the brightest that a white diffuser can be"},
       {"repairs: normals_made, degenerate_dropped, polygons_split, triangles_turned", "what was mended in the mesh"},
-      {"error: de00_p95_low, de00_p95_high",
-       "its range of one standard error; null: too few pixels"},
+      {"error: de00_p95_low, de00_p95_high", "its range of one standard error; null: too few pixels"},
       {"error: de00_mean, de00_p95, de00_max, checked_pixels, worst_x, worst_y, time_s, source, against",
        "of --check; the source is the image that the reference used"},
       {"error: standard_error, fit", "95th percentiles of the noise of the truth, and of what fits miss of readings"},
@@ -321,8 +320,8 @@ cli::ToolSpec tool_spec(Options& o) {
   add_examples(spec);
   add_report(spec);
   add_gone(spec);
-  spec.see_also = {"fit-paint(1)",           "prefilter-envmap(1)", "goniochrome-paint(5)",
-                   "goniochrome-rendering(7)", "goniochrome-plan(7)", "goniochrome-paths(7)"};
+  spec.see_also = {"fit-paint(1)",        "prefilter-envmap(1)", "goniochrome-paint(5)", "goniochrome-rendering(7)",
+                   "goniochrome-plan(7)", "goniochrome-paths(7)"};
   return spec;
 }
 

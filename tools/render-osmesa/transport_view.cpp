@@ -58,6 +58,7 @@ void report_traced(const render::TracedLobes& traced, const render::TransportPar
                                     {"columns", traced.transport.columns.count()},
                                     {"noise_de00_p95", json_number(traced.noise_p95_de00)},
                                     {"noise_de00_mean", json_number(traced.noise_mean_de00)},
+                                    {"shown_noise_de00_p95", json_number(traced.shown_p95_de00)},
                                     {"samples_mean", traced.samples_mean},
                                     {"open_share", traced.free_share},
                                     {"trace_s", traced.time_s},
@@ -74,11 +75,12 @@ void report_traced(const render::TracedLobes& traced, const render::TransportPar
           "are summed",
           open->maps_miss_de00));
   }
-  session.say(fmt::format(
-      "transport: {} points by {} columns, noise {:.2f} dE00 (p95 of the gray paint of each lobe) after {:.0f} "
-      "directions a point and {:.1f} s; {:.0f} bytes a point, {} parts as floats",
-      traced.transport.places.size(), traced.transport.columns.count(), traced.noise_p95_de00, traced.samples_mean,
-      traced.time_s, per_point, file.float_parts));
+  session.say(
+      fmt::format("transport: {} points by {} columns, noise {:.2f} dE00 in these paints, {:.2f} in the worst gray "
+                  "paint of one lobe "
+                  "(p95), after {:.0f} directions a point and {:.1f} s; {:.0f} bytes a point, {} parts as floats",
+                  traced.transport.places.size(), traced.transport.columns.count(), traced.shown_p95_de00,
+                  traced.noise_p95_de00, traced.samples_mean, traced.time_s, per_point, file.float_parts));
   if (!traced.reached)
     session.warn(fmt::format("the noise of the transport is {:.2f} dE00, above --tolerance {}: {}",
                              traced.noise_p95_de00, shortest(session.common().tolerance),

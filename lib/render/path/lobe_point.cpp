@@ -423,7 +423,7 @@ LobeEstimate LobePoint::floor_estimate(std::span<const LobePoint* const> points,
   result.freedom = shown.freedom();
   direct += mean.direct;
   bounced = deeper = mean.into_lobes + mean.into_diffuse;
-  result.covariance[LobeColumns::diffuse()] = shown.covariance();
+  result.covariance[LobeColumns::diffuse()] = result.shown = shown.covariance();
   return result;
 }
 
@@ -444,7 +444,8 @@ void LobePoint::add_sequence(const std::vector<Ray>& rays, std::uint64_t seed, S
 // one with the smaller second moment; beta = free2/(free2 + hidden2) is taken for the even sequences from the odd
 // ones and for the odd ones from the even ones, so that it depends on no sample that it weighs.
 LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const color::Rgb* open_light,
-                                 const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed) {
+                                 const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed,
+                                 const color::Rgb* paint) {
   const LobePoint& any = *points.front();
   if (any.on_projected_) return floor_estimate(points, sequences, directions, seed);
   const Transport& transport = any.transport_;
@@ -486,6 +487,7 @@ LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const
     points[starts[w]]->add_sequence(rays[w], seed_of(which), sums, which);
   }
   for (std::size_t c = 0; c < sums.classes.size(); ++c) result.classes[c] = (1.0 / sequences) * sums.classes[c];
+  std::vector<color::Rgb> of_paint(paint != nullptr ? static_cast<std::size_t>(sequences) : 0);
   for (std::size_t k = 0; k < count; ++k) {
     double beta[2] = {0, 0};
     if (open_light != nullptr && k != columns.mirror()) {
@@ -507,10 +509,15 @@ LobeEstimate LobePoint::estimate(std::span<const LobePoint* const> points, const
       if (open_light != nullptr && k != columns.mirror()) light += b * open_light[k];
       direct += (1.0 / sequences) * light, bounced += (1.0 / sequences) * sums.bounced[at];
       shown.add(starts[static_cast<std::size_t>(which)], light + sums.bounced[at]);
+      if (paint != nullptr)
+        of_paint[static_cast<std::size_t>(which)] += any.reflect(rays::float3(paint[k]), light + sums.bounced[at]);
     }
     result.direct[k] += direct, result.bounced[k] += bounced;
     result.covariance[k] = shown.covariance(), result.freedom = shown.freedom();
   }
+  Scatter shown(points.size());
+  for (std::size_t which = 0; which < of_paint.size(); ++which) shown.add(starts[which], of_paint[which]);
+  if (paint != nullptr) result.shown = shown.covariance();
   return result;
 }
 

@@ -30,6 +30,7 @@ struct PaintGroups {
 struct LobeEstimate {
   std::vector<color::Rgb> direct, bounced;
   std::vector<Covariance> covariance;  // of one sequence's mean of the sum of both, about that of its point
+  Covariance shown{};                  // likewise, of the paint whose weights were given
   std::vector<color::Rgb> classes;     // of bounced light, as the paint that the point wears shows them
   int sequences = 0;                   // 0: the points see their whole hemispheres, and all is exact
   int freedom = 0;                     // of the covariance
@@ -67,9 +68,10 @@ class LobePoint {
   // a power of two: each sequence starts from one of them. `open_light` has the mean light of each column there, of the
   // environment without any surface in the way, with add_open_floor(): rays correct it without bias, so that points
   // whose rays are all free have no noise. `open_mirrors` has what the mirror of each point sees of it. Both null: rays
-  // alone.
+  // alone. `paint` has a weight for each column, or is null.
   static LobeEstimate estimate(std::span<const LobePoint* const> points, const color::Rgb* open_light,
-                               const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed);
+                               const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed,
+                               const color::Rgb* paint = nullptr);
   // The estimate of this point alone.
   LobeEstimate estimate(const color::Rgb* open_light, int sequences, int directions, std::uint64_t seed) const {
     const color::Rgb* mirror = open_light != nullptr ? open_light + columns_.mirror() : nullptr;

@@ -56,7 +56,7 @@ class Tracing {
     t.classes.assign(points * worn.groups.classes() * 3, 0);
     t.noise_de00.assign(points, 0);
     if (open != nullptr) open_light_.assign(points * t.floats(), 0);
-    variance_.assign(points * columns.count(), 0);
+    variance_.assign(points * (columns.count() + 1), 0), shown_noise_.assign(points, 0);
     batches_.assign(points, 0), freedom_.assign(points, 0), needed_.assign(points, 0);
     for (std::size_t k = 0; k < columns.count(); ++k) nominal_.push_back(nominal_weight(columns, k));
     fewest_ = request.pixel_samples > 1 ? 2 * request.pixel_samples : kFirstBatches;
@@ -69,7 +69,7 @@ class Tracing {
       pace_.start();
       sample(more);
       pace_.end(drawn() - before);
-      result_.noise_p95_de00 = judge();
+      judge();
       if (request_.progress) request_.progress(result_.noise_p95_de00, clock_.elapsed_s());
       result_.reached = result_.noise_p95_de00 <= request_.tolerance_de00;
       if (result_.reached || deadline_.passed() || !plan(more) || !cut(more)) break;
@@ -195,7 +195,7 @@ class Tracing {
     while (of_each * sequences < batches) of_each *= 2;
     const LobeEstimate estimate = LobePoint::estimate(
         of_pixel, open_ != nullptr ? open.data() : nullptr, mirrors.data(), sequences, of_each * kDirections,
-        mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(batches_[i])));
+        mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(batches_[i])), worn_by(part).data());
     const double before = batches_[i], added = estimate.sequences * of_each;
     const double share = added > 0 ? added / (before + added) : 1;
     const auto mix = [share](float& into, double value) {
@@ -213,10 +213,13 @@ class Tracing {
     batches_[i] += estimate.sequences * of_each;
     freedom_[i] += estimate.freedom + (before > 0 ? 1 : 0);
     // The variance of the mean of both rounds, kept as that of one batch.
-    for (std::size_t k = 0; added > 0 && k < t.columns.count(); ++k) {
-      float& variance = variance_[i * t.columns.count() + k];
+    for (std::size_t k = 0; added > 0 && k <= t.columns.count(); ++k) {
+      float& variance = variance_[i * (t.columns.count() + 1) + k];
       const double old = before > 0 ? (1 - share) * (1 - share) * variance / before : 0,
-                   now = share * share * nominal_variance(i, k, estimate.covariance[k]) / estimate.sequences;
+                   now = share * share *
+                         (k < t.columns.count() ? nominal_variance(i, k, estimate.covariance[k])
+                                                : shown_variance(i, estimate.shown)) /
+                         estimate.sequences;
       variance = static_cast<float>((before + added) * (old + now));
     }
   }
@@ -232,12 +235,29 @@ class Tracing {
     return noise * noise;
   }
 
-  double judge() {
+  // dE00^2, in the paint that is worn there
+  double shown_variance(std::size_t i, const Covariance& covariance) const {
+    const LobeTransport& t = result_.transport;
+    const std::vector<color::Rgb>& weights = worn_by(t.part[i]);
+    color::Rgb shown;
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      for (int c = 0; c < 3; ++c) shown[c] += weights[k][c] * t.light(i, k)[c];
+    const double noise = noise_de00(shown, covariance, request_.white_luminance);
+    return noise * noise;
+  }
+
+  const std::vector<color::Rgb>& worn_by(int part) const {
+    const WornPaints& worn = result_.transport.worn;
+    return worn.weights[static_cast<std::size_t>(worn.groups.of_part[static_cast<std::size_t>(part)])];
+  }
+
+  void judge() {
     const std::size_t points = batches_.size();
     parallel_for(points, 1024, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) judge(i);
     });
-    return worse_percentile(result_.transport.noise_de00);
+    result_.noise_p95_de00 = worse_percentile(result_.transport.noise_de00);
+    result_.shown_p95_de00 = worse_percentile(shown_noise_);
   }
 
   // The larger of the 95th percentiles over the mesh and over a floor that shows the environment.
@@ -253,12 +273,12 @@ class Tracing {
   // the number of samples of a point, so that no point stops where its own sums happen to be bright.
   void judge(std::size_t i) {
     LobeTransport& t = result_.transport;
-    t.noise_de00[i] = 0, needed_[i] = 0;
+    t.noise_de00[i] = shown_noise_[i] = 0, needed_[i] = 0;
     const int n = batches_[i];
     if (n < 2) return;
-    const std::size_t columns = t.columns.count();
+    const std::size_t columns = t.columns.count(), kinds = columns + 1;
     const int x = static_cast<int>(t.places[i]) % t.width, y = static_cast<int>(t.places[i]) / t.width;
-    double around[2 * kMostTracedLobes + 2] = {};
+    double around[2 * kMostTracedLobes + 3] = {};
     int count = 0;
     for (int v = std::max(0, y - kNeighborReach); v <= std::min(t.height - 1, y + kNeighborReach); ++v) {
       for (int u = std::max(0, x - kNeighborReach); u <= std::min(t.width - 1, x + kNeighborReach); ++u) {
@@ -266,15 +286,19 @@ class Tracing {
         const auto other = static_cast<std::size_t>(number);
         if (number < 0 || other == i || batches_[other] < 2) continue;
         ++count;
-        for (std::size_t k = 0; k < columns; ++k) around[k] += variance_[other * columns + k];
+        for (std::size_t k = 0; k < kinds; ++k) around[k] += variance_[other * kinds + k];
       }
     }
     const double freedom = freedom_[i];
     double worst = 0, needed = 0;
-    for (std::size_t k = 0; k < columns; ++k) {
-      const double own = variance_[i * columns + k];
-      const double mean = (around[k] + own) / (count + 1);
-      worst = std::max(worst, (freedom * own + kNeighborhood * mean) / (freedom + kNeighborhood) / n);
+    for (std::size_t k = 0; k < kinds; ++k) {
+      const double own = variance_[i * kinds + k], mean = (around[k] + own) / (count + 1),
+                   found = (freedom * own + kNeighborhood * mean) / (freedom + kNeighborhood) / n;
+      if (k == columns) {
+        shown_noise_[i] = static_cast<float>(std::sqrt(found));
+        continue;
+      }
+      worst = std::max(worst, found);
       needed = std::max(needed, count > 0 ? around[k] / count : own);
     }
     t.noise_de00[i] = static_cast<float>(std::sqrt(worst));
@@ -312,7 +336,8 @@ class Tracing {
   std::vector<VisibleSurface> samples_;  // of the pixels; none: their centers
   std::vector<std::int32_t> number_;     // of the point of each pixel, or -1
   std::vector<float> open_light_;        // point, column, channel
-  std::vector<float> variance_;          // of one batch: point, column; dE00^2
+  std::vector<float> variance_;          // of one batch: point, column, and the paint that is worn last; dE00^2
+  std::vector<float> shown_noise_;       // of each point, in that paint
   std::vector<int> batches_, freedom_;
   int fewest_ = kFirstBatches;  // of a round; of several samples each gets two sequences
   std::vector<double> needed_, nominal_;

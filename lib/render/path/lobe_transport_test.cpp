@@ -430,6 +430,19 @@ void expect_as_noisy_as_told(int pixel_samples) {
   EXPECT_LT(std::sqrt(worst / stated), 1.1);
   EXPECT_GT(std::sqrt(worst / stated), 0.4);
   EXPECT_GT(within, 0.9 * static_cast<double>(points));
+
+  // 5 of 100 points are told to have larger standard deviations, of which a normal error exceeds two as rarely.
+  std::vector<double> apart;
+  for (std::size_t i = 0; i < points; ++i) {
+    const int group = a.transport.worn.groups.of_part[static_cast<std::size_t>(a.transport.part[i])];
+    const auto& weights = a.transport.worn.weights[static_cast<std::size_t>(group)];
+    apart.push_back(seen_difference(shown(a.transport, i, weights, true), shown(b.transport, i, weights, true), 1));
+  }
+  const double told = std::hypot(a.shown_p95_de00, b.shown_p95_de00), found = percentile_95(apart);
+  std::printf("p95 in the paints that are worn: told %.2f, found %.2f\n", told, found);
+  EXPECT_LT(found, 2 * told);
+  EXPECT_GT(found, 0.7 * told);
+  EXPECT_LT(told, std::hypot(a.noise_p95_de00, b.noise_p95_de00));
 }
 TEST(LobeTransport, IsAsNoisyAsItSays) {
   expect_as_noisy_as_told(1);
