@@ -10,7 +10,8 @@ namespace goniochrome::prefilter {
 
 namespace {
 
-constexpr double kTolerance = 4e-3, kLookupTolerance = 1e-3;
+// Errors of mean squares, by the maps and by the look-up in them: a root mean square has half of each.
+constexpr double kTolerance = 1e-2, kLookupTolerance = 4e-3;
 constexpr int kMostRows = 256;
 
 // The mean square of the radiance up to a level, on a lat-long grid that is no finer than lobes need. Cells that no
@@ -24,17 +25,23 @@ envmap::Environment squared(const envmap::Environment& from, double level) {
     const Vec3 left{scale * rgb[0], scale * rgb[1], scale * rgb[2]};
     return Vec3{left.x * left.x, left.y * left.y, left.z * left.z};
   };
-  const auto cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  const auto cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
+             width = static_cast<std::size_t>(from.width());
+  std::vector<int> cell_of(width * static_cast<std::size_t>(from.height()), -1);
+  parallel_for(static_cast<std::size_t>(from.height()), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin * width; i < end * width; ++i) {
+      const int column = static_cast<int>(i % width), row = static_cast<int>(i / width);
+      if (from.solid_angle(column, row) > 0) cell_of[i] = static_cast<int>(grid.texel(from.direction(column, row)));
+    }
+  });
   std::vector<Vec3> sums(cells);
   std::vector<double> weights(cells);
-  for (int row = 0; row < from.height(); ++row) {
-    for (int column = 0; column < from.width(); ++column) {
-      const double weight = from.solid_angle(column, row);
-      if (!(weight > 0)) continue;
-      const auto cell = static_cast<std::size_t>(grid.texel(from.direction(column, row)));
-      sums[cell] += weight * square(from.radiance(column, row));
-      weights[cell] += weight;
-    }
+  for (std::size_t i = 0; i < cell_of.size(); ++i) {
+    if (cell_of[i] < 0) continue;
+    const int column = static_cast<int>(i % width), row = static_cast<int>(i / width);
+    const double weight = from.solid_angle(column, row);
+    sums[static_cast<std::size_t>(cell_of[i])] += weight * square(from.radiance(column, row));
+    weights[static_cast<std::size_t>(cell_of[i])] += weight;
   }
   image::Image image{columns, rows, 3, std::vector<float>(3 * cells), {"R", "G", "B"}};
   for (std::size_t i = 0; i < cells; ++i) {
