@@ -3,11 +3,14 @@
   python draw_with_mitsuba.py SCENE.json OUT.npy
 
 SCENE.json: variant; parts: [{positions, normals, triangles (paths of .npy), paint, emission}]; environment (.npy of a lat-long
-picture, or null); eye, target, fov_deg, size [width, height]; bounces; samples (of a pixel, in each of the passes); passes; seed.
-A paint has table, the path of an RGL tensor file, or diffuse, lobes [[exponent, directional diffuse, gloss] ...] and mirror, as goniochrome-lobes(7), "LOBE MODEL", has them.
+picture, or null); eye, target, fov_deg, size [width, height]; bounces; samples (of a pixel, in each of the passes); passes; seed;
+denoise: true for the last pass alone, as Open Image Denoise cleans it by the normals and by an even albedo.
+A paint has table, the path of an RGL tensor file, or diffuse, lobes [[exponent, directional diffuse, gloss] ...] and mirror, as
+goniochrome-lobes(7), "LOBE MODEL", has them.
 
-OUT.npy holds the mean radiance of the passes. Rays go through the centers of the pixels. The last line of standard output is JSON: version, the processor seconds of each pass after the first, and of the first,
-first_s, which compiling is part of.
+OUT.npy holds the mean radiance of the passes. Rays go through the centers of the pixels. The last line of standard output is
+JSON: version, the processor seconds of each pass after the first, of the first, first_s, which compiling is part of, and of the
+second call of the denoiser, denoise_s.
 """
 
 import json
@@ -194,6 +197,22 @@ def center_rays(told):
     return eye, way.reshape(-1, 3)
 
 
+def denoised(scene, eye, ways, noisy):
+    """(the picture as Open Image Denoise cleans it, the processor seconds that it took once it was set up)"""
+    import pyoidn  # only where it is asked for
+
+    way = mi.Vector3f(*(mi.Float(ways[:, c].astype(numpy.float32)) for c in range(3)))
+    seen = scene.ray_intersect(mi.Ray3f(mi.Point3f(*map(float, eye)), way))
+    normal = numpy.stack([numpy.array(dr.select(seen.is_valid(), seen.sh_frame.n[c], 0)) for c in range(3)], -1)
+    albedo = numpy.where(numpy.array(seen.is_valid())[:, None], (0.5, 0.5, 0.5), (1, 1, 1)).astype(numpy.float32)
+    guides = {"albedo": albedo.reshape(noisy.shape), "normal": normal.astype(numpy.float32).reshape(noisy.shape)}
+    for _ in range(2):
+        began = time.process_time()
+        clean = pyoidn.denoise(noisy, hdr=True, **guides)
+        seconds = time.process_time() - began
+    return clean, seconds
+
+
 def main():
     global dr
     with open(sys.argv[1], encoding="utf-8") as file:
@@ -221,8 +240,14 @@ def main():
         total = total + numpy.stack(sums, -1).astype(float) / samples
         seconds.append(time.process_time() - began)
     width, height = told["size"]
-    numpy.save(sys.argv[2], (total / told["passes"]).reshape(height, width, 3).astype(numpy.float32))
-    print(json.dumps({"version": mi.__version__, "seconds": seconds[1:] or seconds, "first_s": seconds[0]}))
+    said = {"version": mi.__version__, "seconds": seconds[1:] or seconds, "first_s": seconds[0]}
+    if told.get("denoise"):
+        total = numpy.stack(sums, -1) / samples
+        picture, said["denoise_s"] = denoised(scene, eye, ways, total.reshape(height, width, 3).astype(numpy.float32))
+    else:
+        picture = (total / told["passes"]).reshape(height, width, 3).astype(numpy.float32)
+    numpy.save(sys.argv[2], picture)
+    print(json.dumps(said))
 
 
 if __name__ == "__main__":

@@ -149,10 +149,11 @@ class Case:
         channels = pictures.channels(out)
         return numpy.stack([channels[name] for name in "RGB"], -1).astype(float), channels["A"] > 0.99, seconds
 
-    def theirs(self, python, environment, variant, samples, passes, seed):
-        """(the mean of the passes, what Mitsuba said of its time)"""
+    def theirs(self, python, environment, variant, samples, passes, seed, denoise=False):
+        """(the mean of the passes, or the last one denoised; what Mitsuba said of its time)"""
         scene, out = self.at / "scene.json", self.at / "theirs.npy"
-        scene.write_text(json.dumps({**self.told, "variant": variant, "samples": samples, "passes": passes, "seed": seed}))
+        scene.write_text(json.dumps({**self.told, "variant": variant, "samples": samples, "passes": passes, "seed": seed,
+                                     "denoise": denoise}))
         done = subprocess.run([python, SCRIPTS / "cross_check/draw_with_mitsuba.py", scene, out], capture_output=True, text=True,
                               env=environment, check=False)
         if done.returncode:
