@@ -41,7 +41,7 @@ double computed_quantile(double u) {
   return u < 0.5 ? -x : x;
 }
 
-// A table gives it too, but for the tails.
+// The quantile is interpolated in a table, but for the tails.
 double normal_quantile(double u) {
   constexpr int kSteps = 1024, kEnd = 16;
   static const std::array<double, kSteps + 1> table = [] {

@@ -76,9 +76,9 @@ void report_traced(const render::TracedLobes& traced, const render::TransportPar
           open->maps_miss_de00));
   }
   session.say(
-      fmt::format("transport: {} points by {} columns, noise {:.2f} dE00 in these paints, {:.2f} in the worst gray "
-                  "paint of one lobe "
-                  "(p95), after {:.0f} directions a point and {:.1f} s; {:.0f} bytes a point, {} parts as floats",
+      fmt::format("transport: {} points by {} columns, errors dE00 {:.2f} (p95) in these paints, noise {:.2f} in "
+                  "the worst gray paint of one lobe, after {:.0f} directions a point and {:.1f} s; {:.0f} bytes a "
+                  "point, {} parts as floats",
                   traced.transport.places.size(), traced.transport.columns.count(), traced.shown_p95_de00,
                   traced.noise_p95_de00, traced.samples_mean, traced.time_s, per_point, file.float_parts));
   if (!traced.reached)

@@ -257,16 +257,20 @@ class Tracing {
       for (std::size_t i = begin; i < end; ++i) judge(i);
     });
     result_.noise_p95_de00 = worse_percentile(result_.transport.noise_de00);
-    result_.shown_p95_de00 = worse_percentile(shown_noise_);
+    result_.shown_p95_de00 = worse(shown_noise_, largest_errors);
   }
 
   // The larger of the 95th percentiles over the mesh and over a floor that shows the environment.
   template <class Value>
   double worse_percentile(const std::vector<Value>& of) const {
+    return worse(of, [](const std::vector<double>& values) { return percentile_95(values); });
+  }
+  template <class Value, class Figure>
+  double worse(const std::vector<Value>& of, const Figure& figure) const {
     const LobeTransport& t = result_.transport;
     std::vector<double> mesh, floor;
     for (std::size_t i = 0; i < of.size(); ++i) (t.worn.is_projected(t.part[i]) ? floor : mesh).push_back(of[i]);
-    return std::max(percentile_95(std::move(mesh)), percentile_95(std::move(floor)));
+    return std::max(figure(mesh), figure(floor));
   }
 
   // The judgment is that of path_picture(): few estimates tell little of their variance, and the neighbors alone decide

@@ -86,7 +86,7 @@ struct LobeTransportRequest {
 struct TracedLobes {
   LobeTransport transport;
   double noise_p95_de00 = 0, noise_mean_de00 = 0;
-  double shown_p95_de00 = 0;                // the same noise in the paints that are worn
+  double shown_p95_de00 = 0;                // what 5 of 100 errors exceed in the paints that are worn
   double samples_mean = 0, free_share = 0;  // directions of a point; points that nothing rises above
   double time_s = 0;
   bool reached = false;
