@@ -23,6 +23,9 @@ constexpr std::uint32_t kFew = 8, kMany = 64;
 // far as so many lengths.
 constexpr double kGridMargin = 0.1, kGridGrowth = 1.15, kGridReach = 16;
 constexpr std::size_t kBounceStep = 4;
+// Light above so many times that of a white floor under the open sky, such as a sun in paint, is found by few of a
+// node's directions: what is above it counts as far as a node beside it finds any.
+constexpr double kRare = 4;
 // A cell in which light bends is divided into so many, each way.
 constexpr std::size_t kDivisions = 4, kFineNodes = kDivisions + 1;
 constexpr std::uint32_t kWhole = std::numeric_limits<std::uint32_t>::max();
@@ -350,15 +353,25 @@ void ShadedGround::smooth(Grid& grid) {
   along(columns, 1, rows, columns), along(rows, columns, columns, 1);
 }
 
+Float3 ShadedGround::largest_beside(const Grid& grid, std::size_t column, std::size_t row) {
+  Float3 largest;
+  for (std::size_t r = std::max<std::size_t>(row, 1) - 1; r < std::min(row + 2, grid.z.size()); ++r)
+    for (std::size_t c = std::max<std::size_t>(column, 1) - 1; c < std::min(column + 2, grid.x.size()); ++c)
+      if (const Float3& v = grid.at(c, r); r != row || c != column)
+        largest = {std::max(largest.x, v.x), std::max(largest.y, v.y), std::max(largest.z, v.z)};
+  return largest;
+}
+
 // Directions even by the cosine.
 void ShadedGround::gather(const std::vector<float>& x, const std::vector<float>& z, const GroundRequest& request,
                           const color::Rgb& irradiance) {
   bounced_.x = x, bounced_.z = z;
   const auto count = static_cast<std::uint32_t>(request.bounced_directions);
+  Grid rare{x, z, std::vector<Float3>(x.size() * z.size())};
   fill(bounced_, [&](const Float3& start, std::size_t node) {
     const Sequence sequence(mixed(request.seed, node), count);
     const Cone toward = cone(start);
-    color::Rgb sum;
+    color::Rgb sum, above;
     for (std::uint32_t first = 0; first < count; first += kFanRays) {
       rays::Fan fan;
       fan.origin = start;
@@ -373,13 +386,23 @@ void ShadedGround::gather(const std::vector<float>& x, const std::vector<float>&
       if (fan.wanted == 0) continue;
       rays::Hit hits[kFanRays];
       scene_->closest(fan, hits);
-      for (std::uint32_t i = 0; i < kFanRays; ++i)
-        if (hits[i].any()) sum += request.sent(hits[i], start, {fan.x[i], fan.y[i], fan.z[i]}, sequence, first + i);
+      for (std::uint32_t i = 0; i < kFanRays; ++i) {
+        if (!hits[i].any()) continue;
+        color::Rgb light = request.sent(hits[i], start, {fan.x[i], fan.y[i], fan.z[i]}, sequence, first + i);
+        for (int c = 0; c < 3; ++c) light[c] = irradiance[c] > 0 ? kPi * light[c] / irradiance[c] : 0;
+        const double part = kRare / std::max({light.x, light.y, light.z, kRare});
+        sum += part * light, above += (1 - part) * light;
+      }
     }
-    color::Rgb share;
-    for (int c = 0; c < 3; ++c) share[c] = irradiance[c] > 0 ? kPi / count * sum[c] / irradiance[c] : 0;
-    return floats(share);
+    rare.values[node] = floats((1.0 / count) * above);
+    return floats((1.0 / count) * sum);
   });
+  for (std::size_t row = 0; row < z.size(); ++row)
+    for (std::size_t column = 0; column < x.size(); ++column) {
+      const Float3 &own = rare.at(column, row), most = largest_beside(rare, column, row);
+      Float3& value = bounced_.values[row * x.size() + column];
+      value = value + Float3{std::min(own.x, most.x), std::min(own.y, most.y), std::min(own.z, most.z)};
+    }
   smooth(bounced_);
 }
 

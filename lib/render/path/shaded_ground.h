@@ -92,6 +92,7 @@ class ShadedGround {
   void add_lamp(const Light& light, const color::Rgb& irradiance);
   void shade(const std::vector<float>& x, const std::vector<float>& z);
   static void smooth(Grid& grid);
+  static rays::Float3 largest_beside(const Grid& grid, std::size_t column, std::size_t row);
   void divide();
   static float bent(const Grid& grid, std::size_t column, std::size_t row);
   static float bent(const Grid& grid, std::size_t column, std::size_t row, bool across);

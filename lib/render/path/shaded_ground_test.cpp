@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "math/statistics.h"
@@ -195,6 +196,48 @@ TEST(ShadedGround, LightsTheBodyAsPathsDo) {
       EXPECT_LT(deviation(read), (correction ? 0.7 : 1.05) * deviation(truth));
     }
   }
+}
+
+// A small sun in a smooth coat is found by one direction in many thousands, which tells nothing of the light at its
+// node: no place is far brighter than those beside it. What the body sends by all other ways stays.
+TEST(ShadedGround, ASunInPaintLeavesNoBrightPlace) {
+  struct Ball : PathStage {
+    Ball() : PathStage(sphere_mesh(32), {matt({0.05, 0.05, 0.05})}) {
+      for (Vec3& p : mesh.positions) p.y += 1.1;
+      scene.paints.front().coat_index = 1.5;
+      scene.paints.front().lobes.push_back({paint::kMirrorExponent, {}, {1, 1, 1}});
+      environment = environment_of(256, 128, [](int x, int y) {
+        return x == 80 && y == 30 ? color::Rgb{14000, 14000, 14000} : color::Rgb{0.5, 0.5, 0.5};
+      });
+      ground.emplace();
+      ground->height = 0, ground->probe_eye = {0, 0.6, 0};
+      build();
+    }
+  };
+  const Ball stage;
+  const auto sent = [&](int directions, std::uint64_t seed) {
+    Transport with = *stage.transport, without = *stage.transport;
+    with.shade_ground({.cell = 1.0 / 40, .bounced_directions = directions, .seed = seed}, 1);
+    without.shade_ground({.cell = 1.0 / 40, .bounced_directions = directions, .seed = seed}, 0);
+    std::vector<double> shares;
+    for (double x = -3; x <= 3; x += 0.15)
+      for (double z = -3; z <= 3; z += 0.15) {
+        const rays::Float3 from = with.rays().local({x, 0.001, z}), down{0, -1, 0};
+        const rays::Spot spot =
+            with.rays().spot({rays::kFloor, 0, 0, with.rays().floor_distance(from, down)}, from, down);
+        shares.push_back((with.shaded_ground(spot).sum().y - without.shaded_ground(spot).sum().y) /
+                         with.open_ground(spot).y);
+      }
+    return shares;
+  };
+  std::vector<double> few;
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    const std::vector<double> one = sent(128, seed);
+    few.insert(few.end(), one.begin(), one.end());
+  }
+  const double mean = math::mean(sent(1 << 12, 5));
+  EXPECT_LT(*std::ranges::max_element(few), 0.1);
+  EXPECT_NEAR(math::mean(few), mean, 0.4 * mean);
 }
 
 // A leg hides all of the light; far away the mesh hides next to none.
