@@ -39,7 +39,6 @@ Effects united(const Effects& a, const Effects& b) {
   all.tilt_tolerance = std::min(a.tilt_tolerance, b.tilt_tolerance);
   all.most_tilts = std::max(a.most_tilts, b.most_tilts);
   all.tolerance_de00 = std::min(a.tolerance_de00, b.tolerance_de00);
-  all.ray_noise_de00 = std::min(a.ray_noise_de00, b.ray_noise_de00);
   all.most_ray_samples = std::max(a.most_ray_samples, b.most_ray_samples);
   if (all.background == Background::kNone) all.background = b.background;
   return all;

@@ -54,7 +54,7 @@ struct Effects {
   bool anisotropy = false;
   double tilt_tolerance = 0.005;  // Scene::tilt_error
   int most_tilts = 1024;
-  double tolerance_de00 = 0.3;  // of light that is summed instead of looked up: p95 over the visible pixels
+  double tolerance_de00 = 0.3;  // of the picture: p95 over the visible pixels
   bool sums = false;  // the diffuse part and the wide lobes by sums over the environment, which plans alone turn on
   bool reflection = false;  // the scene's reflection operator in place of the component-wise product
   bool panes = false;       // what lies behind panes; else they mirror before black
@@ -63,7 +63,6 @@ struct Effects {
   bool extent = false;   // lamps as discs, which lobes and the mirror see; else as points
   bool sparkle = false;  // flakes one by one, added to the picture of an engine with prefiltered maps by plans alone
   RayEffects rays = {};  // effects_of() leaves them out, since no engine with prefiltered maps draws them by itself
-  double ray_noise_de00 = 0.35;    // error that rays may leave at 95 of 100 points
   int most_ray_samples = 1 << 16;  // of a visible point, in all samples of its pixel
   Background background = Background::kNone;
 

@@ -25,7 +25,6 @@ struct RayContext {
 
 struct PlanRequest {
   double tolerance_de00 = 0.5;        // what leaving effects out may change, p95 over visible pixels, all together
-  bool quick = false;                 // the noise of rays that nobody named may be the whole tolerance
   EffectWords effects = {};           // that are asked for
   std::optional<std::string> engine;  // by name; none: the first that draws by prefiltered maps
   double white_luminance = 1;         // what color differences are relative to
@@ -59,11 +58,12 @@ struct Plan {
   double time_ms = 0;   // that planning took, the maps loaded that the picture needs as well
 };
 
-// The change by sums that the first pass finds at 95 of 100 points, and whether nobody sees it, so that they are left
-// out; nothing without sums.
-struct FoundSums {
-  std::optional<double> de00_p95;
-  bool stopped = false;
+// Findings of the first pass at some points, where no surface is in the way of light.
+struct FoundMaps {
+  std::optional<double> sums_de00_p95;  // the change by sums at 95 of 100 points; nothing without sums
+  bool sums_stopped = false;            // whether nobody sees it, so that they are left out
+  // The errors of the maps that are drawn, with their sums, at each point: CIEDE2000. Empty where none was measured.
+  std::vector<double> errors_de00;
 };
 
 }  // namespace goniochrome::render

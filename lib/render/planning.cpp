@@ -217,9 +217,6 @@ std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const G
   return points;
 }
 
-namespace {
-
-// With the footprints on textures that one of so many samples of a pixel has; see SurfaceLayer::put_places().
 std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count,
                                        const Scene& scene, int samples) {
   std::vector<VisiblePoint> points = probe_points(gbuffers, count, scene.mesh);
@@ -231,8 +228,6 @@ std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const G
   }
   return points;
 }
-
-}  // namespace
 
 Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers) {
   if (has_panes(scene)) return scene;
@@ -307,7 +302,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   plan.items.push_back(engine.is_planned ? sparkle_item(scene, pixels, request, plan.effects)
                                          : sparkle_left_out(scene, engine.name));
   plan.items.push_back(sums_item(words, rays, engine.is_planned, plan.effects));
-  for (PlanItem& item : ray_items(words, rays, request, plan.effects)) plan.items.push_back(std::move(item));
+  for (PlanItem& item : ray_items(words, rays, plan.effects)) plan.items.push_back(std::move(item));
   plan.time_ms = 1000 * clock.elapsed_s();
   return plan;
 }
@@ -350,9 +345,9 @@ void add_finding(double de00_p95, bool stopped, PlanItem& item) {
 
 }  // namespace
 
-void add_findings(const CorrectionNoise& rays, const FoundSums& sums, Plan& plan) {
-  if (PlanItem* item = row_of(plan, kSumsName); item != nullptr && sums.de00_p95)
-    add_finding(*sums.de00_p95, sums.stopped, *item);
+void add_findings(const CorrectionNoise& rays, const FoundMaps& maps, Plan& plan) {
+  if (PlanItem* item = row_of(plan, kSumsName); item != nullptr && maps.sums_de00_p95)
+    add_finding(*maps.sums_de00_p95, maps.sums_stopped, *item);
   if (!plan.effects.rays.any()) return;
   for (std::size_t i = 0; i < ray_effect_names().size(); ++i) {
     PlanItem* item = row_of(plan, ray_effect_names()[i]);

@@ -29,6 +29,9 @@ std::vector<ProbePixel> probe_pixels(const std::vector<std::shared_ptr<const Gbu
 // The points that they show.
 std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count,
                                        const mesh::Mesh* mesh = nullptr);
+// With the footprints on textures that one of so many samples of a pixel has; see SurfaceLayer::put_places().
+std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count,
+                                       const Scene& scene, int samples);
 
 // The scene as far as it is seen: paints of parts that no G-buffer shows are bare, so that nothing is loaded for them.
 // Behind panes anything may be seen.
@@ -46,6 +49,6 @@ void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& 
                double white_luminance);
 
 // Takes what the first pass of a picture found.
-void add_findings(const CorrectionNoise& rays, const FoundSums& sums, Plan& plan);
+void add_findings(const CorrectionNoise& rays, const FoundMaps& maps, Plan& plan);
 
 }  // namespace goniochrome::render

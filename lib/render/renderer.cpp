@@ -15,6 +15,7 @@
 #include "render/path/open_residual.h"
 #include "render/path/path_engine.h"
 #include "render/path/visible_surface.h"
+#include "render/plan/map_audit.h"
 #include "render/plan/ray_plan.h"
 #include "render/planning.h"
 #include "render/scene_effects.h"
@@ -27,8 +28,6 @@ namespace {
 
 constexpr std::size_t kMostKept = std::size_t{320} << 20;  // bytes of all G-buffers: 16 samples of 1280 x 720
 constexpr std::size_t kMostSeen = std::size_t{128} << 20;  // bytes of what they show of textures
-// Sums stop that change no more than this part of the tolerance; the rest is for what else the maps miss.
-constexpr double kStopSums = 0.5;
 constexpr std::size_t kPixelBytes = 4 * sizeof(float) + sizeof(std::uint32_t);
 
 bool same_view(const View& a, const View& b) {
@@ -71,7 +70,8 @@ struct Renderer::State : Sight {
   bool rough_rays = false;  // whether its rough coats are facets, as those of the picture that it corrects
   std::optional<envmap::BlockTree> ray_texels;  // of the environment of ray_setup; none: not yet
   std::unique_ptr<OpenResidual> residual;       // of these; null: not yet
-  FoundSums sums_found;                         // by the first picture after a plan
+  std::unique_ptr<CpuEngine> audited;           // has the maps of an engine that shades no single points
+  std::optional<FoundMaps> maps_found;          // by the first picture of a plan, or of other paints
   bool sums_may_stop = false;
   std::optional<Error> ray_failure;  // of load_paints(), which cannot tell it
   double white_luminance = 1, tolerance_de00 = 0.5;
@@ -98,6 +98,7 @@ struct Renderer::State : Sight {
   Result<void> show(const mesh::Mesh& mesh);
   Result<void> look_at(const View& wanted);
   Result<void> take(int first, int count, image::Image& picture);
+  FoundMaps audit(int sample);
   Result<void> meet(const Scene& whole_scene);
   Result<void> add_seen_through(int sample, float gain, image::Image& picture);
   CorrectionNoise correct(int first, int count, image::Image& picture);
@@ -119,7 +120,8 @@ struct Renderer::State : Sight {
   std::size_t number_kept(int sample);
   // By which the picture is corrected; null where it is not.
   OpenResidual* summed() const {
-    return effects.sums && !sums_found.stopped && engine->info().is_planned ? residual.get() : nullptr;
+    const bool stopped = maps_found && maps_found->sums_stopped;
+    return effects.sums && !stopped && engine->info().is_planned ? residual.get() : nullptr;
   }
 };
 
@@ -281,14 +283,22 @@ std::size_t Renderer::State::number_kept(int sample) {
 Result<void> Renderer::State::take(int first, int count, image::Image& picture) {
   const float gain = 1.0F / static_cast<float>(count);
   GONIO_TRY(take_samples(*this, *engine, scene, effects, first, count, picture));
-  if (summed() != nullptr && !sums_found.de00_p95) {
-    const double de00 = residual->change(*gbuffer(first), picture, white_luminance);
-    sums_found = {de00, sums_may_stop && de00 <= kStopSums * tolerance_de00};
-  }
+  if (!maps_found) maps_found = audit(first);
   for (int i = first; summed() != nullptr && i < first + count; ++i) summed()->add(*gbuffer(i), gain, picture);
   for (int i = first; effects.panes && !engine->info().traces_rays && i < first + count; ++i)
     GONIO_TRY(add_seen_through(i, gain, picture));
   return {};
+}
+
+// Nothing is found of an engine without maps, nor of one that was loaded without a plan.
+FoundMaps Renderer::State::audit(int sample) {
+  const bool by_cpu = &engine->info() == &CpuEngine::kInfo;
+  const CpuEngine* maps = by_cpu ? static_cast<const CpuEngine*>(engine) : audited.get();
+  if (!engine->info().is_planned || maps == nullptr || !effects.environment) return {};
+  const std::shared_ptr<const Gbuffer> drawn = gbuffer(sample);
+  return MapAudit{scene,         effects,        *maps,          summed(), ray_texels ? &*ray_texels : nullptr,
+                  sums_may_stop, tolerance_de00, white_luminance}
+      .found(drawn, view->samples);
 }
 
 // Surfaces behind the panes of a sample are shaded as those that are seen without panes.
@@ -321,7 +331,9 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
   CorrectionRequest request;
   request.effects = effects.rays;
   request.bounces = effort_asked.bounces;
-  request.tolerance_de00 = effects.ray_noise_de00 * std::sqrt(groups);
+  request.tolerance_de00 = tolerance_de00 * std::sqrt(groups);
+  for (const double de00 : maps_found ? maps_found->errors_de00 : std::vector<double>())
+    request.beside_de00.push_back(de00 * std::sqrt(groups));
   request.white_luminance = white_luminance;
   request.most_samples = std::max(2 * kBatch, effects.most_ray_samples / groups);
   request.progress = effort_asked.progress;
@@ -339,7 +351,8 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
                        picture);
     const float gain = static_cast<float>(end - begin) / static_cast<float>(count);
     const CorrectionNoise one = add_correction(*transport, samples, request, before, gain, picture);
-    all.de00_p95 += one.de00_p95 / std::sqrt(groups) / groups, all.free_share += one.free_share / groups;
+    all.de00_p95 += one.de00_p95 / std::sqrt(groups) / groups;
+    all.error_de00_p95 += one.error_de00_p95 / std::sqrt(groups) / groups, all.free_share += one.free_share / groups;
     all.samples += one.samples, all.ms += one.ms;
     all.reached = all.reached && one.reached, all.dark = (group == 0 || all.dark) && one.dark;
     if (group == 0) all.found = one.found;
@@ -520,7 +533,7 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
     rays.absent = traced.error().message;
     GONIO_ASSIGN(plan, make_plan(seen, gbuffers, request, able, rays, *tried));
   }
-  s.sums_found = {};
+  s.maps_found.reset(), s.audited.reset();
   s.sums_may_stop = is_drawn_unasked(plan, kSumsName);
   GONIO_ASSIGN(const EngineInfo* taken, engine_named(plan.engine));
   if (taken == &CpuEngine::kInfo) {  // that which tried out the plan has the maps
@@ -528,6 +541,9 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
     Engine& old = s.engine_of(*taken);
     if (s.engine == &old) s.engine = tried.get();
     std::ranges::find(s.made, &old, &std::unique_ptr<Engine>::get)->reset(tried.release());
+  } else if (taken->is_planned) {
+    tried->load_paints(seen, plan.effects);
+    s.audited = std::move(tried);
   }
   GONIO_TRY(load(taken->traces_rays ? s.completed(scene) : seen, plan.effects, plan.engine));
   return plan;
@@ -538,7 +554,8 @@ void Renderer::load_paints(const Scene& scene) {
   s.begin();
   s.scene = s.engine != nullptr && s.engine->info().traces_rays ? s.completed(scene) : scene;
   if (s.engine != nullptr) s.engine->load_paints(s.scene);
-  s.sums_found = {};
+  if (s.audited) s.audited->load_paints(scene, s.effects);
+  s.maps_found.reset();
   Result<void> taken = s.summed() != nullptr ? s.summed()->load_paints(scene) : Result<void>();
   if (taken.ok() && s.effects.rays.any()) taken = s.trace(scene, s.effects.stretch);
   if (!taken.ok()) s.ray_failure = taken.error();
@@ -582,7 +599,7 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   }
   if (s.effects.sparkle && s.engine->info().is_planned && !frame.gbuffer->triangles.empty())
     Sparkle(s.scene, s.effects).add(*frame.gbuffer, s.effects.rays.any() ? s.ray_mesh.get() : nullptr, frame.picture);
-  frame.sums = s.sums_found;
+  if (s.maps_found) frame.maps = *s.maps_found;
   frame.noise.reset();
   if (s.engine->noise() != nullptr) frame.noise = *s.engine->noise();
   frame.frame_ms = 1000 * whole.elapsed_s();

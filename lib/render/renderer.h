@@ -38,7 +38,7 @@ struct Frame {
   std::optional<Noise> noise;  // of the picture; none of engines that do not draw by random samples
   image::Image open_centers;   // of the pixel centers without the effects of rays; empty unless centers are asked for
   CorrectionNoise rays;        // of the effects of rays in `picture`; 0 where none are drawn
-  FoundSums sums;
+  FoundMaps maps;              // what the maps miss; of engines without maps nothing
 };
 
 // The light that rays meet beside the lights of the scene. How many bounces it takes, and which random numbers, is told

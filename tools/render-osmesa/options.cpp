@@ -145,11 +145,10 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
   cli::add_tolerance(spec, o.common, "DE00", "what the finished picture may miss of the truth, at 95 of 100 pixels")
       .more(
           "What is approximate keeps to it; --check measures it:\n- Lobes and look-ups are left out where all together "
-          "change less; --explain prints the table.\n- Rays are traced until their errors are within .7 of it, and the "
-          "engine path to all of it as one standard deviation.\n- The engine integral sums blocks as coarse as it "
-          "allows.\nWithout "
-          "--tolerance, --time-limit and --check, a picture takes seconds: its noise may be the whole tolerance, and "
-          "rays end after 5 s, or 8 samples of each point.");
+          "change less; --explain prints the table.\n- Rays are traced until errors of maps and rays together are "
+          "within it, and the engine path to all of it as one standard deviation.\n- The engine integral sums blocks "
+          "as coarse as it allows.\nWithout --tolerance, --time-limit and --check, a picture takes seconds: rays end "
+          "after 5 s, or 8 samples of each point.");
   spec.option("tilts", "N|ERROR", "16", &o.tilts, "tilted normals that draw a brushed paint, or their error")
       .more(
           "ERROR, below 1, is relative to the peak of a lobe; --explain says how many normals it takes. The time of "
@@ -244,12 +243,13 @@ void add_examples(cli::ToolSpec& spec) {
 void add_report(cli::ToolSpec& spec) {
   spec.report = {
       {"plan[]: effect, needed, reason, de00_p95, decision, truth_de00_p95",
-       "what each effect changes, and whether it is drawn; the truth with --check and --explain"},
+       "what each effect changes; the truth with --check and --explain"},
       {"plan_de00_p95, plan_ms, plan_quick",
        "what all that is left out of maps changes, the time of the plan, and whether rays end after 5 s"},
       {"filtering: was_kept, time_s", "with an image as --env: whether an earlier run filtered it, else the time"},
-      {"rays: noise_de00_p95, samples, free_share, reached, ms",
-       "noise of the picture, samples of a point, and the share of points that needed none"},
+      {"maps: de00_p95, points", "errors of prefiltered maps in open light"},
+      {"rays: noise_de00_p95, error_de00_p95, samples, free_share, reached, ms",
+       "errors of rays, and with those of maps; samples of a point"},
       {"engine, engine_reason", "what shaded the picture: gl, cpu, integral, path or transport"},
       {"transport: points, columns, bytes_per_point", "visible pixels, columns of light, memory of a pixel"},
       {"transport: noise_de00_p95, noise_de00_mean, shown_noise_de00_p95, samples_mean, open_share, trace_s, reached",

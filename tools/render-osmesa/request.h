@@ -28,6 +28,7 @@ struct Request {
   bool png = false;        // whether pictures are as a display shows them: PNG or frames
   color::ReflectionOperator reflection;
   render::PlanRequest plan;
+  bool quick = false;  // nobody asked how accurate the picture is to be, nor how long it may take
   const render::EngineInfo* engine = nullptr;  // null: the plan chooses
   FloorRequest floor;
   bool floor_named = false;  // whether it is asked for by name

@@ -11,6 +11,7 @@
 #include "display/display.h"
 #include "image/frames.h"
 #include "image/shrink.h"
+#include "math/statistics.h"
 #include "picture_file.h"
 #include "plan_text.h"
 #include "render/aov.h"
@@ -94,9 +95,9 @@ class Shooting {
   }
   render::Scene over_floor(bool wanted) const;
   void leave_out_hidden_floor();
-  // Nobody asked how accurate the picture is to be, nor how long it may take.
   bool is_quick() const;
   void tell_noise();
+  void tell_maps();
   void tell(bool explains, const std::string& line) const;
   void tell_rays();
   Result<void> look(render::Renderer& renderer);
@@ -166,12 +167,12 @@ Result<render::Plan> Shooting::load(render::Renderer& renderer, const DressedMes
 void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
   Json& results = session_.results();
   results["plan_de00_p95"] = json_number(plan.de00_p95);
-  results["plan_quick"] = request_.plan.quick;
+  results["plan_quick"] = request_.quick;
   results["plan_ms"] = plan.time_ms;
   results["engine"] = plan.engine;
   results["engine_reason"] = plan.engine_reason;
   session_.explain(plan_table(plan));
-  if (request_.plan.quick && plan.effects.rays.any())
+  if (request_.quick && plan.effects.rays.any())
     session_.explain(fmt::format("no tolerance, time limit or check is asked for: rays end after {:g} s\n", kQuick_s));
   if (options_.print_shader) std::fputs((shader_gaps(plan) + shader).c_str(), stdout);
   plan_ = std::move(plan);
@@ -180,7 +181,7 @@ void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
 // Tells the findings of the first picture on effects that no plan can know.
 void Shooting::tell_findings(const render::Frame& frame) {
   const render::Plan before = plan_;
-  render::add_findings(frame.rays, frame.sums, plan_);
+  render::add_findings(frame.rays, frame.maps, plan_);
   session_.explain(findings_text(before, plan_));
   for (Json& row : plan_rows(plan_)) session_.results()["plan"].push_back(std::move(row));
 }
@@ -279,22 +280,33 @@ void Shooting::tell(bool explains, const std::string& line) const {
   explains ? session_.say_verdict(line) : session_.say(line);
 }
 
+// The errors of maps where no surface is in the way of light.
+void Shooting::tell_maps() {
+  if (frame_.maps.errors_de00.empty()) return;
+  const double de00 = math::percentile_95(frame_.maps.errors_de00);
+  session_.results()["maps"] = {{"de00_p95", json_number(de00)}, {"points", frame_.maps.errors_de00.size()}};
+  if (!plan_.effects.rays.any()) session_.say(fmt::format("maps: errors dE00 {:.2f} (p95)", de00));
+}
+
 // Tells the effects of rays that an engine without rays was given.
 void Shooting::tell_rays() {
   const render::CorrectionNoise& rays = frame_.rays;
   if (!plan_.effects.rays.any() || (rays.dark && !plan_.effects.rays.floor)) return;
   session_.results()["rays"] = {{"noise_de00_p95", json_number(rays.de00_p95)},
+                                {"error_de00_p95", json_number(rays.error_de00_p95)},
                                 {"samples", rays.samples},
                                 {"free_share", rays.free_share},
                                 {"reached", rays.reached},
                                 {"ms", rays.ms}};
   const bool late = session_.common().time_limit_s > 0 && session_.common().tolerance_given && !rays.reached;
   stopped_ |= late;
-  tell(
-      late,
-      fmt::format(
-          "rays: {:.0f} samples a point in {:.0f} ms, errors dE00 {:.2f} (p95){}", rays.samples, rays.ms, rays.de00_p95,
-          rays.reached ? "" : fmt::format(", stopped before it was within {:.3g}", plan_.effects.ray_noise_de00)));
+  constexpr double kWorthTelling = 0.5;
+  const double tolerance = session_.common().tolerance,
+               maps = frame_.maps.errors_de00.empty() ? 0 : math::percentile_95(frame_.maps.errors_de00);
+  tell(late, fmt::format("rays: {:.0f} samples a point in {:.0f} ms, errors dE00 {:.2f} (p95){}{}", rays.samples,
+                         rays.ms, rays.error_de00_p95,
+                         maps > kWorthTelling * tolerance ? fmt::format(", {:.2f} by maps alone", maps) : "",
+                         rays.reached ? "" : fmt::format(", more than {:.3g}", tolerance)));
 }
 
 bool Shooting::is_quick() const {
@@ -308,7 +320,7 @@ void Shooting::tell_noise() {
   const render::Noise& noise = *frame_.noise;
   all_reached_ = all_reached_ && noise.reached;
   const bool by_time_alone = session_.common().time_limit_s > 0 && !session_.common().tolerance_given;
-  const bool late = !noise.reached && !request_.plan.quick && !by_time_alone;
+  const bool late = !noise.reached && !request_.quick && !by_time_alone;
   stopped_ |= late;
   Json& results = session_.results();
   results["noise_de00_p95"] = json_number(noise.de00_p95);
@@ -334,7 +346,7 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
   if (request_.transport) GONIO_TRY(can_trace_view(stage_.scene));
   GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, stage_.scene.lights));
   leave_out_hidden_floor();
-  request_.plan.quick = is_quick();
+  request_.quick = is_quick();
   GONIO_ASSIGN(render::Renderer renderer, make_renderer(options_, request_, stage_, session_));
   GONIO_TRY(look(renderer));
   tell_visibility(*looks_.front(), stage_.mesh, session_);
@@ -352,6 +364,7 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
     GONIO_TRY(draw(renderer, shot, &shot == &shots_.front()));
     frame_ms += frame_.frame_ms / static_cast<double>(shots_.size());
     tell_noise();
+    tell_maps();
     tell_rays();
     if (&shot == &shots_.front()) {
       if (!(metered > 0)) metered = mean_luminance(frame_) / kMiddleGray;

@@ -9,7 +9,7 @@ Result<render::Renderer> make_renderer(const Options& options, const Request& re
                                        cli::Session& session) {
   render::Effort effort;
   effort.bounces = options.bounces;
-  effort.time_limit_s = request.plan.quick ? kQuick_s : session.common().time_limit_s;
+  effort.time_limit_s = request.quick ? kQuick_s : session.common().time_limit_s;
   effort.seed = session.common().seed;
   effort.progress = [&session](double noise, double seconds) {
     session.progress(fmt::format("noise {:.2f} dE00 after {:.1f} s", noise, seconds));

@@ -257,7 +257,8 @@ class Tracing {
       for (std::size_t i = begin; i < end; ++i) judge(i);
     });
     result_.noise_p95_de00 = worse_percentile(result_.transport.noise_de00);
-    result_.shown_p95_de00 = worse(shown_noise_, largest_errors);
+    result_.shown_p95_de00 =
+        worse(shown_noise_, [](const std::vector<double>& noise) { return largest_errors(noise); });
   }
 
   // The larger of the 95th percentiles over the mesh and over a floor that shows the environment.

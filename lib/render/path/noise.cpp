@@ -85,22 +85,48 @@ double noise_de00(const color::Rgb& radiance, const Covariance& covariance, doub
   return std::sqrt(std::max(0.0, variance));
 }
 
-// Deviations that differ by less than a fiftieth are taken together.
-double largest_errors(const std::vector<double>& deviations) {
-  constexpr double kExceeded = 0.05, kPerOctave = 36;
-  std::map<int, double> counts;  // by the logarithm
-  for (const double deviation : deviations)
-    if (deviation > 0) ++counts[static_cast<int>(std::lround(kPerOctave * std::log2(deviation)))];
+// Errors that differ by less than a fiftieth are taken together; those below this are none.
+namespace {
+class Bins {
+ public:
+  explicit Bins(const std::vector<double>& errors) : all_(static_cast<double>(errors.size())) {
+    for (const double error : errors)
+      error > kNone ? ++counts_[static_cast<int>(std::lround(kPerOctave * std::log2(error)))] : ++none_;
+  }
+  // Calls visit(error, share of all).
+  template <class Visit>
+  void each(const Visit& visit) const {
+    if (none_ > 0) visit(0.0, none_ / all_);
+    for (const auto& [bin, count] : counts_) visit(std::exp2(bin / kPerOctave), count / all_);
+  }
+
+ private:
+  static constexpr double kPerOctave = 36, kNone = 1e-4;
+  std::map<int, double> counts_;  // by the logarithm
+  double all_, none_ = 0;
+};
+}  // namespace
+
+double largest_errors(const std::vector<double>& deviations, const std::vector<double>& beside) {
+  constexpr double kExceeded = 0.05;
+  if (deviations.empty()) return 0;
+  const Bins noise(deviations), other(beside.empty() ? std::vector<double>{0} : beside);
   const auto exceeding = [&](double size) {
     double sum = 0;
-    for (const auto& [bin, count] : counts)
-      sum += count * std::erfc(size / (std::numbers::sqrt2 * std::exp2(bin / kPerOctave)));
-    return sum / static_cast<double>(deviations.size());
+    other.each([&](double error, double share) {
+      if (error >= size) return void(sum += error > 0 ? share : 0);
+      const double left = std::sqrt((size - error) * (size + error));
+      noise.each([&](double deviation, double of_noise) {
+        if (deviation > 0) sum += share * of_noise * std::erfc(left / (std::numbers::sqrt2 * deviation));
+      });
+    });
+    return sum;
   };
-  if (deviations.empty() || exceeding(0) <= kExceeded) return 0;
+  constexpr double kLeast = 1e-6;
+  if (exceeding(kLeast) <= kExceeded) return 0;
   double low = 0, high = 1;
   while (exceeding(high) > kExceeded) high *= 2;
-  for (int step = 0; step < 30; ++step) {
+  for (int step = 0; step < 24; ++step) {
     const double middle = 0.5 * (low + high);
     (exceeding(middle) > kExceeded ? low : high) = middle;
   }

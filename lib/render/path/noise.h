@@ -56,7 +56,8 @@ struct SeenRows {
 double noise_de00(const color::Rgb& radiance, const Covariance& covariance, double white_luminance);
 
 // The size that errors exceed at 5 of 100 points, where the errors of each are normal with such a standard deviation,
-// along one direction of color as those of light mostly are.
-double largest_errors(const std::vector<double>& deviations);
+// along one direction of color as those of light mostly are. Independent of them each point has one of the errors
+// `beside`, across that direction; none: nothing.
+double largest_errors(const std::vector<double>& deviations, const std::vector<double>& beside = {});
 
 }  // namespace goniochrome::render

@@ -7,7 +7,6 @@
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
 #include "render/internal/coat_stretch.h"
-#include "render/internal/seen.h"
 #include "render/internal/wear.h"
 #include "render/scene_effects.h"
 #include "render/surface_layer.h"
@@ -276,26 +275,6 @@ std::vector<color::Rgb> OpenResidual::at(const std::vector<VisiblePoint>& points
     if (const Wear* wear = wear_of(points[i].part); wear != nullptr)
       residual[i] = told(*wear, grid_.place(points[i].normal, points[i].to_viewer));
   return residual;
-}
-
-double OpenResidual::change(const Gbuffer& seen, const image::Image& picture, double white_luminance) {
-  constexpr std::size_t kPoints = 128;
-  std::vector<std::size_t> visible;
-  for (std::size_t i = 0; i < seen.data.size() / 4; ++i)
-    if (seen.data[4 * i + 3] != 0) visible.push_back(i);
-  const std::size_t step = visible.size() / kPoints | 1;
-  std::vector<VisiblePoint> points;
-  std::vector<color::Rgb> shown;
-  for (std::size_t k = step / 2; k < visible.size(); k += step) {
-    const auto x = static_cast<int>(visible[k]) % seen.width, y = static_cast<int>(visible[k]) / seen.width;
-    const float* pixel = picture.pixel(x, y);
-    points.push_back(seen.point(x, y)), shown.push_back({pixel[0], pixel[1], pixel[2]});
-  }
-  const std::vector<color::Rgb> more = at(points);
-  std::vector<double> de00;
-  for (std::size_t k = 0; k < more.size(); ++k)
-    de00.push_back(seen_difference(shown[k], shown[k] + more[k], white_luminance > 0 ? white_luminance : 1));
-  return percentile_95(std::move(de00));
 }
 
 }  // namespace goniochrome::render

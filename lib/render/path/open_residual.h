@@ -35,8 +35,6 @@ class OpenResidual {
   // for any number of threads.
   void add(const Gbuffer& seen, float gain, image::Image& picture);
   std::vector<color::Rgb> at(const std::vector<VisiblePoint>& points);
-  // The change of a picture without it, at 95 of 100 points, estimated from some of them: CIEDE2000.
-  double change(const Gbuffer& seen, const image::Image& picture, double white_luminance);
 
   std::size_t count() const;  // of sums by now
 

@@ -226,7 +226,7 @@ class Draws {
     auto plan = renderer_.load(scene, {*renderer_.look(world_.mesh, world_.view)}, request);
     EXPECT_TRUE(plan.ok()) << plan.error().message;
     const Frame frame = again();
-    add_findings(frame.rays, frame.sums, *plan);
+    add_findings(frame.rays, frame.maps, *plan);
     return {*std::move(plan), frame.picture.data};
   }
   std::vector<float> edited(const Scene& scene) {

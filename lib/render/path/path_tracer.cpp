@@ -75,7 +75,7 @@ class Picture {
 
   PathPicture draw() {
     std::vector<int> more = first_fours();
-    double noise = 0;
+    Errors errors;
     bool reached = false, mended = false;
     if (request_.stop_de00 > 0) first_.resize(points_.size());
     while (true) {
@@ -86,17 +86,18 @@ class Picture {
       if (first_round_ && request_.stop_de00 > 0) stop_shares();
       first_round_ = false;  // which no time limit cuts, so that every point is seen
       const Stopwatch judging;
-      noise = judge();
+      errors = judge();
       judging_s_ = judging.elapsed_s();
-      if (request_.progress) request_.progress(std::hypot(noise, found_.stopped_de00), clock_.elapsed_s());
-      reached = request_.tolerance_de00 > 0 && noise <= tolerance();
-      const bool goes_on = !deadline_.passed() && (reached ? !mended && plan_worst(more) : plan(noise, more));
-      mended = reached;
+      if (request_.progress) request_.progress(errors.all, clock_.elapsed_s());
+      reached = request_.tolerance_de00 > 0 && errors.all <= request_.tolerance_de00;
+      const bool ended = reached || (request_.tolerance_de00 > 0 && errors.noise <= least_aim());
+      const bool goes_on = !deadline_.passed() && (ended ? !mended && plan_worst(more) : plan(errors, more));
+      mended = ended;
       if (!goes_on || !cut(pace_.left(judging_s_), more)) break;
     }
     PathPicture picture;
     picture.reached = reached, picture.found = found_.of;
-    picture.noise_p95_de00 = std::hypot(noise, found_.stopped_de00);
+    picture.noise_p95_de00 = std::hypot(errors.noise, found_.stopped_de00), picture.error_p95_de00 = errors.all;
     const double count = std::max<double>(1, static_cast<double>(points_.size()));
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const PathPoint& point = points_[i];
@@ -187,9 +188,9 @@ class Picture {
   struct State {
     Gathered sums;
     color::Rgb deterministic;
-    color::Rgb sharp;   // what is known without samples of the light that the mesh takes and adds
+    color::Rgb sharp;                       // what is known without samples of the light that the mesh takes and adds
     std::optional<color::Rgb> floor_light;  // of any sample of the pixel; none: not known, or of each another
-    double needed = 0;  // fours that bring the noise of the neighborhood to the tolerance
+    double needed = 0;                      // fours that bring the noise of the neighborhood to the tolerance
     bool certain = false;
     bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
     std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
@@ -400,9 +401,14 @@ class Picture {
     points_[i].samples = kOfFour * states_[i].sums.fours();
   }
 
-  // Radiance, error and noise of every point from its sums; the 95th percentile of the noise or, of a reconstructed
-  // picture, of its errors.
-  double judge() {
+  // 95th percentiles.
+  struct Errors {
+    double noise = 0;  // that samples leave
+    double all = 0;    // with the shares that stopped and what the picture misses beside
+  };
+
+  // Radiance, error and noise of every point from its sums.
+  Errors judge() {
     each_point([&](std::size_t i) { show_own(i); });
     if (request_.reconstruct) {
       reconstruct();
@@ -410,10 +416,15 @@ class Picture {
     } else {
       each_point([this](std::size_t i) { judge(i); });
     }
-    if (!request_.reconstruct) return worse_percentile([this](std::size_t i) { return points_[i].noise_de00; });
+    if (!request_.reconstruct) {
+      const double noise = worse_percentile([this](std::size_t i) { return points_[i].noise_de00; });
+      return {noise, noise};
+    }
     std::vector<double> mesh, floor;
     for (const PathPoint& point : points_) (point.floor ? floor : mesh).push_back(point.noise_de00);
-    return std::max(largest_errors(mesh), largest_errors(floor));
+    const double on_floor = largest_errors(floor);
+    return {std::max(largest_errors(mesh), on_floor),
+            std::hypot(std::max(largest_errors(mesh, request_.beside_de00), on_floor), found_.stopped_de00)};
   }
 
   // Light that is known without samples stays sharp. Where all that is left was summed, the rest is the same light less
@@ -508,19 +519,22 @@ class Picture {
     return {rgb[0], rgb[1], rgb[2]};
   }
 
-  // The part of the tolerance that the stopped shares leave.
+  // The noise that may be left where other errors take up the tolerance.
+  double least_aim() const { return 0.5 * request_.tolerance_de00; }
+  // The noise that the other errors allow.
   double tolerance() const {
-    const double whole = request_.tolerance_de00, stopped = found_.stopped_de00;
-    return whole > stopped ? std::sqrt(whole * whole - stopped * stopped) : 1e-9;
+    const double whole = request_.tolerance_de00, other = std::hypot(beside_, found_.stopped_de00);
+    return std::max({std::sqrt(std::max(0.0, whole * whole - other * other)), least_aim(), 1e-9});
   }
 
   // How many fours each point is to get next: as many as its neighborhood's noise asks for, at most so many
   // times what it has. The twentieth part of the points that would need most get no more than the rest. Where the
   // neighborhoods are content but the picture is not, or would draw too little for a round, all is scaled by what it
   // lacks, unless points that got all that they may get keep the picture from its tolerance. Whether there are any.
-  bool plan(double noise, std::vector<int>& more) const {
+  bool plan(const Errors& errors, std::vector<int>& more) const {
     const double typical = worse_percentile([this](std::size_t i) { return states_[i].needed; });
-    const double limit = request_.most_samples / kOfFour, lacking = noise / tolerance();
+    const double limit = request_.most_samples / kOfFour;
+    const double lacking = std::min(errors.all / std::max(1e-9, request_.tolerance_de00), errors.noise / least_aim());
     const bool in_vain =
         request_.tolerance_de00 > 0 && tolerance() < worse_percentile([&](std::size_t i) {
                                          return states_[i].sums.fours() >= limit ? points_[i].noise_de00 : 0;
@@ -586,9 +600,10 @@ class Picture {
   std::vector<State> states_;
   unsigned drawn_ = kAllShares;  // the shares that are drawn on
   FoundShares found_;
-  FirstShares first_;              // empty: not kept
-  std::vector<Halves> kept_;       // of shares that stopped
-  std::vector<ShownPoint> shown_;  // by the points; empty: nothing is reconstructed
+  FirstShares first_;                                          // empty: not kept
+  std::vector<Halves> kept_;                                   // of shares that stopped
+  const double beside_ = percentile_95(request_.beside_de00);  // of the errors that are no noise
+  std::vector<ShownPoint> shown_;                              // by the points; empty: nothing is reconstructed
 };
 
 }  // namespace

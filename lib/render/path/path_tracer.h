@@ -16,7 +16,10 @@ namespace goniochrome::render {
 
 struct PathRequest {
   PathOptions options = {};
-  double tolerance_de00 = 0.5;  // of the picture's noise; 0: until another limit ends it
+  double tolerance_de00 = 0.5;  // of the picture's errors; 0: until another limit ends it
+  // The errors that the picture has beside its noise, at any points of the mesh. Where they leave less than half of the
+  // tolerance to the noise, samples end at that half.
+  std::vector<double> beside_de00 = {};
   // The shares of light that together change no more than this in the first round get no further samples, and their
   // pixels stay as they are: a part of the tolerance. 0: none stops, nor is told.
   double stop_de00 = 0;
@@ -31,8 +34,8 @@ struct PathRequest {
   bool reconstruct = false;
   // The first round of such a picture samples at least so many of its points, and all at edges; neighbors tell others.
   std::size_t first_points = 50000;
-  // Told after each round: the noise so far, and the seconds.
-  std::function<void(double noise_de00, double seconds)> progress = {};
+  // Told after each round: the errors so far, and the seconds.
+  std::function<void(double error_de00, double seconds)> progress = {};
 };
 
 // The light of one visible point; with several samples in a pixel, the mean over all of them, of which those that see
@@ -54,10 +57,11 @@ struct PathPicture {
   // the size of its errors.
   double noise_p95_de00 = 0;
   double noise_mean_de00 = 0;
-  double samples_mean = 0;  // of all points
-  double free_share = 0;    // of points that needed no samples
+  double error_p95_de00 = 0;  // the same of all errors; of a picture that is not reconstructed the noise
+  double samples_mean = 0;    // of all points
+  double free_share = 0;      // of points that needed no samples
   double time_s = 0;
-  bool reached = false;                       // whether the noise is within the tolerance
+  bool reached = false;                       // whether its errors are within the tolerance
   bool dark = true;                           // whether no point shows any light at all
   std::array<FoundShare, kShareCount> found;  // with PathRequest::stop_de00
 };

@@ -40,8 +40,8 @@ VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer) {
 
 namespace {
 
-// The part of the noise that the effects may make up which the first pass shows to change so little.
-constexpr double kStopShare = 0.5;
+// The part of the tolerance that the effects may make up which the first pass shows to change so little.
+constexpr double kStopShare = 0.35;
 
 }  // namespace
 
@@ -160,6 +160,7 @@ CorrectionNoise add_correction(const Transport& transport, const std::vector<Vis
   paths.options.into_diffuse = request.effects.bounce;
   paths.options.correction = true;
   paths.reconstruct = true;
+  paths.beside_de00 = request.beside_de00;
   paths.tolerance_de00 = request.tolerance_de00, paths.stop_de00 = kStopShare * request.tolerance_de00;
   paths.white_luminance = request.white_luminance > 0 ? request.white_luminance : 1;
   paths.seed = request.seed;
@@ -172,7 +173,7 @@ CorrectionNoise add_correction(const Transport& transport, const std::vector<Vis
         &picture.data[samples.front().gbuffer.index(point.x, point.y) * static_cast<std::size_t>(picture.channels)];
     for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>(point.radiance[c]);
   }
-  noise.de00_p95 = drawn.noise_p95_de00;
+  noise.de00_p95 = drawn.noise_p95_de00, noise.error_de00_p95 = drawn.error_p95_de00;
   noise.samples = drawn.samples_mean;
   noise.free_share = drawn.free_share;
   noise.reached = drawn.reached, noise.dark = drawn.dark, noise.found = drawn.found;

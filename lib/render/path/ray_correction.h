@@ -23,6 +23,8 @@ struct CorrectionRequest {
   RayEffects effects;
   int bounces = 8;
   double tolerance_de00 = 0.5;  // of the picture's errors, 95th percentile over the visible points
+  // The errors that the picture has beside those of rays, at any points of the mesh.
+  std::vector<double> beside_de00 = {};
   double white_luminance = 1;
   std::uint64_t seed = 1;
   int most_samples = 1 << 16;  // of rays, at each point
@@ -32,11 +34,12 @@ struct CorrectionRequest {
 
 // How the effects were drawn; of several samples the means.
 struct CorrectionNoise {
-  double de00_p95 = 0;  // of the size of the picture's errors
-  double samples = 0;   // rays' samples of a visible point, in all
+  double de00_p95 = 0;        // of the size of the errors that rays leave
+  double error_de00_p95 = 0;  // and of all errors of the picture
+  double samples = 0;         // rays' samples of a visible point, in all
   double free_share = 0;
   double ms = 0;
-  bool reached = true;  // whether the noise is within the tolerance
+  bool reached = true;  // whether all errors are within the tolerance
   bool dark = false;    // whether the mesh changes nothing at all
   // The change by each of the effects, in the order of plans, and whether the first pass was its last.
   std::array<FoundShare, kShareCount> found;

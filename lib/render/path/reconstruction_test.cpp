@@ -126,6 +126,28 @@ TEST(Reconstruction, LargestErrorsAreThoseOfNormalNumbers) {
   EXPECT_EQ(largest_errors({0, 0}), 0);
 }
 
+// Errors of another cause meet those of noise by chance. The control is the root of the sum of squares of both
+// percentiles, which is none of the whole.
+TEST(Reconstruction, LargestErrorsHaveThoseOfOtherCauses) {
+  constexpr std::size_t kPoints = 200000;
+  std::mt19937 numbers(5);
+  std::normal_distribution<double> normal;
+  std::exponential_distribution<double> missed(2);
+  std::vector<double> deviations(kPoints), beside(1000), sizes(kPoints);
+  for (double& error : beside) error = missed(numbers);
+  for (std::size_t n = 0; n < kPoints; ++n) {
+    deviations[n] = n % 3 == 0 ? 2 : 0.1;
+    sizes[n] = std::hypot(deviations[n] * normal(numbers), beside[numbers() % beside.size()]);
+  }
+  std::ranges::sort(sizes);
+  const double drawn = sizes[kPoints * 95 / 100];
+  EXPECT_NEAR(largest_errors(deviations, beside), drawn, 0.02 * drawn);
+  std::ranges::sort(beside);
+  EXPECT_GT(std::abs(std::hypot(largest_errors(deviations), beside[950]) - drawn), 0.08 * drawn);
+  EXPECT_NEAR(largest_errors({0, 0, 0}, beside), beside[950], 0.05 * beside[950]);
+  EXPECT_EQ(largest_errors({0, 0}, {0, 0}), 0);
+}
+
 // Light without noise stays what it is, edges and all.
 TEST(Reconstruction, KeepsLightWithoutNoise) {
   for (const Light& light : {Light(smooth), Light(edge), Light(parted)}) EXPECT_LT(told(sheet(light, 0)).error, 0.05);

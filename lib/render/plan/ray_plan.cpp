@@ -12,14 +12,11 @@ namespace goniochrome::render {
 
 namespace {
 
-// The part of the tolerance that the errors of these effects may take at 95 of 100 points; as much is left for what
-// maps leave out, since both add as the roots of squares. Without --tolerance a picture may take all of it.
-constexpr double kRayNoiseShare = 0.7;
 // The most samples of a point that are drawn for effects that nobody asked for by name. Most points get far fewer.
 constexpr int kMostUnaskedSamples = 1024;
 
 constexpr std::size_t kFloor = 3;
-bool RayEffects::*const kFlags[] = {&RayEffects::shadow, &RayEffects::self, &RayEffects::bounce, &RayEffects::floor};
+bool RayEffects::* const kFlags[] = {&RayEffects::shadow, &RayEffects::self, &RayEffects::bounce, &RayEffects::floor};
 const char* const kReasons[] = {"rays tell where the mesh is in the way of light",
                                 "lobes and mirror see the body where it is in the way of light",
                                 "light that the body passes on reaches its diffuse parts",
@@ -51,8 +48,7 @@ bool is_drawn_unasked(const Plan& plan, const std::string& effect) {
   return item != plan.items.end() && item->decision == Decision::kDrawn;
 }
 
-std::vector<PlanItem> ray_items(const EffectWords& words, const RayContext& rays, const PlanRequest& request,
-                                Effects& effects) {
+std::vector<PlanItem> ray_items(const EffectWords& words, const RayContext& rays, Effects& effects) {
   constexpr std::size_t kEffects = std::size(kFlags);
   const std::vector<std::string>& names = ray_effect_names();
   std::array<std::optional<bool>, kEffects> forced;
@@ -76,7 +72,6 @@ std::vector<PlanItem> ray_items(const EffectWords& words, const RayContext& rays
     items.push_back(std::move(item));
   }
   const bool limited = words.start == Start::kAuto && !named;
-  effects.ray_noise_de00 = (limited && request.quick ? 1 : kRayNoiseShare) * request.tolerance_de00;
   if (limited) effects.most_ray_samples = kMostUnaskedSamples;
   return items;
 }
