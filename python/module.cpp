@@ -1,14 +1,17 @@
-// The Python module goniochrome._core: paints, fits, color differences and environments as arrays of numpy. The library
-// knows nothing of Python, and all that does stands here. python/package/__init__.pyi states types and shapes.
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
+// The library of the Python package goniochrome: paints, fits, color differences and environments as functions in C. It
+// needs no header of Python, so one build serves every version; package/__init__.py is its only caller.
+//
+// A function returns facts in JSON, valid until its thread calls again; a text alone is the message of an error.
+// `place` in the facts of an object is its address, and `keep` gets what keeps it there until goniochrome_release().
+#include <fmt/core.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 
-#include "base/angles.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "brdf/lobe_model.h"
 #include "color/color.h"
 #include "envmap/environment.h"
@@ -20,347 +23,250 @@
 #include "paint/curve.h"
 #include "paint/metrics.h"
 
-namespace py = pybind11;
-
 namespace goniochrome::python {
 
 namespace {
 
-using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+// Python hands colors and directions over as arrays of three numbers each.
+static_assert(sizeof(color::Lab) == 3 * sizeof(double) && sizeof(Vec3) == 3 * sizeof(double));
 
-// An error of the library as it is raised in Python.
-class Failure : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+using Keep = std::shared_ptr<const void>;
+
+thread_local std::string answer;
+
+// The facts that body() returns, if any, or the message of what it throws.
+template <class Body>
+const char* answered(const Body& body) {
+  try {
+    if constexpr (std::is_void_v<decltype(body())>)
+      body(), answer = "null";
+    else
+      answer = json_text(body());
+  } catch (const std::exception& error) {
+    answer = json_text(error.what());
+  } catch (...) {
+    answer = json_text("an unknown error");
+  }
+  return answer.c_str();
+}
 
 template <class T>
 T value_of(Result<T> result) {
-  if (!result.ok()) throw Failure(result.error().message);
-  return std::move(result).value();
-}
-void check(const Result<void>& result) {
-  if (!result.ok()) throw Failure(result.error().message);
+  if (!result.ok()) throw std::runtime_error(result.error().message);
+  if constexpr (!std::is_void_v<T>) return std::move(result).value();
 }
 
-// A view of numbers that `owner` keeps: nothing is copied, and the owner lives as long as the array.
-template <class Number>
-py::array view_of(const Number* data, std::vector<py::ssize_t> shape, const py::handle& owner) {
-  py::array_t<Number> array(std::move(shape), data, owner);
-  array.attr("flags").attr("writeable") = false;
-  return array;
+template <class T>
+const T& kept(T object, Keep** keep) {
+  auto shared = std::make_shared<const T>(std::move(object));
+  *keep = new Keep(shared);
+  return *shared;
 }
 
-Array array_of(const std::vector<std::array<double, 3>>& rows) {
-  Array array({static_cast<py::ssize_t>(rows.size()), py::ssize_t{3}});
-  std::copy_n(rows.empty() ? nullptr : rows.front().data(), 3 * rows.size(), array.mutable_data());
-  return array;
+Json place(const void* object) {
+  return reinterpret_cast<std::uintptr_t>(object);
 }
-std::array<double, 3> triple(const color::Lab& lab) {
-  return {lab.L, lab.a, lab.b};
+// A number that is not finite is a text in JSON.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(fmt::format("{}", value));
 }
-std::array<double, 3> triple(const Vec3& v) {
+Json triple(const Vec3& v) {
   return {v.x, v.y, v.z};
 }
 
-// The number of triples of an array whose last axis has three numbers.
-std::size_t triples(const Array& array, const char* what) {
-  if (array.ndim() < 1 || array.shape(array.ndim() - 1) != 3)
-    throw Failure(std::string(what) + ": the last axis has to have three numbers");
-  return static_cast<std::size_t>(array.size() / 3);
-}
-std::vector<py::ssize_t> shape_of(const Array& array, std::size_t leave_out) {
-  return {array.shape(), array.shape() + array.ndim() - static_cast<py::ssize_t>(leave_out)};
-}
-
-// `one` of each triple, which makes a triple.
-template <class One>
-Array each(const Array& array, const char* what, const One& one) {
-  const std::size_t count = triples(array, what);
-  Array result(shape_of(array, 0));
-  const double* in = array.data();
-  double* out = result.mutable_data();
-  for (std::size_t i = 0; i < count; ++i, in += 3, out += 3) {
-    const std::array<double, 3> made = one(in);
-    std::copy(made.begin(), made.end(), out);
-  }
+Json facts(const paint::LobeFit& fit) {
+  Json result{{"coat_index", fit.coat_index}, {"diffuse", triple(fit.diffuse)}, {"lobes", Json::array()}};
+  result["mean_de00"] = number(fit.mean_de00);
+  result["max_de00"] = number(fit.max_de00);
+  for (const auto& [exponent, diffuse, gloss] : fit.lobes)
+    result["lobes"].push_back(
+        {{"exponent", number(exponent)}, {"directional_diffuse", triple(diffuse)}, {"gloss", triple(gloss)}});
   return result;
 }
 
-Array difference(const Array& x, const Array& y, double (*of)(const color::Lab&, const color::Lab&)) {
-  const std::size_t count = triples(x, "x"), other = triples(y, "y");
-  if (count != other && other != 1) throw Failure("y has to have as many colors as x, or one");
-  Array result(shape_of(x, 1));
-  const double *a = x.data(), *b = y.data();
-  double* out = result.mutable_data();
-  for (std::size_t i = 0; i < count; ++i, a += 3, b += other == 1 ? 0 : 3)
-    out[i] = of({a[0], a[1], a[2]}, {b[0], b[1], b[2]});
-  return result;
-}
-
-color::Xyz white_of(const std::string& illuminant, int observer_deg) {
-  return value_of(color::white_point({illuminant, observer_deg}));
-}
-
-const paint::LobeFit& lobes_of(const paint::Paint& paint) {
-  if (!paint.lobes) throw Failure("paint \"" + paint.name + "\" has no lobes: fit it first");
-  return *paint.lobes;
-}
-
-// f of every pair of directions, in the frame whose z is the normal.
-Array reflected(const paint::Paint& paint, const Array& light, const Array& view) {
-  const paint::LobeFit& lobes = lobes_of(paint);
-  const std::size_t count = triples(light, "light");
-  if (triples(view, "view") != count) throw Failure("light and view have to have as many directions");
-  const double gloss_deg = paint.gloss.empty() ? brdf::kGlossIncidence_deg : paint.gloss.front().angle_deg;
-  const double* v = view.data();
-  return each(light, "light", [&](const double* l) {
-    const Vec3 to_light{l[0], l[1], l[2]}, to_viewer{v[0], v[1], v[2]};
-    v += 3;
-    return triple(brdf::coated_brdf(lobes, normalized(to_light), normalized(to_viewer), {0, 0, 1}, gloss_deg));
-  });
-}
-
-py::dict metrics_of(const paint::Paint& paint) {
-  const paint::PaintMetrics numbers = value_of(paint::metrics(paint));
-  py::dict result;
-  for (const paint::MetricColumn& column : paint::metric_columns()) result[column.name] = numbers.*column.value;
-  return result;
-}
-
-// Lab at aspecular angles, by the curve that the paint states or that its readings make.
-Array curve_of(const paint::Paint& paint, const Array& angles_deg) {
-  paint::Appearance appearance;
-  if (paint.appearance) {
-    appearance = *paint.appearance;
-  } else {
-    if (!paint.measurement) throw Failure("paint \"" + paint.name + "\" has neither readings nor a curve");
-    appearance = value_of(paint::appearance_from_rows(paint.measurement->rows)).appearance;
-  }
-  std::vector<std::array<double, 3>> rows;
-  for (py::ssize_t i = 0; i < angles_deg.size(); ++i)
-    rows.push_back(triple(paint::lab_at(appearance, std::abs(angles_deg.data()[i]))));
-  return array_of(rows);
-}
-
-Array readings_of(const paint::Paint& paint) {
-  std::vector<std::array<double, 3>> rows;
+Json facts(const paint::Paint& paint) {
+  const auto [illuminant, observer_deg] = paint::condition_of(paint);
+  Json result{{"place", place(&paint)}, {"name", paint.name}, {"code", paint.code}, {"observer_deg", observer_deg}};
+  result["illuminant"] = illuminant;
+  result["paint_class"] = paint::paint_class_name(paint.paint_class);
+  result["lobes"] = paint.lobes ? facts(*paint.lobes) : Json();
+  result["geometries"] = result["readings"] = Json::array();
   if (paint.measurement)
-    for (const paint::LabReading& row : paint.measurement->rows) rows.push_back(triple(row.lab));
-  return array_of(rows);
-}
-std::vector<std::string> geometries_of(const paint::Paint& paint) {
-  std::vector<std::string> names;
-  if (paint.measurement)
-    for (const paint::LabReading& row : paint.measurement->rows) names.push_back(paint::geometry_name(row.geometry));
-  return names;
+    for (const auto& [geometry, lab] : paint.measurement->rows) {
+      result["geometries"].push_back(paint::geometry_name(geometry));
+      result["readings"].push_back({lab.L, lab.a, lab.b});
+    }
+  return result;
 }
 
-void write_paints(const std::string& path, const std::vector<paint::Paint>& paints) {
-  auto writer = value_of(formats::PaintWriter::begin(value_of(OutputFile::create(path))));
-  for (const paint::Paint& paint : paints) check(writer.write(paint));
-  check(writer.finish());
+Json facts(const envmap::PrefilteredLobe& lobe) {
+  const envmap::SphereGrid grid = envmap::map_grid(lobe.layout, lobe.map.size);
+  return {{"texels", place(lobe.map.texels.data())},
+          {"shape", grid.is_cube() ? Json{6, lobe.map.size, lobe.map.size, 3} : Json{grid.height(), grid.width(), 3}},
+          {"exponent", number(lobe.exponent)},
+          {"max_error", number(lobe.max_error)}};
 }
 
-std::vector<paint::Paint> fit_all(const std::vector<paint::Paint>& paints, const formats::Basis& basis,
-                                  const std::string& method, std::optional<double> coat_index) {
-  fit::FitOptions options;
-  options.coat_index = coat_index;
-  bool known = false;
-  for (const auto each : {fit::FitMethod::kL1, fit::FitMethod::kL2, fit::FitMethod::kDeltaE})
-    if (method == fit::fit_method_name(each)) options.method = each, known = true;
-  if (!known) throw Failure("method \"" + method + "\": l1, l2 and deltae are known");
-  const py::gil_scoped_release others_may_run;
-  const fit::PaintFitter fitter(basis, options);
-  std::vector<Result<fit::PaintFit>> made = fit::fits(fitter, paints);
-  std::vector<paint::Paint> fitted = paints;
-  for (std::size_t i = 0; i < paints.size(); ++i) {
-    if (!made[i].ok()) throw Failure("paint \"" + paints[i].name + "\": " + made[i].error().message);
-    fitted[i].lobes = made[i]->lobes;
-    fitted[i].coat_index = made[i]->lobes.coat_index;
-  }
-  return fitted;
+template <class T>
+Json facts(const std::vector<T>& objects) {
+  Json result = Json::array();
+  for (const T& object : objects) result.push_back(facts(object));
+  return result;
 }
 
-void add_paints(py::module_& module) {
-  py::class_<paint::Lobe>(module, "Lobe")
-      .def_readonly("exponent", &paint::Lobe::exponent)
-      .def_property_readonly("directional_diffuse",
-                             [](const py::object& self) {
-                               return view_of(&self.cast<const paint::Lobe&>().directional_diffuse.x, {3}, self);
-                             })
-      .def_property_readonly(
-          "gloss", [](const py::object& self) { return view_of(&self.cast<const paint::Lobe&>().gloss.x, {3}, self); });
-  py::class_<paint::LobeFit>(module, "LobeFit")
-      .def_readonly("coat_index", &paint::LobeFit::coat_index)
-      .def_readonly("mean_de00", &paint::LobeFit::mean_de00)
-      .def_readonly("max_de00", &paint::LobeFit::max_de00)
-      .def_readonly("lobes", &paint::LobeFit::lobes)
-      .def_property_readonly("diffuse", [](const py::object& self) {
-        return view_of(&self.cast<const paint::LobeFit&>().diffuse.x, {3}, self);
-      });
-  py::class_<paint::Paint>(module, "Paint")
-      .def_readonly("name", &paint::Paint::name)
-      .def_readonly("code", &paint::Paint::code)
-      .def_property_readonly("paint_class",
-                             [](const paint::Paint& p) { return paint::paint_class_name(p.paint_class); })
-      .def_property_readonly("illuminant", [](const paint::Paint& p) { return paint::condition_of(p).illuminant; })
-      .def_property_readonly("observer_deg", [](const paint::Paint& p) { return paint::condition_of(p).observer_deg; })
-      .def_property_readonly("geometries", geometries_of)
-      .def_property_readonly("readings", readings_of)
-      .def_readonly("lobes", &paint::Paint::lobes)
-      .def_property_readonly("metrics", metrics_of)
-      .def("curve", curve_of, py::arg("aspecular_deg"))
-      .def("brdf", reflected, py::arg("light"), py::arg("view"))
-      .def("__repr__", [](const paint::Paint& p) { return "<goniochrome.Paint \"" + p.name + "\">"; });
-  py::class_<formats::Basis>(module, "Basis")
-      .def(py::init([](std::vector<double> exponents, bool mirror, std::string name) {
-             std::ranges::sort(exponents);
-             return formats::Basis{std::move(name), std::move(exponents), mirror};
-           }),
-           py::arg("exponents"), py::arg("mirror") = true, py::arg("name") = "basis")
-      .def_readonly("name", &formats::Basis::name)
-      .def_readonly("mirror", &formats::Basis::mirror)
-      .def_property_readonly("exponents", [](const py::object& self) {
-        const auto& exponents = self.cast<const formats::Basis&>().exponents;
-        return view_of(exponents.data(), {static_cast<py::ssize_t>(exponents.size())}, self);
-      });
-  module.def(
-      "read_paints",
-      [](const std::string& path) {
-        std::vector<std::string> warnings;
-        auto paints = value_of(formats::read_paints(path, &warnings));
-        for (const std::string& warning : warnings) py::module_::import("warnings").attr("warn")(warning);
-        return paints;
-      },
-      py::arg("path"));
-  module.def("write_paints", write_paints, py::arg("path"), py::arg("paints"));
-  module.def(
-      "read_basis", [](const std::string& path) { return value_of(formats::read_basis(path)); }, py::arg("path"));
-  module.def("fit", fit_all, py::arg("paints"), py::arg("basis"), py::arg("method") = "l1",
-             py::arg("coat_index") = py::none());
-}
-
-void add_colors(py::module_& module) {
-  module.def(
-      "delta_e_2000", [](const Array& x, const Array& y) { return difference(x, y, color::delta_e_2000); },
-      py::arg("x"), py::arg("y"));
-  module.def(
-      "delta_e_76", [](const Array& x, const Array& y) { return difference(x, y, color::delta_e_76); }, py::arg("x"),
-      py::arg("y"));
-  module.def(
-      "lab_from_rgb",
-      [](const Array& rgb, const std::string& illuminant, int observer_deg) {
-        const color::Xyz white = white_of(illuminant, observer_deg);
-        return each(rgb, "rgb", [&](const double* c) {
-          return triple(color::lab_from_rgb({c[0], c[1], c[2]}, white));
-        });
-      },
-      py::arg("rgb"), py::arg("illuminant") = "D65", py::arg("observer_deg") = 10);
-  module.def(
-      "rgb_from_lab",
-      [](const Array& lab, const std::string& illuminant, int observer_deg) {
-        const color::Xyz white = white_of(illuminant, observer_deg);
-        return each(lab, "lab", [&](const double* c) {
-          return triple(color::rgb_from_lab({c[0], c[1], c[2]}, white));
-        });
-      },
-      py::arg("lab"), py::arg("illuminant") = "D65", py::arg("observer_deg") = 10);
-  module.def(
-      "directions",
-      [](const std::vector<std::string>& names) {
-        std::vector<std::array<double, 3>> lights, views;
-        for (const std::string& name : names) {
-          const auto [light, view] = paint::directions(value_of(paint::parse_geometry(name)));
-          lights.push_back(triple(light));
-          views.push_back(triple(view));
-        }
-        return py::make_tuple(array_of(lights), array_of(views));
-      },
-      py::arg("geometries"));
-  module.def(
-      "aspecular_deg",
-      [](const std::string& name) { return paint::aspecular_angle_deg(value_of(paint::parse_geometry(name))); },
-      py::arg("geometry"));
-}
-
-py::array texels_of(const py::object& self) {
-  const auto& environment = self.cast<const envmap::Environment&>();
-  return view_of(environment.values().data(), {environment.height(), environment.width(), 3}, self);
-}
-
-void add_environments(py::module_& module) {
-  py::class_<envmap::Environment>(module, "Environment")
-      .def_property_readonly("texels", texels_of)
-      .def_property_readonly("layout",
-                             [](const envmap::Environment& environment) {
-                               using Layout = envmap::Environment::Layout;
-                               switch (environment.layout()) {
-                                 case Layout::kLatLong:
-                                   return "lat-long";
-                                 case Layout::kAngular:
-                                   return "angular";
-                                 case Layout::kCubeEdges:
-                                   return "cube-edges";
-                                 case Layout::kCube:
-                                   break;
-                               }
-                               return "cube";
-                             })
-      .def("directions",
-           [](const envmap::Environment& environment) {
-             Array result({py::ssize_t{environment.height()}, py::ssize_t{environment.width()}, py::ssize_t{3}});
-             double* out = result.mutable_data();
-             for (int row = 0; row < environment.height(); ++row)
-               for (int column = 0; column < environment.width(); ++column, out += 3) {
-                 const auto direction = triple(environment.direction(column, row));
-                 std::copy(direction.begin(), direction.end(), out);
-               }
-             return result;
-           })
-      .def("solid_angles", [](const envmap::Environment& environment) {
-        Array result({py::ssize_t{environment.height()}, py::ssize_t{environment.width()}});
-        double* out = result.mutable_data();
-        for (int row = 0; row < environment.height(); ++row)
-          for (int column = 0; column < environment.width(); ++column) *out++ = environment.solid_angle(column, row);
-        return result;
-      });
-  module.def(
-      "read_environment",
-      [](const std::string& path) {
-        return value_of(envmap::Environment::read(path, envmap::Environment::BadPixels::kError));
-      },
-      py::arg("path"));
-  py::class_<envmap::PrefilteredLobe>(module, "PrefilteredLobe")
-      .def_readonly("exponent", &envmap::PrefilteredLobe::exponent)
-      .def_readonly("max_error", &envmap::PrefilteredLobe::max_error)
-      .def_property_readonly("texels", [](const py::object& self) {
-        const auto& lobe = self.cast<const envmap::PrefilteredLobe&>();
-        const envmap::SphereGrid grid = envmap::map_grid(lobe.layout, lobe.map.size);
-        if (grid.is_cube()) return view_of(lobe.map.texels.data(), {6, lobe.map.size, lobe.map.size, 3}, self);
-        return view_of(lobe.map.texels.data(), {grid.height(), grid.width(), 3}, self);
-      });
-  py::class_<envmap::PrefilteredEnvironment>(module, "PrefilteredEnvironment")
-      .def_readonly("source", &envmap::PrefilteredEnvironment::source)
-      .def_readonly("diffuse", &envmap::PrefilteredEnvironment::diffuse)
-      .def_readonly("mirror", &envmap::PrefilteredEnvironment::mirror)
-      .def_property_readonly("lobes", [](py::object self) {
-        py::list lobes;
-        for (const envmap::PrefilteredLobe& lobe : self.cast<const envmap::PrefilteredEnvironment&>().lobes)
-          lobes.append(py::cast(lobe, py::return_value_policy::reference_internal, self));
-        return lobes;
-      });
-  module.def(
-      "read_prefiltered", [](const std::string& path) { return value_of(envmap::read_env(path)); }, py::arg("path"));
+fit::FitMethod method_of(const std::string& name) {
+  for (const auto method : {fit::FitMethod::kL1, fit::FitMethod::kL2, fit::FitMethod::kDeltaE})
+    if (name == fit::fit_method_name(method)) return method;
+  throw std::runtime_error("method \"" + name + "\": l1, l2 and deltae are known");
 }
 
 }  // namespace
 
-PYBIND11_MODULE(_core, module) {
-  py::register_exception<Failure>(module, "Error", PyExc_ValueError);
-  add_paints(module);
-  add_colors(module);
-  add_environments(module);
+extern "C" {
+
+void goniochrome_release(const Keep* keep) {
+  delete keep;
 }
+
+const char* goniochrome_read_paints(const char* path, Keep** keep) {
+  return answered([&]() -> Json {
+    std::vector<std::string> warnings;
+    const auto& paints = kept(value_of(formats::read_paints(path, &warnings)), keep);
+    return {{"paints", facts(paints)}, {"warnings", warnings}};
+  });
+}
+
+const char* goniochrome_write_paints(const char* path, const paint::Paint* const* paints, std::size_t count) {
+  return answered([&] {
+    auto writer = value_of(formats::PaintWriter::begin(value_of(OutputFile::create(path))));
+    for (std::size_t i = 0; i < count; ++i) value_of(writer.write(*paints[i]));
+    value_of(writer.finish());
+  });
+}
+
+const char* goniochrome_metrics(const paint::Paint* paint) {
+  return answered([&] {
+    const paint::PaintMetrics numbers = value_of(paint::metrics(*paint));
+    Json result;
+    for (const auto& [name, value, meaning] : paint::metric_columns()) result[name] = number(numbers.*value);
+    return result;
+  });
+}
+
+// Lab at aspecular angles, by the curve that the paint states or that its readings make.
+const char* goniochrome_curve(const paint::Paint* paint, const double* angles_deg, std::size_t count, color::Lab* out) {
+  return answered([&] {
+    if (!paint->appearance && !paint->measurement)
+      throw std::runtime_error("paint \"" + paint->name + "\" has neither readings nor a curve");
+    const paint::Appearance curve = paint->appearance
+                                        ? *paint->appearance
+                                        : value_of(paint::appearance_from_rows(paint->measurement->rows)).appearance;
+    for (std::size_t i = 0; i < count; ++i) out[i] = paint::lab_at(curve, std::abs(angles_deg[i]));
+  });
+}
+
+// f of pairs of directions, in the frame whose z is the normal.
+const char* goniochrome_brdf(const paint::Paint* paint, const Vec3* light, const Vec3* view, std::size_t count,
+                             color::Rgb* out) {
+  return answered([&] {
+    if (!paint->lobes) throw std::runtime_error("paint \"" + paint->name + "\" has no lobes: fit it first");
+    const double gloss_deg = paint->gloss.empty() ? brdf::kGlossIncidence_deg : paint->gloss.front().angle_deg;
+    for (std::size_t i = 0; i < count; ++i)
+      out[i] = brdf::coated_brdf(*paint->lobes, normalized(light[i]), normalized(view[i]), {0, 0, 1}, gloss_deg);
+  });
+}
+
+// No coat_index: that of each paint, or what its gloss asks for.
+const char* goniochrome_fit(const paint::Paint* const* paints, std::size_t count, const char* basis,
+                            const double* exponents, std::size_t lobes, bool mirror, const char* method,
+                            const double* coat_index, Keep** keep) {
+  return answered([&] {
+    fit::FitOptions options;
+    options.method = method_of(method);
+    if (coat_index) options.coat_index = *coat_index;
+    std::vector<paint::Paint> fitted;
+    for (std::size_t i = 0; i < count; ++i) fitted.push_back(*paints[i]);
+    const auto made = fit::fits({{basis, {exponents, exponents + lobes}, mirror}, options}, fitted);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!made[i].ok()) throw std::runtime_error("paint \"" + fitted[i].name + "\": " + made[i].error().message);
+      fitted[i].lobes = made[i]->lobes;
+      fitted[i].coat_index = made[i]->lobes.coat_index;
+    }
+    return facts(kept(std::move(fitted), keep));
+  });
+}
+
+const char* goniochrome_read_basis(const char* path) {
+  return answered([&]() -> Json {
+    const formats::Basis basis = value_of(formats::read_basis(path));
+    return {{"name", basis.name}, {"mirror", basis.mirror}, {"exponents", basis.exponents}};
+  });
+}
+
+// CIEDE2000 or CIE 1976 of every x from its y, or of all x from one y.
+const char* goniochrome_delta_e(bool is_2000, const color::Lab* x, std::size_t count, const color::Lab* y,
+                                std::size_t others, double* out) {
+  const auto difference = is_2000 ? color::delta_e_2000 : color::delta_e_76;
+  for (std::size_t i = 0; i < count; ++i) out[i] = difference(x[i], y[others == 1 ? 0 : i]);
+  return "null";
+}
+
+// Lab of RGB, or RGB of Lab.
+const char* goniochrome_convert(bool to_lab, const Vec3* in, std::size_t count, const char* illuminant,
+                                double observer_deg, Vec3* out) {
+  return answered([&] {
+    if (observer_deg != std::clamp(std::round(observer_deg), 0., 180.))
+      throw std::runtime_error(fmt::format("observer {} is not known: give 2 or 10 (degrees)", observer_deg));
+    const color::Xyz white = value_of(color::white_point({illuminant, static_cast<int>(observer_deg)}));
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [L, a, b] = to_lab ? color::lab_from_rgb(in[i], white) : color::Lab{in[i].x, in[i].y, in[i].z};
+      out[i] = to_lab ? Vec3{L, a, b} : color::rgb_from_lab({L, a, b}, white);
+    }
+  });
+}
+
+const char* goniochrome_geometry(const char* name) {
+  return answered([&]() -> Json {
+    const paint::Geometry geometry = value_of(paint::parse_geometry(name));
+    const auto [light, view] = paint::directions(geometry);
+    return {triple(light), triple(view), paint::aspecular_angle_deg(geometry)};
+  });
+}
+
+// In the order of Environment::Layout.
+constexpr const char* kLayouts[] = {"lat-long", "cube", "cube-edges", "angular"};
+
+const char* goniochrome_read_environment(const char* path, Keep** keep) {
+  return answered([&]() -> Json {
+    const auto& read = kept(value_of(envmap::Environment::read(path, envmap::Environment::BadPixels::kError)), keep);
+    return {{"place", place(&read)},
+            {"layout", kLayouts[static_cast<int>(read.layout())]},
+            {"texels", place(read.values().data())},
+            {"shape", {read.height(), read.width(), 3}}};
+  });
+}
+
+const char* goniochrome_directions(const envmap::Environment* environment, Vec3* out) {
+  for (int row = 0; row < environment->height(); ++row)
+    for (int column = 0; column < environment->width(); ++column) *out++ = environment->direction(column, row);
+  return "null";
+}
+const char* goniochrome_solid_angles(const envmap::Environment* environment, double* out) {
+  for (int row = 0; row < environment->height(); ++row)
+    for (int column = 0; column < environment->width(); ++column) *out++ = environment->solid_angle(column, row);
+  return "null";
+}
+
+const char* goniochrome_read_prefiltered(const char* path, Keep** keep) {
+  return answered([&]() -> Json {
+    const auto& read = kept(value_of(envmap::read_env(path)), keep);
+    return {{"source", read.source},
+            {"diffuse", facts(read.diffuse)},
+            {"mirror", facts(read.mirror)},
+            {"lobes", facts(read.lobes)}};
+  });
+}
+
+}  // extern "C"
 
 }  // namespace goniochrome::python

@@ -1,7 +1,10 @@
 """Tests of the module goniochrome: python_test.py TESTDATA, with the package on PYTHONPATH. Without numpy it ends by 77."""
 
+import concurrent.futures
+import copy
 import gc
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -80,6 +83,15 @@ class Module(unittest.TestCase):
         gc.collect()
         self.assertEqual(before, float(texels.sum()))
 
+    def test_layouts_have_their_names(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for width, height, layout in ((8, 4, "lat-long"), (4, 24, "cube"), (4, 4, "angular")):
+                path = pathlib.Path(folder) / "light.pfm"
+                path.write_bytes(f"PF {width} {height} -1\n".encode() + numpy.ones((height, width, 3), "<f4").tobytes())
+                environment = goniochrome.read_environment(path)
+                self.assertEqual(environment.layout, layout)
+                self.assertEqual(environment.texels.shape, (height, width, 3))
+
     def test_errors_say_what_is_wrong(self):
         for wrong, words in ((lambda: goniochrome.read_paints("none.xml"), "none.xml"),
                              (lambda: goniochrome.directions(["45xx"]), "45xx"),
@@ -89,13 +101,80 @@ class Module(unittest.TestCase):
             with self.assertRaisesRegex(goniochrome.Error, words):
                 wrong()
 
-    def test_the_stubs_name_what_there_is(self):
-        stubs = (pathlib.Path(goniochrome.__file__).parent / "__init__.pyi").read_text()
+    def test_a_lobe_outlives_its_environment(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = folder + "/studio.env.exr"
+            subprocess.run(["prefilter-envmap", "-q", "--size", "16", "-b", DATA + "/b7.basis.xml", DATA + "/studio.exr", "-o", path],
+                           check=True)
+            environment = goniochrome.read_prefiltered(path)
+        self.assertEqual(environment.mirror.exponent, numpy.inf)
+        self.assertEqual([lobe.exponent for lobe in environment.lobes], sorted(lobe.exponent for lobe in environment.lobes))
+        texels = environment.lobes[0].texels
+        self.assertEqual(texels.shape, (6, 16, 16, 3))
+        before = texels.copy()
+        del environment
+        gc.collect()
+        numpy.testing.assert_array_equal(texels, before)
+
+    def test_a_paint_outlives_its_list_and_its_numbers_are_constant(self):
+        (fitted,) = goniochrome.fit([self.silver], self.basis)
+        lobes, curve = fitted.lobes, self.silver.curve([15, 45])
+        self.paints = self.black = None
+        gc.collect()
+        numpy.testing.assert_array_equal(self.silver.curve([15, 45]), curve)
+        with self.assertRaises(ValueError):
+            lobes.diffuse[0] = 1
+        with self.assertRaises(AttributeError):
+            lobes.coat_index = 1
+
+    def test_wrong_shapes_and_classes_are_refused(self):
+        for wrong, words in ((lambda: goniochrome.lab_from_rgb(1.), "rgb: the last axis"),
+                             (lambda: goniochrome.rgb_from_lab(numpy.zeros((3, 4))), "lab: the last axis"),
+                             (lambda: goniochrome.delta_e_76(numpy.zeros((4, 3)), numpy.zeros((2, 3))), "as many colors"),
+                             (lambda: self.silver.brdf(numpy.zeros((2, 3)), [0, 0, 1]), "as many directions"),
+                             (lambda: goniochrome.lab_from_rgb([0, 0, 0], observer_deg=10.5), "observer 10.5"),
+                             (lambda: goniochrome.lab_from_rgb([0, 0, 0], "D99"), "D99"),
+                             (lambda: goniochrome.read_basis("b7\0.basis.xml"), "null")):
+            with self.assertRaisesRegex(goniochrome.Error, words):
+                wrong()
+        self.assertTrue(issubclass(goniochrome.Error, ValueError))
+        for wrong, words in ((lambda: goniochrome.fit([self.basis], self.basis), "no Paint"),
+                             (lambda: goniochrome.fit(self.paints, self.basis, method=1), "int"),
+                             (lambda: copy.deepcopy(self.silver), "in memory alone")):
+            with self.assertRaisesRegex(TypeError, words):
+                wrong()
+
+    def test_two_threads_get_results_and_errors_of_their_own(self):
+        def work(name):
+            for _ in range(200):
+                with self.assertRaisesRegex(goniochrome.Error, name):
+                    goniochrome.aspecular_deg(name)
+                self.assertEqual(goniochrome.lab_from_rgb(numpy.ones((50, 3))).shape, (50, 3))
+            return goniochrome.fit([self.silver], self.basis)[0].lobes.diffuse
+
+        with concurrent.futures.ThreadPoolExecutor(2) as threads:
+            one, two = threads.map(work, ("45first", "45second"))
+        numpy.testing.assert_array_equal(one, two)
+
+    def test_the_library_serves_every_version_of_python(self):
+        library = pathlib.Path(goniochrome.__file__).parent / "libgoniochrome.so"
+        self.assertNotRegex(library.read_bytes(), rb"\0_?Py[A-Z_]\w+\0")
+
+    def test_without_its_library_the_import_says_so(self):
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "goniochrome").mkdir()
+            shutil.copy(goniochrome.__file__, folder + "/goniochrome")
+            done = subprocess.run([sys.executable, "-c", "import goniochrome"], cwd=folder, capture_output=True, text=True, check=False)
+        self.assertRegex(done.stderr.splitlines()[-1], "^ImportError: goniochrome cannot load its library: .*libgoniochrome.so: ")
+
+    def test_everything_public_has_its_types(self):
         for name in goniochrome.__all__:
-            self.assertRegex(stubs, rf"(class|def) {name}\b")
-            for member in vars(getattr(goniochrome, name)) if isinstance(getattr(goniochrome, name), type) else ():
+            thing = getattr(goniochrome, name)
+            self.assertTrue(thing.__doc__, name)
+            for member, value in vars(thing).items() if isinstance(thing, type) else [(name, thing)]:
                 if not member.startswith("_"):
-                    self.assertIn(f"def {member}(", stubs)
+                    notes = getattr(value, "fget", value)
+                    self.assertTrue(member in thing.__annotations__ or "return" in notes.__annotations__, f"{name}.{member}")
 
     def test_the_example_runs(self):
         done = subprocess.run([sys.executable, pathlib.Path(__file__).parent / "example.py", DATA], capture_output=True, text=True, check=True)

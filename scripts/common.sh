@@ -13,12 +13,12 @@ build_packages=(
 )
 test_packages=(
   bats coinor-libclp-dev file jq libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6 librsvg2-bin libbenchmark-dev libgmock-dev libgtest-dev libxml2-utils locales make
-  openexr openimageio-tools procps pybind11-dev python3 python3-dev python3-numpy python3-openimageio strace time
+  openexr openimageio-tools procps python3 python3-numpy python3-openimageio strace time
 )
 # The compiler for the page of paint-studio. Not every system has it, and everything else is built without.
 studio_packages=(clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32)
 # What scripts/make-wheel needs beside these.
-wheel_packages=(binutils coinor-libclp-dev python3-dev python3-venv)
+wheel_packages=(binutils coinor-libclp-dev python3-venv)
 
 say() { printf '%s\n' "$*" >&2; }
 

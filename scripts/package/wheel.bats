@@ -57,11 +57,11 @@ works() {
 }
 
 @test "the programs of this build work where pip lays them" {
-  compgen -G "$GONIOCHROME_BUILD/python/goniochrome/_core*" || skip "this build has no Python module: pybind11-dev is not installed, or a sanitizer is in the way"
+  [ -f "$GONIOCHROME_BUILD/python/goniochrome/libgoniochrome.so" ] || skip "this build has no Python module: a sanitizer is in the way"
   /usr/bin/python3 -c 'import numpy' || skip "python3-numpy is not there"
   mkdir build env
   cmake -S "$top" -B build -G Ninja -DSKBUILD=2 -DSKBUILD_SCRIPTS_DIR="$PWD/wheel/scripts" -DSKBUILD_DATA_DIR="$PWD/wheel/data" \
-    -DGONIOCHROME_TESTS=OFF -DGONIOCHROME_PYTHON=ON >log 2>&1 || { cat log; false; }
+    -DGONIOCHROME_TESTS=OFF >log 2>&1 || { cat log; false; }
   rm -rf build/bin build/lib/goniochrome build/python/goniochrome
   ln -s "$GONIOCHROME_BUILD/bin" build/bin
   ln -s "$GONIOCHROME_BUILD/lib/goniochrome" build/lib/goniochrome
