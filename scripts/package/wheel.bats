@@ -90,7 +90,7 @@ foreign() {
   shift
   find "$@" -type f | while read -r file; do
     [ "$(head -c 4 "$file" | tr -d '\0')" = $'\x7fELF' ] || continue
-    ldd "$file" | grep -vE "$prefix/|linux-vdso|ld-linux|lib(c|m|dl|pthread|rt|stdc\+\+|gcc_s)\.so" | sed "s|^|${file##*/}:|" || true
+    ldd "$file" | grep -vE "$prefix/|statically linked|linux-vdso|ld-linux|lib(c|m|dl|pthread|rt|stdc\+\+|gcc_s)\.so" | sed "s|^|${file##*/}:|" || true
   done
 }
 
