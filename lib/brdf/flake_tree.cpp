@@ -18,7 +18,7 @@ constexpr double kMostTiles = 512;
 constexpr double kFew = 16;
 // A node of more flakes than these is not split any more where it is no wider than that many times the box.
 constexpr double kMany = 32, kNarrow = 2;
-constexpr double kMostCells = 64;  // of tilts, in each coordinate
+constexpr double kMostCells = 4096;  // of tilts, in each coordinate
 // Means up to here are drawn by summing probabilities; the others by the normal quantile with its skewness.
 constexpr double kSummed = 24;
 
@@ -140,21 +140,47 @@ class TileCounts {
   std::array<std::size_t, kStarts> starts_{};
 };
 
-double tile_count(bool tilted, double u) {
+const TileCounts& tile_counts(bool tilted) {
   static const TileCounts all(kOfTile), some(kOfTiltedTile);
-  return (tilted ? some : all).at(u);
+  return tilted ? some : all;
 }
 
-// A range of tilts in units of a cell of tilts. A range of turns that comes again to the cell has those below `again`
-// too.
-struct Window {
-  std::array<double, 2> low = {0, 0}, high = {1, 1};
-  double again = 0;
+// A range in units of a cell or node.
+struct Interval {
+  double low = 0, high = 1;
 
-  double part() const {
-    const auto overlap = [&](std::size_t d) { return std::max(0.0, std::min(high[d], 1.0) - std::max(low[d], 0.0)); };
-    return overlap(0) * (overlap(1) + again);
+  double begin() const { return std::max(low, 0.0); }
+  double end() const { return std::min(high, 1.0); }
+  double overlap() const { return std::max(0.0, end() - begin()); }
+  Interval within(std::int64_t cell) const {
+    return {low - static_cast<double>(cell), high - static_cast<double>(cell)};
   }
+};
+
+// Ranges of up to four coordinates, of 15 bits in every 16. A range may begin anew at the end of its coordinate.
+struct Ranges {
+  std::uint64_t low = 0, width = 0;
+
+  static constexpr std::uint64_t kTops = 0x8000800080008000U;
+  void set(int coordinate, double from, double to) {
+    const std::uint64_t begin = step(from), end = step(to);
+    low |= (begin & 0x7FFF) << (16 * coordinate), width |= (end - begin) << (16 * coordinate);
+  }
+  void set(int coordinate, const Interval& interval) {
+    set(coordinate, interval.begin(), std::max(interval.begin(), interval.end()));
+  }
+  static std::uint64_t step(double at) { return static_cast<std::uint64_t>(0x8000 * at + 0.5); }
+  // The top bits keep each difference from borrowing of the next coordinate.
+  bool hold(std::uint64_t at) const {
+    const std::uint64_t above = ((at | kTops) - low) & ~kTops;
+    return (((above | kTops) - width) & kTops) == 0;
+  }
+};
+
+// The tilts of a cell that are seen, as the upper two coordinates, and the part of them that is shown.
+struct Window {
+  Ranges tilts;
+  double part, shown;
 };
 
 // A node of the tree, which is a unit square, and a box in units of it.
@@ -162,9 +188,7 @@ struct Node {
   std::uint64_t key = 0;
   double count = 0;
   int depth = 0;
-  std::array<double, 2> low = {}, high = {};
-
-  double overlap(std::size_t d) const { return std::max(0.0, std::min(high[d], 1.0) - std::max(low[d], 0.0)); }
+  std::array<Interval, 2> box;
 };
 
 // Flakes that are shown: those counted one by one or drawn, and those of whole nodes, of which a part is yet to be
@@ -174,100 +198,104 @@ struct Shown {
   std::uint64_t key = 0;  // of the first whole node
 };
 
-// A range of a coordinate that has 16 bits.
-struct Range {
-  unsigned low, width;
-
-  Range(double from, double to) : low(step(from)), width(step(to) - low) {}
-  static unsigned step(double at) { return static_cast<unsigned>(65536 * std::clamp(at, 0.0, 1.0) + 0.5); }
-  bool holds(std::uint64_t at) const { return static_cast<unsigned>(at & 0xFFFF) - low < width; }
-};
+int count_few(const Node& node, const Window& window) {
+  Ranges ranges = window.tilts;
+  ranges.set(0, node.box[0]), ranges.set(1, node.box[1]);
+  int sum = 0;
+  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(node.count); ++i)
+    if (const std::uint64_t own = mixed(node.key, 64 + i); ranges.hold(own))
+      sum += unit(mixed(own, 0)) < window.shown ? 1 : 0;
+  return sum;
+}
 
 // Adds the flakes of a node within a box and a window, of which some are shown: those of a small node over the edge of
 // the box by binomial draws, since they are even in the node; those of a node with few of them one by one.
-void count_node(const Node& node, const Window& window, double shown, Shown& sum) {
-  const double x = node.overlap(0), y = node.overlap(1);
+void count_node(const Node& node, const Window& window, Shown& sum) {
   if (node.count <= kFew) {
-    const Range columns(node.low[0], node.high[0]), rows(node.low[1], node.high[1]),
-        tilts(window.low[0], window.high[0]), turns(window.low[1], window.high[1]), again(0, window.again);
-    for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(node.count); ++i) {
-      const std::uint64_t own = mixed(node.key, 64 + i);
-      if (static_cast<int>(columns.holds(own)) & static_cast<int>(rows.holds(own >> 16)) &
-          static_cast<int>(tilts.holds(own >> 32)) &
-          (static_cast<int>(turns.holds(own >> 48)) | static_cast<int>(again.holds(own >> 48))))
-        sum.counted += unit(mixed(own, 0)) < shown ? 1 : 0;
-    }
+    sum.counted += count_few(node, window);
     return;
   }
+  const double x = node.box[0].overlap(), y = node.box[1].overlap();
   if (x * y >= 1) {
     if (sum.whole == 0) sum.key = node.key;
     sum.whole += node.count;
     return;
   }
-  const auto narrow = [&](std::size_t d, double part) {
-    return part >= 1 || kNarrow * (node.high[d] - node.low[d]) >= 1;
+  const auto narrow = [](const Interval& box, double part) {
+    return part >= 1 || kNarrow * (box.high - box.low) >= 1;
   };
-  if (node.count > kMany && narrow(0, x) && narrow(1, y)) {
-    sum.counted += binomial_draw(node.count, x * y * window.part() * shown, unit(mixed(node.key, 6)));
+  if (node.count > kMany && narrow(node.box[0], x) && narrow(node.box[1], y)) {
+    // Boxes that meet in the node draw by themselves.
+    const std::uint64_t side = (node.box[0].low > 0 ? 1 : 0) + (node.box[1].low > 0 ? 2 : 0);
+    sum.counted += binomial_draw(node.count, x * y * window.part * window.shown, unit(mixed(node.key, 16 + side)));
     return;
   }
   const auto d = static_cast<std::size_t>(node.depth & 1);
   double left = -1;
   for (int i = 0; i < 2; ++i) {
     Node half = node;
-    half.low[d] = 2 * node.low[d] - i, half.high[d] = 2 * node.high[d] - i;
-    if (half.overlap(d) == 0) continue;
+    half.box[d] = {2 * node.box[d].low - i, 2 * node.box[d].high - i};
+    if (half.box[d].overlap() == 0) continue;
     if (left < 0) left = half_of(node.count, node.key);
     half.count = i == 0 ? left : node.count - left;
     half.key = mixed(node.key, 2 + static_cast<std::uint64_t>(i));
     ++half.depth;
-    count_node(half, window, shown, sum);
+    count_node(half, window, sum);
   }
 }
 
-std::uint64_t bits(double number) {
-  return static_cast<std::uint64_t>(static_cast<std::int64_t>(number));
+// The number of cells, a power of 2, that are as wide as a range of tilts or up to twice as wide.
+double cells_for(double tilts) {
+  double cells = 1;
+  while (cells < kMostCells && 2 * cells * tilts <= 1) cells *= 2;
+  return cells;
 }
 
 }  // namespace
 
-FlakeTree::FlakeTree(double density, std::uint64_t seed, double tilts)
-    : density_(density),
-      tile_m_(1),
-      seed_(seed),
-      cells_(std::clamp(std::floor(1 / std::sqrt(tilts)), 1.0, kMostCells)) {
-  const double of_cell = density / (cells_ * cells_);
-  if (density > 0) tile_m_ = std::sqrt((cells_ > 1 ? kOfTiltedTile : kOfTile) / of_cell);
-}
-
 double FlakeTree::count(const FlakeBox& box) const {
   const double mean = density_ * box.area() * box.part();
   if (!(mean > 0)) return 0;
-  if (!(box.area() < kMostTiles * tile_m_ * tile_m_)) return mean;
-  const bool all_turns = box.tilts[1] >= 1;
-  const double turn = all_turns ? 0 : cells_ * (box.tilt[1] - std::floor(box.tilt[1])),
-               turned = turn + cells_ * (all_turns ? 1 : box.tilts[1]), tilt = cells_ * box.tilt[0],
-               tilted = tilt + cells_ * box.tilts[0];
-  std::array<double, 2> low{}, high{};
-  for (std::size_t d = 0; d < 2; ++d) low[d] = box.place[d] / tile_m_, high[d] = low[d] + box.size[d] / tile_m_;
+  const std::array<double, 2> cells{cells_for(box.tilts[0]), cells_for(box.tilts[1])};
+  const bool tilted = cells[0] * cells[1] > 1;
+  const double tile_m = std::sqrt((tilted ? kOfTiltedTile : kOfTile) * cells[0] * cells[1] / density_);
+  if (!(box.area() < kMostTiles * tile_m * tile_m)) return mean;
+  const TileCounts& counts = tile_counts(tilted);
+  std::array<Interval, 2> place;
+  std::array<std::int64_t, 2> first{}, last{};
+  for (std::size_t d = 0; d < 2; ++d) {
+    place[d] = {box.place[d] / tile_m, (box.place[d] + box.size[d]) / tile_m};
+    first[d] = static_cast<std::int64_t>(std::floor(place[d].low));
+    last[d] = static_cast<std::int64_t>(std::ceil(place[d].high));
+  }
+  const double tilt = cells[0] * box.tilt[0], tilt_end = tilt + cells[0] * box.tilts[0],
+               turn = cells[1] * (box.tilt[1] - std::floor(box.tilt[1])),
+               turn_end = turn + cells[1] * std::min(1.0, box.tilts[1]);
+  const std::uint64_t seed = mixed(seed_, static_cast<std::uint64_t>(cells[0] * 2 * kMostCells + cells[1]));
+  const auto some = static_cast<std::int64_t>(cells[1]);
   double sum = 0;
-  for (double i = std::floor(tilt); i < std::min(tilted, cells_); ++i) {
-    for (double j = std::floor(turn); j < std::min(turned, std::floor(turn) + cells_); ++j) {
-      const Window window{{tilt - i, turn - j}, {tilted - i, turned - j}, std::clamp(turned - j - cells_, 0.0, 1.0)};
+  for (auto i = static_cast<std::int64_t>(tilt); static_cast<double>(i) < std::min(tilt_end, cells[0]); ++i) {
+    // One cell of turns holds a range that begins anew; of more cells, none does.
+    for (auto j = static_cast<std::int64_t>(turn); static_cast<double>(j) < (some > 1 ? turn_end : 1); ++j) {
+      const Interval tilts = Interval{tilt, tilt_end}.within(i), turns = Interval{turn, turn_end}.within(j);
+      Window window{{}, tilts.overlap() * turns.overlap(), box.shown};
+      window.tilts.set(2, tilts);
+      if (some > 1) {
+        window.tilts.set(3, turns);
+      } else {
+        window.tilts.set(3, turn, turn_end), window.part = tilts.overlap() * (turn_end - turn);
+      }
       Shown of_cell;
-      const std::uint64_t cell = mixed(seed_, bits(i * cells_ + (j < cells_ ? j : j - cells_)));
-      for (double row = std::floor(low[1]); row < high[1]; ++row) {
-        for (double column = std::floor(low[0]); column < high[0]; ++column) {
-          Node tile{mixed(mixed(cell, bits(column)), bits(row)),
-                    0,
-                    0,
-                    {low[0] - column, low[1] - row},
-                    {high[0] - column, high[1] - row}};
-          tile.count = tile_count(cells_ > 1, unit(mixed(tile.key, 5)));
-          count_node(tile, window, box.shown, of_cell);
+      const std::uint64_t cell = mixed(seed, static_cast<std::uint64_t>(i * some + j % some));
+      for (std::int64_t row = first[1]; row < last[1]; ++row) {
+        const std::uint64_t of_row = mixed(cell, static_cast<std::uint64_t>(row));
+        const Interval rows = place[1].within(row);
+        for (std::int64_t column = first[0]; column < last[0]; ++column) {
+          const std::uint64_t key = mixed(of_row, static_cast<std::uint64_t>(column));
+          count_node({key, counts.at(unit(key)), 0, {place[0].within(column), rows}}, window, of_cell);
         }
       }
-      sum += of_cell.counted + binomial_draw(of_cell.whole, window.part() * box.shown, unit(mixed(of_cell.key, 9)));
+      sum += of_cell.counted + binomial_draw(of_cell.whole, window.part * box.shown, unit(mixed(of_cell.key, 9)));
     }
   }
   return sum;

@@ -22,18 +22,16 @@ struct FlakeBox {
 
 class FlakeTree {
  public:
-  // `density` flakes a square meter. Trees of other seeds hold other flakes. Boxes are found fastest that have about
-  // the part `tilts` (above 0) of all tilts.
-  FlakeTree(double density, std::uint64_t seed, double tilts = 1);
+  // `density` flakes a square meter. Trees of other seeds hold other flakes.
+  FlakeTree(double density, std::uint64_t seed) : density_(density), seed_(seed) {}
 
   // The number of flakes in the box: Poisson with the mean density * area() * part(), for any two boxes that do not
-  // meet independent. Boxes of more than some 2e6 flakes, or 3e3 in each range of tilts, have their mean.
+  // meet independent. Ranges of tilts that differ by a power of 2 hold other flakes. Boxes of more than some 2e6 flakes, or 3e3 in each range of tilts, have their mean.
   double count(const FlakeBox& box) const;
 
  private:
-  double density_, tile_m_;
+  double density_;
   std::uint64_t seed_;
-  double cells_;  // of tilts, in each of both coordinates
 };
 
 // Draws by inversion, from a number in (0,1): monotone in it, and in the mean.

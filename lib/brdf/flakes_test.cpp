@@ -72,7 +72,7 @@ std::vector<double> counted(const Plate& plate, double exponent, double per_m2, 
   FlakeBox box = tilts_that_show(lamp, plate.mirrored, plate.across, toward);
   box.size = {side_m / pixels, side_m / pixels};
   box.shown = dot(plate.normal, toward);
-  const FlakeTree tree(per_m2, 1, lamp.part_that_shows(0));
+  const FlakeTree tree(per_m2, 1);
   const double white = std::pow(std::sin(radius_rad), 2);
   const double light = disc_light(lamp, 0, plate.normal, plate.mirrored, toward, paint::kNoCoat);
   std::vector<double> radiance;

@@ -29,7 +29,9 @@ namespace {
 // Deviations of less than this part of a pixel's luminance are not drawn.
 constexpr double kLeast = 0.004;
 // Lamps that more flakes show than these vary together with the rest of the light.
-constexpr double kManyShown = 32;
+constexpr double kManyShown = 16;
+// Lamps whose variance together is less than this part of what varies more vary with the rest of the light.
+constexpr double kLesser = 0.2;
 // Light whose variance is less than this part of what varies more is not seen beside it.
 constexpr double kMasked = 0.01;
 // Maps of the root mean square and of the mean differ by rounding and filtering alone up to this relative variance.
@@ -75,10 +77,10 @@ struct Sparkle::Footprint {
 struct Sparkle::Source {
   std::array<brdf::FlakeTree, 3> trees;
 
-  Source(double per_m2, std::uint64_t number, double tilts)
-      : trees{tree(per_m2, number, 0, tilts), tree(per_m2, number, 1, tilts), tree(per_m2, number, 2, tilts)} {}
-  static brdf::FlakeTree tree(double per_m2, std::uint64_t number, std::uint64_t axis, double tilts) {
-    return {std::numbers::sqrt3 * per_m2, mixed(number, axis), tilts};
+  Source(double per_m2, std::uint64_t number)
+      : trees{tree(per_m2, number, 0), tree(per_m2, number, 1), tree(per_m2, number, 2)} {}
+  static brdf::FlakeTree tree(double per_m2, std::uint64_t number, std::uint64_t axis) {
+    return {std::numbers::sqrt3 * per_m2, mixed(number, axis)};
   }
 };
 
@@ -113,6 +115,11 @@ struct Sparkle::Grain {
 
   double deviation_m() const { return std::sqrt(variance_m2) * seen_luminance(mean); }
 };
+
+void Sparkle::add_further(std::vector<Grain>& grains) {
+  double further = 0;
+  for (Grain& grain : grains | std::views::reverse) grain.further_m2 = further += std::pow(grain.deviation_m(), 2);
+}
 
 // The light of flakes at a place, from which that at the pixels around it hardly differs.
 struct Sparkle::Place {
@@ -151,7 +158,7 @@ Sparkle::Sparkle(const Scene& scene, const Effects& effects)
       continue;
     }
     const paint::Flakes& flakes = scene.flakes[i]->flakes;
-    Part part{with_effects(scene.paints[i], effects), flakes.per_m2(), {}, {}, {}, {flakes.per_m2(), 0, 1}};
+    Part part{with_effects(scene.paints[i], effects), flakes.per_m2(), {}, {}, {}, {flakes.per_m2(), 0}};
     const std::vector<double> shares = brdf::flake_shares(part.paint);
     for (std::size_t j = 0; j < shares.size(); ++j) {
       if (shares[j] == 0) continue;
@@ -167,8 +174,7 @@ Sparkle::Sparkle(const Scene& scene, const Effects& effects)
     if (part.lobes.empty()) continue;
     for (std::size_t k = 0; k < lamps_.size(); ++k) {
       brdf::FlakeLamp shown(part.lobes, lamps_[k].place ? 0 : lamps_[k].radius_rad, flakes.spread_deg);
-      const double tilts = std::max(1e-6, shown.part_that_shows(0));
-      part.lamps.push_back({std::move(shown), {part.per_m2, k + 1, tilts}});
+      part.lamps.push_back({std::move(shown), {part.per_m2, k + 1}});
     }
     told.insert(fmt::format("{} um, coverage {}{}", shortest(flakes.diameter_um), shortest(flakes.coverage),
                             scene.flakes[i]->assumed ? " (assumed by class)" : ""));
@@ -225,9 +231,9 @@ std::optional<Sparkle::Footprint> Sparkle::footprint(const Gbuffer& g, int x, in
   return at;
 }
 
-// Lists the light that varies enough to be seen, what varies most first. Lamps that many flakes show are near normal,
-// and vary with the rest of the light.
-Sparkle::Place Sparkle::place(const Part& part, const Footprint& at) const {
+// Lists the light that varies enough to be seen, what varies most first. Lamps that many flakes show are near normal
+// and vary with the rest of the light, and so do the lesser ones, of which only those that are lit.
+Sparkle::Place Sparkle::place(const Part& part, const Footprint& at, const Lit& lit) const {
   const double cos_o = std::clamp(dot(at.normal, at.to_viewer), 0.0, 1.0);
   const paint::LobeFit paint =
       part.paint.views.empty() ? part.paint : brdf::at_view(part.paint, math::acos(cos_o) / kDegree);
@@ -265,9 +271,15 @@ Sparkle::Place Sparkle::place(const Part& part, const Footprint& at) const {
     if (variance > kMapVariance)
       rest_variance += variance * std::pow(seen_luminance(light), 2) / (part.lobes[j].share * part.per_m2);
   }
+  std::ranges::stable_sort(place.grains, std::greater<>(), &Grain::deviation_m);
+  add_further(place.grains);
+  double greater = 0;
   std::erase_if(place.grains, [&](const Grain& grain) {
-    if (grain.variance_m2 * kManyShown > at.area_m2) return false;
-    rest.mean += grain.mean, rest_variance += std::pow(grain.deviation_m(), 2);
+    if (grain.variance_m2 * kManyShown > at.area_m2 && grain.further_m2 > kLesser * greater) {
+      greater += std::pow(grain.deviation_m(), 2);
+      return false;
+    }
+    if (lit(grain)) rest.mean += grain.mean, rest_variance += std::pow(grain.deviation_m(), 2);
     return true;
   });
   // Lobes share out the flakes, and their variances add.
@@ -282,14 +294,12 @@ Sparkle::Place Sparkle::place(const Part& part, const Footprint& at) const {
     return true;
   });
   std::ranges::stable_sort(place.grains, std::greater<>(), &Grain::deviation_m);
-  double further = 0;
-  for (Grain& grain : place.grains | std::views::reverse)
-    grain.further_m2 = further += std::pow(grain.deviation_m(), 2);
+  add_further(place.grains);
   return place;
 }
 
 // The light of all flakes is no more than what the pixel shows.
-template <class Lit, class See>
+template <class See>
 void Sparkle::visit_seen(Place& place, const color::Rgb& shown, const Lit& lit, const See& see) {
   const double least_m = kLeast * seen_luminance(shown) * std::sqrt(place.at.area_m2);
   color::Rgb sum = place.steady;
@@ -314,12 +324,11 @@ color::Rgb Sparkle::deviation(const Gbuffer& gbuffer, int x, int y, const color:
   const std::optional<Footprint> at = footprint(gbuffer, x, y, mesh_point(*scene_.mesh, gbuffer, x, y));
   if (!at) return {};
   color::Rgb variance;
-  Place seen = place(*part, *at);
-  visit_seen(
-      seen, shown, [](const Grain&) { return true; },
-      [&](const Grain& grain, const color::Rgb& mean) {
-        variance += (grain.variance_m2 / at->area_m2) * (mean * mean);
-      });
+  const auto lit = [](const Grain&) { return true; };
+  Place seen = place(*part, *at, lit);
+  visit_seen(seen, shown, lit, [&](const Grain& grain, const color::Rgb& mean) {
+    variance += (grain.variance_m2 / at->area_m2) * (mean * mean);
+  });
   return {std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)};
 }
 
@@ -357,22 +366,22 @@ void Sparkle::add(const Gbuffer& g, const rays::RayScene* blockers, image::Image
         const Part* part = parts_[static_cast<std::size_t>(number)].get();
         if (part == nullptr) continue;
         const MeshPoint point = mesh_point(*scene_.mesh, g, x, y);
+        const auto lit = [&](const Grain& grain) {
+          if (blockers == nullptr) return true;
+          const auto& from = lamps_[*grain.lamp].place;
+          const double reach = from ? length(from->position - point.position) * blockers->scale() : 1e30;
+          return !blockers->occluded(ray_point(*blockers, *scene_.mesh, g, x, y).spot.start,
+                                     rays::float3(grain.light.direction), static_cast<float>(reach));
+        };
         Place& place = places[static_cast<std::size_t>(x) / kBlock];
         if (place.part == number && place.at.axis == steepest_axis(point.face)) {
           move(place.at, g, x, y, point.position);
         } else {
           const std::optional<Footprint> at = footprint(g, x, y, point);
-          place = at ? this->place(*part, *at) : Place();
+          place = at ? this->place(*part, *at, lit) : Place();
           if (!at) continue;
           place.part = number;
         }
-        const auto lit = [&](const Grain& grain) {
-          if (blockers == nullptr) return true;
-          const auto& from = lamps_[*grain.lamp].place;
-          const double reach = from ? length(from->position - place.at.position) * blockers->scale() : 1e30;
-          return !blockers->occluded(ray_point(*blockers, *scene_.mesh, g, x, y).spot.start,
-                                     rays::float3(grain.light.direction), static_cast<float>(reach));
-        };
         visit_seen(place, {pixel[0] / covered, pixel[1] / covered, pixel[2] / covered}, lit,
                    [&](const Grain& grain, const color::Rgb& mean) {
                      const double change = covered * this->change(*part, place.at, grain);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,9 +44,11 @@ class Sparkle {
   struct Place;
   std::optional<Footprint> footprint(const Gbuffer& gbuffer, int x, int y, const MeshPoint& point) const;
   void move(Footprint& to, const Gbuffer& gbuffer, int x, int y, const Vec3& position) const;
-  Place place(const Part& part, const Footprint& at) const;
+  using Lit = std::function<bool(const Grain&)>;  // nothing is in the way of that lamp
+  Place place(const Part& part, const Footprint& at, const Lit& lit) const;
+  static void add_further(std::vector<Grain>& grains);
   // Calls see(grain, mean) for each lit grain that is seen at a pixel that shows this radiance.
-  template <class Lit, class See>
+  template <class See>
   static void visit_seen(Place& place, const color::Rgb& shown, const Lit& lit, const See& see);
   double change(const Part& part, const Footprint& at, const Grain& grain) const;
 

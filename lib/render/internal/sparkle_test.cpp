@@ -19,8 +19,8 @@ namespace {
 
 using testing::HasSubstr;
 
-// A plate of a square meter in the plane z = 0, in front of which a camera stands at a distance in meters. Each pixel
-// shows as many micrometers.
+// A plate in the plane z = 0, of a square meter or of four, in front of which a camera stands at a distance in meters.
+// Each pixel shows as many micrometers.
 struct Panel {
   mesh::Mesh mesh = panels_mesh(1);
   envmap::PrefilteredEnvironment env;
@@ -29,6 +29,8 @@ struct Panel {
 
   Panel(double distance_m, double pixel_um, int pixels, double view_deg = 0) {
     mesh.unit_m = 1;
+    if (1e-6 * pixel_um * pixels > 0.6)
+      for (Vec3& corner : mesh.positions) corner = 2 * corner;
     paint::LobeFit paint = matt({0.05, 0.05, 0.05});
     paint.lobes = {{20, {0.6, 0.5, 0.4}, {}}, {100, {1, 1, 1.5}, {}}};
     scene.mesh = &mesh;
@@ -89,10 +91,9 @@ Statistics statistics_of(const image::Image& picture) {
   return s;
 }
 
-// From afar, where the grain is small enough that the mean of so many pixels tells.
+// From so far that the mean of 10^4 pixels has a standard error of 0.02 dE00.
 TEST(Sparkle, KeepsTheMeanColor) {
-  Panel panel(5, 5000, 100);
-  panel.mesh.unit_m = 4;
+  Panel panel(10, 10000, 100);
   panel.lit_by_sun(12);
   const Statistics with = statistics_of(panel.drawn()), without = statistics_of(panel.mean());
   EXPECT_GT(with.contrast, without.contrast + 0.005) << "there is grain";
@@ -227,10 +228,15 @@ TEST(Sparkle, IsTheSameForAnyNumberOfThreads) {
   EXPECT_NE(one.data, panel.mean().data);
 }
 
-// A second plate stands between the first and the sun.
+// A second plate stands between the first and the sun, and the lesser lamps beside it.
 TEST(Sparkle, FlakesInTheShadowDoNotShowTheSun) {
   Panel panel(0.3, 200, 40);
   panel.lit_by_sun(30);
+  for (const double part : {0.3, 0.2}) {
+    Light lesser = panel.scene.lights[0];
+    lesser.direction = normalized(lesser.direction + Vec3{0, 0.1 * part, 0}), lesser.white = part * lesser.white;
+    panel.scene.lights.push_back(lesser);
+  }
   mesh::Mesh shaded = panel.mesh;
   const auto first = static_cast<std::uint32_t>(shaded.positions.size());
   for (const Vec3& corner : panel.mesh.positions) shaded.positions.push_back(0.3 * corner + Vec3{0.29, 0, 0.4});
@@ -243,6 +249,56 @@ TEST(Sparkle, FlakesInTheShadowDoNotShowTheSun) {
   Sparkle(panel.scene, panel.effects()).add(panel.gbuffer, &*blockers, picture);
   EXPECT_EQ(picture.data, panel.mean().data);
   EXPECT_NE(panel.drawn().data, panel.mean().data) << "the sun would be seen";
+}
+
+// A pixel has fewer than one flake, of which few are lit: the mean stays, and most pixels have none.
+TEST(Sparkle, APixelOfLessThanOneFlakeKeepsTheMean) {
+  Panel panel(0.3, 25, 100);
+  panel.lit_by_sun(0);
+  panel.scene.flakes[0]->flakes = {30, 0.5, 15};
+  const double flakes = panel.scene.flakes[0]->flakes.per_m2() * 25e-6 * 25e-6;
+  EXPECT_LT(flakes, 1);
+  const image::Image drawn = panel.drawn();
+  const Statistics with = statistics_of(drawn), without = statistics_of(panel.mean());
+  EXPECT_NEAR(with.mean.y / without.mean.y, 1, 4 * with.contrast / 100);
+  int lit = 0;
+  for (std::size_t i = 1; i < drawn.data.size(); i += 4) lit += drawn.data[i] > without.mean.y ? 1 : 0;
+  EXPECT_GT(lit, 100);
+  EXPECT_LT(lit, 10000 * flakes);
+}
+
+// Flakes have places in the mesh alone: texture that is mirrored or has no area, and thus no tangents, is of no matter.
+TEST(Sparkle, NeedsNoTextureCoordinates) {
+  Panel panel(0.3, 200, 20);
+  panel.lit_by_sun(10);
+  const image::Image without = panel.drawn();
+  for (const float side : {-1.0F, 0.0F}) {
+    panel.mesh.texture.clear();
+    for (const Vec3& at : panel.mesh.positions)
+      panel.mesh.texture.push_back({side * static_cast<float>(at.x), static_cast<float>(at.y)});
+    EXPECT_EQ(panel.drawn().data, without.data) << side;
+  }
+}
+
+// Within a box whose walls are on all sides, one of which is behind the eye.
+TEST(Sparkle, ACameraInsideTheBoxOfTheMeshSeesItsFlakes) {
+  Panel panel(0.3, 200, 40);
+  mesh::Mesh& mesh = panel.mesh;
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const Vec3& corner : {Vec3{-0.5, -0.5, 0.5}, {0.5, -0.5, 0.5}, {0.5, 0.5, 0.5}, {-0.5, 0.5, 0.5}}) {
+    mesh.positions.push_back(corner), mesh.normals.push_back({0, 0, -1});
+  }
+  mesh.triangles.push_back({first, first + 2, first + 1}), mesh.triangles.push_back({first, first + 3, first + 2});
+  mesh.parts[0].count = 4;
+  panel.lit_by_sun(10);
+  Camera camera;
+  camera.eye = {0, 0, 0.3}, camera.target = {0, 0, 0}, camera.up = {0, 1, 0};
+  camera.fov_deg = 2 * std::atan(0.5e-6 * 200 * 40 / 0.3) / kDegree;
+  panel.gbuffer = seen_by_rays(mesh, camera, 40, 40);
+  Panel open(0.3, 200, 40);
+  open.lit_by_sun(10);
+  EXPECT_EQ(panel.drawn().data, open.drawn().data);
+  EXPECT_NE(panel.drawn().data, panel.mean().data);
 }
 
 // Every drawn pixel is finite and not negative.
@@ -299,6 +355,22 @@ TEST(Sparkle, IsPlannedWhereItIsSeen) {
     EXPECT_TRUE(std::isnan(unstated.de00_p95)) << "nor are they measured";
   }
   EXPECT_EQ(planned(near, "auto,+sparkle").decision, Decision::kForcedOn);
+}
+
+// The plan predicts without drawing what flakes change where they are drawn, about the distance up to which they are.
+TEST(Sparkle, ThePredictionIsTheTrueChange) {
+  for (const double distance_m : {10.0, 20.0, 35.0}) {
+    Panel panel(distance_m, 1000 * distance_m, 30);
+    panel.lit_by_sun(10);
+    const image::Image mean = panel.mean();
+    std::vector<SparklePixel> pixels;
+    for (int i = 0; i < 900; i += 7) {
+      const float* rgb = mean.pixel(i % 30, i / 30);
+      pixels.push_back({&panel.gbuffer, i % 30, i / 30, {rgb[0], rgb[1], rgb[2]}});
+    }
+    const double truth = sparkle_truth(panel.scene, panel.effects(), pixels, 1);
+    EXPECT_NEAR(truth / planned(panel, "auto").de00_p95, 1, 0.35) << distance_m << " m";
+  }
 }
 
 TEST(Sparkle, SaysWhyItIsNotDrawn) {
