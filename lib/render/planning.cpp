@@ -307,8 +307,17 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   return plan;
 }
 
+namespace {
+
+PlanItem* row_of(Plan& plan, const std::string& effect) {
+  const auto found = std::ranges::find(plan.items, effect, &PlanItem::effect);
+  return found != plan.items.end() ? &*found : nullptr;
+}
+
+}  // namespace
+
 void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& points, const envmap::Environment* env,
-               double white_luminance) {
+               double white_luminance, const std::vector<ProbePixel>& pixels) {
   const Effects all = effects_of(scene);
   const std::vector<EffectSwitch> switches = effect_switches(scene, all, points);
   // Facets take the place of gloss lobes: what one of these is worth shows where lobes are drawn.
@@ -327,14 +336,14 @@ void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& 
     for (std::size_t j = 0; j < with.size(); ++j) de00.push_back(seen_difference(with[j], colors[j], white));
     plan.items[i].truth_de00_p95 = percentile_95(std::move(de00));
   }
+  PlanItem* flakes = row_of(plan, kSparkleName);
+  if (flakes == nullptr || std::isnan(flakes->de00_p95) || pixels.empty()) return;
+  std::vector<SparklePixel> seen;
+  for (const auto& [gbuffer, x, y] : pixels) seen.push_back({gbuffer, x, y, full[seen.size()]});
+  flakes->truth_de00_p95 = sparkle_truth(scene, all, seen, white);
 }
 
 namespace {
-
-PlanItem* row_of(Plan& plan, const std::string& effect) {
-  const auto found = std::ranges::find(plan.items, effect, &PlanItem::effect);
-  return found != plan.items.end() ? &*found : nullptr;
-}
 
 void add_finding(double de00_p95, bool stopped, PlanItem& item) {
   item.de00_p95 = de00_p95;

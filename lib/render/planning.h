@@ -44,9 +44,10 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
                        const PlanRequest& request, const std::vector<const Engine*>& engines, const RayContext& rays,
                        CpuEngine& tried);
 
-// Fills in the truth of every effect that is needed: the change of the exact picture without it, at these points.
+// Fills in the truth of every effect that is needed: the change of the exact picture without it, at these points; that
+// of flakes, where the pixels are given that show the points.
 void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& points, const envmap::Environment* env,
-               double white_luminance);
+               double white_luminance, const std::vector<ProbePixel>& pixels = {});
 
 // Takes what the first pass of a picture found.
 void add_findings(const CorrectionNoise& rays, const FoundMaps& maps, Plan& plan);

@@ -195,8 +195,10 @@ Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool f
       if (first && options_.check > 0 && session_.common().explain) {
         const auto sample = render::sampled_pixels(*looks_.front(), stage_.scene, std::min(options_.check, kMostTruth),
                                                    session_.common().seed);
+        std::vector<render::ProbePixel> pixels;
+        for (const auto& [x, y] : sample.places) pixels.push_back({looks_.front().get(), x, y});
         render::add_truth(plan, render::seen_scene(stage_.scene, looks_), sample.points, stage_.source.image(),
-                          white_.luminance);
+                          white_.luminance, pixels);
       }
       if (first) {
         tell_plan(std::move(plan), renderer.shader());

@@ -1,6 +1,7 @@
 #include "render/plan/sparkle_plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/text.h"
@@ -12,6 +13,9 @@
 namespace goniochrome::render {
 
 namespace {
+
+// The truth is measured at so many pixels to each side.
+constexpr int kAround = 3;
 
 bool has_flakes(const Scene& scene) {
   return std::ranges::any_of(scene.flakes, [](const auto& flakes) { return flakes.has_value(); });
@@ -80,6 +84,37 @@ PlanItem sparkle_item(const Scene& scene, const std::vector<SparklePixel>& pixel
                   : item.on ? Decision::kDrawn
                             : Decision::kDropped;
   return item;
+}
+
+double sparkle_truth(const Scene& scene, const Effects& effects, const std::vector<SparklePixel>& pixels,
+                     double white_luminance) {
+  const Sparkle sparkle(scene, effects);
+  if (!sparkle.absent().empty()) return 0;
+  std::vector<double> de00;
+  for (const SparklePixel& pixel : pixels) {
+    const Gbuffer& seen = *pixel.gbuffer;
+    const int left = std::max(0, pixel.x - kAround), right = std::min(seen.width - 1, pixel.x + kAround),
+              top = std::max(0, pixel.y - kAround), bottom = std::min(seen.height - 1, pixel.y + kAround);
+    image::Image picture{seen.width, seen.height, 4, {}, {"R", "G", "B", "A"}};
+    picture.data.resize(4 * static_cast<std::size_t>(seen.width) * static_cast<std::size_t>(seen.height));
+    const auto visit = [&](const auto& at) {
+      for (int y = top; y <= bottom; ++y)
+        for (int x = left; x <= right; ++x)
+          if (seen.part(x, y) == seen.part(pixel.x, pixel.y)) at(picture.pixel(x, y));
+    };
+    visit([&](float* rgba) {
+      for (int c = 0; c < 3; ++c) rgba[c] = static_cast<float>(pixel.shown[c]);
+      rgba[3] = 1;
+    });
+    sparkle.add(seen, nullptr, picture);
+    double squares = 0, count = 0;
+    visit([&](const float* rgba) {
+      squares += std::pow(seen_difference(pixel.shown, {rgba[0], rgba[1], rgba[2]}, white_luminance), 2);
+      ++count;
+    });
+    de00.push_back(std::sqrt(squares / count));
+  }
+  return percentile_95(std::move(de00));
 }
 
 }  // namespace goniochrome::render

@@ -24,6 +24,11 @@ struct SparklePixel {
 PlanItem sparkle_item(const Scene& scene, const std::vector<SparklePixel>& pixels, const PlanRequest& request,
                       Effects& effects);
 
+// The true change, from flakes that are drawn: the root mean square over some pixels around each of these, at 95 of 100
+// of them. Light is as if nothing were in its way.
+double sparkle_truth(const Scene& scene, const Effects& effects, const std::vector<SparklePixel>& pixels,
+                     double white_luminance);
+
 // The item of an engine that draws no flakes.
 PlanItem sparkle_left_out(const Scene& scene, const char* engine);
 
