@@ -174,6 +174,9 @@ void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
   session_.explain(plan_table(plan));
   if (request_.quick && plan.effects.rays.any())
     session_.explain(fmt::format("no tolerance, time limit or check is asked for: rays end after {:g} s\n", kQuick_s));
+  if (request_.plan.effects.forced_on("sparkle").value_or(false))
+    for (const render::PlanItem& item : plan.items)
+      if (item.effect == "sparkle" && !item.on) session_.warn("no sparkle is drawn: " + item.reason);
   if (options_.print_shader) std::fputs((shader_gaps(plan) + shader).c_str(), stdout);
   plan_ = std::move(plan);
 }

@@ -152,4 +152,34 @@ decided() { grep -A4 "\"effect\": \"$1\"" auto.json | grep -q "\"decision\": \"$
   [[ "$output" =~ sparkle.*"made without --sparkle" ]]
   look coarse.xml --light 10,10 --engine path --time-limit 1 -o path.exr
   [[ "$output" =~ sparkle.*dropped.*"the engine path draws the mean of all flakes" ]]
+  [[ "$output" != *"no sparkle is drawn"* ]]
+  for engine in path integral; do
+    run render-osmesa --mesh plate.obj --size 12x9 --camera 0,0,0.3,0,0,0,15 -p coarse.xml --light 10,10 \
+      --engine $engine --time-limit 1 --effects auto,+sparkle -o refused.exr
+    [ "$status" -eq 0 ]
+    [[ "$output" == *"no sparkle is drawn: the engine $engine draws the mean of all flakes"* ]]
+  done
+  for engine in cpu gl; do
+    look coarse.xml --light 10,10 --engine $engine --effects auto,+sparkle -o $engine.exr
+    [[ "$output" =~ sparkle.*"forced on" ]]
+    ! cmp -s $engine.exr mean.exr
+  done
+  # Both draw the same flakes.
+  idiff -q -fail 0.01 -failpercent 1 -warn 1 cpu.exr gl.exr
+}
+
+# A cloud lies before the sun, and the sky is three times as bright above as at the horizon.
+@test "flakes of a whole car under a cloud are not drawn, and the plan has their prediction beside the truth" {
+  oiiotool --pattern fill:topleft=1,1,1:topright=1,1,1:bottomleft=.3,.3,.3:bottomright=.3,.3,.3 64x32 3 -o cloud.exr
+  prefilter-envmap -q --sparkle --basis "$TESTDATA/b5.basis.xml" cloud.exr -o cloud.env.exr
+  paint-edit -q fitted.xml#silver_coarse --flakes 30,0.5 -o silver.xml
+  whole() { render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --camera 35,12,1 --size 160x90 --samples 1 -p silver.xml --env cloud.env.exr --check 60 --explain "$@"; }
+  whole --effects auto,-rays -o whole.exr --report cloud.json || [ $? -eq 1 ]
+  jq -e '.results.plan[] | select(.effect == "sparkle") |
+    .decision == "dropped" and .de00_p95 < 0.1 and .truth_de00_p95 < 0.1' cloud.json
+  # The control: flakes of 1 mm are seen, and the truth is near the prediction.
+  paint-edit -q fitted.xml#silver_coarse --flakes 1000,0.5 -o silver.xml
+  whole --effects auto,-rays -o whole.exr --report large.json || [ $? -eq 1 ]
+  jq -e '.results.plan[] | select(.effect == "sparkle") |
+    .de00_p95 > 0.1 and .truth_de00_p95 > 0.5 * .de00_p95 and .truth_de00_p95 < 2 * .de00_p95' large.json
 }
