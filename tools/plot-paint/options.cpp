@@ -39,9 +39,9 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.flag("sparkle", &o.sparkle, "draw the contrast of the grain of each paint against distance instead")
       .more(
           "The contrast is the standard deviation over the mean of patches one minute of arc wide, in the sun at 45 "
-          "degrees, for viewers 15, 25 and 45 degrees from specular; see goniochrome-flakes(7). What an instrument "
-          "tells of sparkle stands beside it as it is. Paints without flakes or without lobes are left out, and a "
-          "warning says so.");
+          "degrees, for viewers 15, 25 and 45 degrees from specular; see goniochrome-flakes(7). Below are plates as an "
+          "eye sees them from 0.3, 1 and 3 m, in the sun and under a cloud. What an instrument tells of sparkle stands "
+          "beside it as it is. Paints without flakes or without lobes are left out, and a warning says so.");
   spec.option("hud", "VIEW", "view.exr", &o.hud, "draw the rings of each paint on this view instead")
       .more(
           "VIEW is a picture of render-osmesa --aov aspecular. The lines are where the aspecular angle to the first "

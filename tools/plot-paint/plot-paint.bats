@@ -216,6 +216,14 @@ setup() {
   [[ "$output" =~ "paint \"jet_black\" has no flakes: paint-edit --flakes states them" ]]
   grep -q "flakes of 30 um, coverage 0.5, spread 0.5 deg (assumed for class metallic)" grain.svg
   grep -q "none under an even sky" grain.svg
+  # Six plates, of which no two are the same: the grain of each distance, also under the cloud.
+  [ "$(grep -c '<image' grain.svg)" -eq 6 ]
+  [ "$(grep -o 'base64,[^"]*' grain.svg | sort -u | wc -l)" -eq 6 ]
+  for plate in "sun, 0.3 m" "sun, 3 m" "cloud, 1 m"; do grep -q "$plate" grain.svg; done
+  ! grep -q "instrument" grain.svg
+  sed '/<paint name="candy_red"/,/<\/paint>/s|</measurement>|<texture quantity="Sparkle Grade" geometry="15d" value="3.25"/></measurement>|' fitted.xml >told.xml
+  plot-paint -q --sparkle --paint candy_red told.xml -o told.svg
+  grep -q "instrument, on its own scale: Sparkle Grade 15d 3.25" told.svg
   jq -e '.results.paints[0] | .name == "candy_red" and .flakes_assumed' r.json
   run plot-paint --sparkle --paint candy_red "$paints" -o grain.svg
   [ "$status" -eq 3 ]
