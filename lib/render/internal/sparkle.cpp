@@ -29,7 +29,7 @@ namespace {
 // Deviations of less than this part of a pixel's luminance are not drawn.
 constexpr double kLeast = 0.004;
 // Lamps that more flakes show than these vary together with the rest of the light.
-constexpr double kManyShown = 16;
+constexpr double kManyShown = 8;
 // Lamps whose variance together is less than this part of what varies more vary with the rest of the light.
 constexpr double kLesser = 0.2;
 // Light whose variance is less than this part of what varies more is not seen beside it.
