@@ -28,7 +28,7 @@ double grain_luminance(const color::Rgb& rgb) {
   return color::xyz_d65_from_rgb(rgb).Y;
 }
 
-// What a level panel shows, and the part of it that varies, by a variance over square meters relative to its square.
+// The light of a level panel. Its varying part has a variance over square meters, relative to its square.
 struct PanelLight {
   color::Rgb all, varying;
   double variance_m2 = 0;
