@@ -21,9 +21,9 @@ std::string display_program() {
 precision highp float;
 precision highp sampler2D;
 uniform sampler2D picture;  // linear Rec.2020
-uniform float gain, share;
+uniform float gain;
 uniform mat3 to_screen;
-uniform int rows;
+uniform int rows, stride;  // of the screen; pixels of it from one of the picture to the next
 out vec4 color;
 
 float srgb_signal(float light) {{
@@ -44,8 +44,7 @@ vec3 paint_view(vec3 c, float luminance) {{  // in the screen's primaries; gonio
 }}
 
 void main() {{
-  vec4 p = texelFetch(picture, ivec2(int(gl_FragCoord.x), rows - 1 - int(gl_FragCoord.y)), 0);
-  p *= share;
+  vec4 p = texelFetch(picture, ivec2(int(gl_FragCoord.x), rows - 1 - int(gl_FragCoord.y)) / stride, 0);
   vec3 light = gain * p.rgb + (1.0 - p.a) * 0.18;
   float luminance = dot(light, vec3({2:.9e}, {3:.9e}, {4:.9e}));
   vec3 shown = paint_view(to_screen * light, luminance);

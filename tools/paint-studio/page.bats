@@ -83,6 +83,7 @@ needs_browser() {
   [ "$(jq '.shift > 1e-3 and .control.p95 > 4.9e-4' pictures.json)" = true ]
   [ "$(jq '.layers_drawn > 8 and .layer_bytes <= 96e6' pictures.json)" = true ]
   [ "$(jq -r .refused pictures.json)" = "There is no room for the layers of this picture." ]
+  [ "$(jq '.smooth | .strided and .off < 0.25 * .off_plain' pictures.json)" = true ]
 }
 
 # Most of the ground is so far from the mesh that nothing takes its light away.
@@ -252,6 +253,18 @@ needs_browser() {
 @test "the stage, the picture and the design stay" {
   needs_browser
   run node "$code/stay.js" page.html .
+  echo "$output"
+  [ "$status" -eq 0 ]
+}
+
+# Of the package axe-core of npm.
+@test "axe finds nothing that shuts anybody out" {
+  needs_browser
+  npm=$BATS_TEST_DIRNAME/../../build/paint-studio-checks-npm
+  command -v npm >/dev/null || skip "npm is not there"
+  [ -d "$npm/node_modules/axe-core" ] || { mkdir -p "$npm" && (cd "$npm" && timeout 120 npm install --silent axe-core) >/dev/null 2>&1; } ||
+    skip "npm cannot install the package axe-core"
+  run node "$code/axe.js" page.html . "$npm/node_modules/axe-core/axe.min.js"
   echo "$output"
   [ "$status" -eq 0 ]
 }

@@ -55,7 +55,7 @@ std::string gbuffer_fragment_shader(bool on_page) {
   const char* second = on_page ? kBands : R"(uniform int first;  // the number of the part's first triangle
 layout(location = 1) out uint triangle;
 )";
-  return std::string(kHead) + kRays + second + R"(uniform int part;
+  return std::string(kHead) + kPixel + kRays + second + R"(uniform int part;
 in vec3 normal;
 layout(location = 0) out vec4 gbuffer;
 void main() {

@@ -8,10 +8,12 @@ namespace goniochrome::render {
 // The first line of every program.
 inline constexpr const char* kHead = "#version 330 core\n";
 
-// Pixels as rays; both programs see the same, so a viewing direction needs no position.
+// Pixels as rays; both programs see the same, so a viewing direction needs no position. A program that includes kRays
+// includes kPixel, or another definition of pixel(), before it.
+inline constexpr const char* kPixel = "vec2 pixel() { return gl_FragCoord.xy; }\n";
 inline constexpr const char* kRays =
     R"(uniform vec3 corner, right, down;  // the ray through (x, y), in pixels from the upper left
-vec3 ray() { return normalize(corner + gl_FragCoord.x * right + gl_FragCoord.y * down); }
+vec3 ray() { return normalize(corner + pixel().x * right + pixel().y * down); }
 )";
 
 // Draws the G-buffer: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from inside).

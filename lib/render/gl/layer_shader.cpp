@@ -94,7 +94,8 @@ std::vector<LightLayer> light_layers(const Effects& effects) {
 std::string gathering_fragment_shader(const Effects& effects, bool on_page) {
   const bool lamps = effects.single_lights() > 0, shaded = is_shaded(effects, on_page);
   const bool projected_ground = on_page && effects.background == Background::kEnvironment;
-  std::string text = std::string(kHead) + "// goniochrome-rendering(7), \"Layers\"\n" + uniforms(effects) + kRays;
+  std::string text =
+      std::string(kHead) + "// goniochrome-rendering(7), \"Layers\"\n" + uniforms(effects) + kPixel + kRays;
   text +=
       fmt::format("uniform int slots[{0}];\nuniform float scales[{0}];\nlayout(location = 0) out vec4 layers[{0}];\n",
                   kLayersAtOnce);
@@ -142,13 +143,15 @@ uniform sampler2DArray layers;
 uniform int count;
 uniform ivec2 used[{0}];  // slot, place
 uniform float scales[{0}], beside_scale;
+uniform int stride;  // pixels of the layers from one of the picture to the next
+vec2 pixel() {{ return float(stride) * (gl_FragCoord.xy - 0.5) + 0.5; }}
 layout(location = 0) out vec4 color;
 )",
       kMostLayers);
   text += std::string(kRays) + kMeshColor + kWeight;
   if (effects.reflection) text += reflection_function(op);
   text += start_of_main(
-      effects, true, "  ivec2 at = ivec2(gl_FragCoord.xy);\n",
+      effects, true, "  ivec2 at = ivec2(pixel());\n",
       "    vec4 shown = texelFetch(layers, ivec3(at, 0), 0);\n"
       "    color = vec4(beside_scale * shown.rgb, shown.a);\n"
       "    if (count > 0) color.rgb += mesh_color * scales[0] * texelFetch(layers, ivec3(at, used[0].y), 0).rgb;\n");

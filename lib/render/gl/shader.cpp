@@ -176,8 +176,9 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   const bool lit_lobes = effects.single_lights() > 0 && !effects.lobes.empty(), shaded = is_shaded(effects, on_page);
   // 1. What the program is given, and the functions that it needs.
   std::string text = std::string(kHead) + "// goniochrome-rendering(7), \"RENDERING\"\n";
-  text += uniforms(effects) + tilt_uniforms(effects, tilted) + kRays + "layout(location = 0) out vec4 color;\n" +
-          kWeight + (shaded ? occlusion_functions() : "") + placed_lamp_functions(effects);
+  text += uniforms(effects) + tilt_uniforms(effects, tilted) + kPixel + kRays +
+          "layout(location = 0) out vec4 color;\n" + kWeight + (shaded ? occlusion_functions() : "") +
+          placed_lamp_functions(effects);
   if (effects.reflection) text += reflection_function(op);
   if (lit_gloss(effects)) text += fresnel_function();
   if (effects.coat && effects.single_lights() > 0) text += kLetIn;

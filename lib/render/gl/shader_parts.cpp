@@ -256,7 +256,7 @@ std::string disc_fresnel(const Effects& effects) {
 std::string start_of_main(const Effects& effects, bool on_page, const std::string& more, const std::string& beside) {
   return fmt::format(R"(
 void main() {{
-  vec4 point = texelFetch(gbuffer, ivec2(gl_FragCoord.xy), 0);
+  vec4 point = texelFetch(gbuffer, ivec2(pixel()), 0);
   vec3 wo = -ray();
 {}  if (point.w == 0.0) {{
 {}    return;

@@ -111,6 +111,21 @@ async function main() {
     gathered.drop();
     return result;
   })()`);
+  // Samples of the pixels that differ from those beside them, and of all pixels; the control has none. Of a stride of two the first
+  // of four pixels is as it is in the whole picture.
+  const smooth = await browser.evaluate(`(() => {
+    const app = studio, { stage } = app, camera = cameraOf(app.data.mesh.view), width = ${width / 2}, height = ${height / 2}, count = 16;
+    app.engine.ask({ do: "fit", paint: app.library.paint([...Array(app.library.count).keys()].find((i) => app.library.paint(i).name === ${JSON.stringify(paints[0])})) });
+    const weights = stage.weights(app.engine), gbuffer = (name, shift) => stage.gbuffer(name, camera, width, height, shift, 0);
+    const sum = stage.shade("check", gbuffer("check", [0, 0]), weights, 0), plain = stage.valuesOf(sum), mean = new Float32Array(plain.length);
+    for (const _ of stage.smooth("check", sum, camera, weights, 0, 0, count));
+    const ours = stage.valuesOf(sum);
+    for (const shift of sampleShifts(count)) stage.valuesOf(stage.shade("other", gbuffer("other", shift), weights, 0)).forEach((value, i) => { mean[i] += value / count; });
+    const off = (values) => values.reduce((all, value, i) => all + Math.abs(value - mean[i]), 0) / values.length / stage.environment(0).white;
+    const whole = stage.gatheredRadiance(camera, width, height, weights, 0), half = stage.valuesOf(stage.gathered.shade("half", gbuffer("radiance", [0, 0]), weights, 0, 2));
+    stage.gathered.drop();
+    return { off: off(ours), off_plain: off(plain), strided: half.every((value, i) => value === whole[4 * (2 * Math.floor(i / 4 / (width / 2)) * width + 2 * (Math.floor(i / 4) % (width / 2))) + (i % 4)]) };
+  })()`);
   // From an edit to its pixels, which are read back so that nothing is still to be drawn: by the shading program.
   const times = await browser.evaluate(`(() => {
     const app = studio, all = [], fits = [], gl = app.stage.gl, pixel = new Uint8Array(4);
@@ -148,7 +163,7 @@ async function main() {
       studio.display(studio.edited({ "hue-shift": 3 * i + 1 }).paint, false);
       view.drawNow(false);
       view.rest(null);
-      stage.wait();
+      await stage.drawn();
       all.push(performance.now() - begin);
     }
     return { settled_ms: all.sort((a, b) => a - b)[2], settled_size: [view.canvas.width, view.canvas.height], layers_drawn: ready() ? stage.gathered.held.drawn.size : 0, layer_bytes: stage.gathered.bytes };
@@ -166,14 +181,14 @@ async function main() {
       const begin = performance.now();
       studio.preview({ "hue-shift": 2 * i + 1 });
       await frame();
-      view.stage.wait();
+      await view.stage.drawn();
       all.push(performance.now() - begin);
     }
     const late = all.slice(6).sort((a, b) => a - b);
     return { dragged_ms: late[3], dragged_size: [view.canvas.width, view.canvas.height] };
   })()`);
   await browser.close();
-  console.log(JSON.stringify({ ...times, ...settled, ...dragged, environments, layers, ...moved, problems: browser.problems }));
+  console.log(JSON.stringify({ ...times, ...settled, ...dragged, environments, layers, smooth, ...moved, problems: browser.problems }));
   if (browser.problems.length > 0) process.exit(1);
 }
 

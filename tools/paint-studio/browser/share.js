@@ -6,7 +6,7 @@
 const fs = require("node:fs");
 const path = require("node:path");
 const { check, drive } = require("./drive.js");
-const { german, tourSteps, notes } = require("../page/texts.js");
+const { german, tourSteps, notes: explained } = require("../page/texts.js");
 
 // Texts and labels that stand in the source of the page.
 function textsOf(source) {
@@ -32,8 +32,8 @@ function lookedUp(folder) {
   });
 }
 
-drive("the page speaks and gives away", { width: 1400, height: 900 }, async ({ browser, folder, value, shot, quiet, choose, fill, checkNames }, source) => {
-  const texts = textsOf(fs.readFileSync(source, "utf8")), ofScripts = lookedUp(path.dirname(source)), missing = [...texts, ...ofScripts, ...tourSteps.map(([, text]) => text), ...Object.values(notes)].filter((text) => !(text in german));
+drive("the page speaks and gives away", { width: 1400, height: 900 }, async ({ browser, folder, value, shot, quiet, choose, fill, give, checkNames }, source) => {
+  const texts = textsOf(fs.readFileSync(source, "utf8")), ofScripts = lookedUp(path.dirname(source)), missing = [...texts, ...ofScripts, ...tourSteps.map(([, text]) => text), ...Object.values(explained)].filter((text) => !(text in german));
   check(`every text is in the table: ${missing.join(" | ")}`, texts.length > 80 && ofScripts.length > 50 && missing.length === 0);
   await quiet();
   check("the tour is offered once", /tour/i.test(await value("document.getElementById('status').textContent")));
@@ -54,7 +54,8 @@ drive("the page speaks and gives away", { width: 1400, height: 900 }, async ({ b
 
   // The card of one sheet.
   await choose("library", "candy_red");
-  await fill("notes", JSON.stringify("for the spring line"));
+  const notes = "for the spring line -- two coats";
+  await fill("notes", JSON.stringify(notes));
   await quiet();
   await value("studio.card.fill()");
   const card = await value(`(() => { const { description } = studio, chips = [...document.querySelectorAll("#card .chip")].map((one) => one.style.background);
@@ -62,6 +63,18 @@ drive("the page speaks and gives away", { width: 1400, height: 900 }, async ({ b
     return { chips, wanted: [description.appearance.face_css, ...chipAngles.map((angle) => studio.engine.ask({ do: "at", paint: studio.paint, angle }).css), description.appearance.flop_css].map(rgb), text: document.getElementById("card").textContent }; })()`);
   check(`the chips are right: ${card.chips}`, card.chips.length === 7 && card.chips.join() === card.wanted.join());
   check("the card has name, notes and command", ["candy_red", "for the spring line", "fit-paint"].every((text) => card.text.includes(text)));
+  // Notes and code are in the file, which gives them back.
+  await fill("paint-code", JSON.stringify("S-17"));
+  await browser.click("#save-xml");
+  const saved = await browser.download("candy_red.paints.xml");
+  check("paint XML has code and notes", saved.includes('code="S-17"') && saved.includes("<!-- Notes: for the spring line &#45;&#45; two coats -->"));
+  await fill("notes", JSON.stringify(""));
+  fs.writeFileSync(path.join(folder, "noted.paints.xml"), saved);
+  await give("#open-files", [path.join(folder, "noted.paints.xml")]);
+  await browser.until("studio.history.now.own?.file === 'noted.paints.xml'", 10);
+  check("an opened file has them too", (await value("[studio.paint.code, document.getElementById('notes').value].join()")) === `S-17,${notes}`);
+  await choose("library", "candy_red");
+  await quiet();
   const { data } = await browser.send("Page.printToPDF", { preferCSSPageSize: true, printBackground: true }), pdf = Buffer.from(data, "base64");
   fs.writeFileSync(path.join(folder, "card.pdf"), pdf);
   check("the card is one sheet of A4", (pdf.toString("latin1").match(/\/Type\s*\/Page\b/g) ?? []).length === 1 && /\/MediaBox\s*\[0 0 59[45][^ ]* 84[12]/.test(pdf.toString("latin1")));
@@ -78,7 +91,7 @@ drive("the page speaks and gives away", { width: 1400, height: 900 }, async ({ b
   await new Promise((resolve) => setTimeout(resolve, 500));
   await browser.until("window.studio !== undefined && document.documentElement.lang === 'de'");
   await quiet();
-  check("the notes are kept", (await value("document.getElementById('notes').value")) === "for the spring line");
+  check("the notes are kept", (await value("document.getElementById('notes').value")) === notes);
   const shown = await value("document.body.innerText"), english = texts.filter((text) => text.length > 12 && german[text] !== text && shown.includes(text));
   check(`no English text is left: ${english.join(" | ")}`, english.length === 0 && shown.includes("Nächste Lacke"));
   check("classes keep their values", (await value("document.getElementById('paint-class').options[2].value")) === "metallic");

@@ -94,7 +94,7 @@ drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value,
   const { css, rgb } = await value("studio.engine.ask({ do: 'color', lab: [133, 0, 30] })"), swatch = css.slice(1).match(/../g).map((code) => parseInt(code, 16));
   const shown = await value(`(() => {
     const texture = studio.stage.floatTexture(1, 1, new Float32Array([...${JSON.stringify(rgb)}, 1]));
-    return [...studio.stage.pixels({ texture, width: 1, height: 1 }, 1, 0).data.slice(0, 3)]; })()`);
+    return studio.stage.pixels({ texture, width: 1, height: 1 }, 1, 0).then(({ data }) => [...data.slice(0, 3)]); })()`);
   check(`a swatch is what the stage shows: ${swatch}, ${shown}`, swatch.every((code, i) => Math.abs(code - shown[i]) <= 1));
 
   // The graphics are lost and come back.
@@ -124,8 +124,8 @@ drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value,
   // A screen of Display P3 shows its own colors, here linear .5, .02, .02 of P3 as Rec.2020 has it. The control is a screen of sRGB.
   const onScreen = (screen) => value(`(() => {
     const { stage } = studio, { gl } = stage, texture = stage.floatTexture(1, 1, new Float32Array([0.38184, 0.041957, 0.019419, 1])), pixel = new Uint8Array(4);
-    stage.display({ texture, width: 1, height: 1 }, 1, 1, 0, null, "${screen}");
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+    stage.display({ texture, width: 1, height: 1 }, 1, 0, null, "${screen}");
+    gl.readPixels(0, gl.drawingBufferHeight - 1, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
     return [...pixel.slice(0, 3)]; })()`);
   const [wide, narrow] = [await onScreen("display-p3"), await onScreen("srgb")];
   check(`a wide screen gets its own signals: ${wide}, ${narrow}`, [188, 39, 39].every((code, i) => Math.abs(wide[i] - code) <= 1) && narrow[0] > 195);
@@ -141,5 +141,14 @@ drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value,
   check("two tabs keep two sessions", (await value("studio.kept().map(({ place }) => place.split(' ').pop())")).sort().join() === [own, "other"].sort().join());
   await browser.click("#palette .remove");
   check("a paint leaves the palette", (await value("studio.palette.length")) === 0);
+
+  // A browser that keeps nothing.
+  await browser.send("Page.addScriptToEvaluateOnNewDocument", { source: `for (const name of ["localStorage", "sessionStorage"])
+    Object.defineProperty(window, name, { get() { throw new DOMException("denied", "SecurityError"); } });` });
+  await value("(window.before = true, location.reload())");
+  await browser.until("window.before === undefined && window.studio?.paint !== undefined && document.getElementById('loading') === null");
+  check("a session that is not kept is told", (await value("document.getElementById('status').textContent")).includes("does not keep this session"));
+  await value("studio.commit({ gloss: 40 })");
+  check("the page works without", (await steps()) === 1);
   await checkNames();
 });

@@ -102,13 +102,13 @@ drive("the views were looked at", { width: 1000, height: 1000 }, async ({ browse
   // From an edit to its picture on a view.
   await choose("environment", views[0]);
   await drawn();
-  const times = await value(`(() => { const app = studio, all = [], shows = [];
+  const times = await value(`(async () => { const app = studio, all = [], shows = [];
     app.tiles.stop();
     for (let i = 0; i < 10; ++i) {
       const begin = performance.now(), { paint } = app.edited({ "hue-shift": 3 * i + 1 });
       app.weights.paint = paint;
       app.traced.draw(0, app.weights, 0, null, false);
-      app.stage.wait();
+      await app.stage.drawn();
       all.push(performance.now() - begin);
       shows.push(app.traced.full_ms);
     }

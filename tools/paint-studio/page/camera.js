@@ -67,11 +67,10 @@ function projected(camera, width, height, box, shift) {
   return { corner, right: scaled(right, pixel), down: scaled(down, pixel), clip: new Float32Array(clip), reach: 1 / far };
 }
 
-// Where the samples of a pixel lie: a grid turned so that no two share a row or a column.
+// Where the samples of a pixel lie: the first in its middle, and all of them evenly in a disk of its area.
 function sampleShifts(samples) {
-  const k = Math.round(Math.sqrt(samples)), shifts = [];
-  for (let i = 0; i < k; ++i)
-    for (let j = 0; j < k; ++j)
-      shifts.push([(i * k + (k - 1 - j) + 0.5) / samples - 0.5, (j * k + i + 0.5) / samples - 0.5]);
-  return shifts;
+  return Array.from({ length: samples }, (_, k) => {
+    const radius = Math.sqrt(k / samples / Math.PI), angle = Math.PI * (3 - Math.sqrt(5)) * k;
+    return [radius * Math.cos(angle), radius * Math.sin(angle)];
+  });
 }

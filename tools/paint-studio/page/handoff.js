@@ -73,6 +73,10 @@ async function unpackedText(packed) {
 // A name that every file system takes.
 const fileName = (name) => name.replace(/[^A-Za-z0-9_.-]+/g, "_") || "paint";
 
+// Paint XML with notes, as a comment before the first paint, in which two hyphens may not meet; and the notes of such a text.
+const withNotes = (xml, notes) => (notes ? xml.replace(/^ *<paint /m, (start) => `  <!-- Notes: ${notes.replaceAll("--", "&#45;&#45;")} -->\n${start}`) : xml);
+const notesOf = (xml) => /<!-- Notes: ([^]*?) -->/.exec(xml)?.[1].replaceAll("&#45;", "-");
+
 class Handoff {
   constructor(app) {
     this.app = app;
@@ -100,7 +104,7 @@ class Handoff {
     const command = isOwn ? data.command : commandOf(data, library, history.now).replaceAll(/^#.*\n/gm, "").replaceAll(/ \|\n {2}/g, " | ").replaceAll("\n", "; ");
     const { text } = this.app.engine.ask({ do: "write", paint, as, lobes, command, ...more,
                                            version: this.app.data.version });
-    save(fileName(this.app.paint.name) + ending, text, type);
+    save(fileName(this.app.paint.name) + ending, as === "xml" ? withNotes(text, this.app.card.notes.value) : text, type);
   }
 
   // `what` is copied: a plural or singular with its article.

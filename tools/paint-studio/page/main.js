@@ -169,6 +169,7 @@ class App {
   // step, until the control loses the focus.
   commit(edit, by_key = false) {
     this.wanted = null;
+    this.stageView.asked = performance.now();
     const what = by_key ? Object.keys(edit).join() : "", again = what && this.history.now.by_key === what;
     if (again) this.history.undo();
     const made = this.attempt(() => {
@@ -259,8 +260,7 @@ class App {
     this.weights = this.stage.weights(this.engine, this.weights ?? null);
     this.weights.paint = paint;
     this.description = this.engine.ask({ do: "describe", paint });
-    if (moving) this.stageView.drawNow(true);
-    else this.stageView.redraw();
+    this.stageView.drawNow(moving);
     this.wheel.show(this.description);
     // Where graphics are drawn by the processor, the panels cost more than the picture: they follow a few times a second.
     clearTimeout(this.panelsSoon);

@@ -164,7 +164,10 @@ class Opening {
     }
     app.say(told`${name} is being read ...`);
     const answer = app.engine.ask({ do: "open", name }), remarks = (answer.remarks ?? []).map((one) => ` ${one}.`).join("");
-    if (answer.kind === "paints") return this.takePaints(name, answer) + remarks;
+    if (answer.kind === "paints") {
+      app.card.notes.value = notesOf(new TextDecoder().decode(bytes)) ?? app.card.notes.value;
+      return this.takePaints(name, answer) + remarks;
+    }
     if (answer.kind === "mesh") {
       app.stageView.takeMesh(answer.mesh, app.engine.list("numbers"));
       return told`${name}: ${answer.triangles} triangles.` + ` ${app.parts.summary}${remarks}`;

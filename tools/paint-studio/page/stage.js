@@ -1,6 +1,54 @@
 // The picture: the mesh under prefiltered light, drawn by the project's own programs in WebGL 2.
 // goniochrome-rendering(7), "RENDERING".
 
+const mostSampleBytes = 120e6;  // of the G-buffers of samples that are kept while the view stays
+const edgeContrast = 0.1;       // from one pixel to the next, of the brightness of the darker one
+
+// Graphics that are drawn by the processor run both sides of a branch. Pixels that need the long side are therefore drawn in
+// tiles, each of which is a point, and the others are not.
+const meshTile = 8, edgeTile = 4;
+const tileVertex = `#version 300 es
+precision highp float;
+precision highp sampler2D;
+uniform sampler2D marks;  // what \`pick\` finds in it is not 0 where a pixel is to be drawn
+uniform vec4 pick;
+uniform ivec2 tiles;
+uniform int tile, mark_stride;
+void main() {
+  ivec2 at = ivec2(gl_VertexID % tiles.x, gl_VertexID / tiles.x), end = min(tile * (at + 1), (textureSize(marks, 0) + mark_stride - 1) / mark_stride);
+  bool drawn = false;
+  for (int y = tile * at.y; y < end.y && !drawn; ++y)
+    for (int x = tile * at.x; x < end.x && !drawn; ++x) drawn = dot(pick, texelFetch(marks, mark_stride * ivec2(x, y), 0)) != 0.0;
+  gl_PointSize = float(tile);
+  gl_Position = vec4(drawn ? (2.0 * vec2(at) + 1.0) / vec2(tiles) - 1.0 : vec2(2.0), 0.0, 1.0);
+}
+`;
+const startOfMesh = "  vec3 n = point.xyz;\n";  // in all programs, after what is seen beside the mesh
+const edgeFragment = `#version 300 es
+precision highp float;
+precision highp sampler2D;
+uniform sampler2D gbuffer, picture;
+uniform float gain;  // to what a screen shows
+out vec4 color;
+ivec2 last;
+int part(float w) { return w < 0.0 ? -(int(-w) & 7) : int(w) & 7; }
+bool differ(vec4 a, float light, ivec2 at) {
+  at = clamp(at, ivec2(0), last);
+  vec4 b = texelFetch(gbuffer, at, 0);
+  if (a.w == 0.0 && b.w == 0.0) return false;
+  float other = min(gain * dot(texelFetch(picture, at, 0).rgb, vec3(0.2627, 0.678, 0.0593)), 2.0);
+  return part(a.w) != part(b.w) || abs(light - other) > ${edgeContrast} * (min(light, other) + 0.02);
+}
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  last = textureSize(gbuffer, 0) - 1;
+  vec4 a = texelFetch(gbuffer, at, 0);
+  float light = min(gain * dot(texelFetch(picture, at, 0).rgb, vec3(0.2627, 0.678, 0.0593)), 2.0);
+  bool edge = differ(a, light, at + ivec2(1, 0)) || differ(a, light, at - ivec2(1, 0)) || differ(a, light, at + ivec2(0, 1)) || differ(a, light, at - ivec2(0, 1));
+  color = vec4(edge ? 1.0 : 0.0);
+}
+`;
+
 class Stage {
   // Throws a sentence where the browser cannot draw the page.
   constructor(canvas, data) {
@@ -54,6 +102,24 @@ class Stage {
       if (!places.has(name)) places.set(name, gl.getUniformLocation(program, name));
       return places.get(name);
     } };
+  }
+
+  // A program that is drawn in tiles, and that which draws what is beside the mesh.
+  tileProgram(fragment) {
+    return { ...this.program(tileVertex, fragment), beside: this.program(this.data.programs.shading_vertex, fragment.replace(startOfMesh, "  discard;\n" + startOfMesh)) };
+  }
+  // Draws the program that is in use in the tiles of a picture that have marks: a G-buffer marks its mesh.
+  drawTiles(program, { width, height }, marks, unit, { tile = meshTile, pick = [0, 0, 0, 1], stride = 1 } = {}) {
+    const gl = this.gl, tiles = [Math.ceil(width / tile), Math.ceil(height / tile)];
+    gl.activeTexture(gl.TEXTURE0 + unit);
+    gl.bindTexture(gl.TEXTURE_2D, marks);
+    gl.uniform1i(program.at("marks"), unit);
+    gl.uniform4fv(program.at("pick"), pick);
+    gl.uniform2iv(program.at("tiles"), tiles);
+    gl.uniform1i(program.at("tile"), tile);
+    gl.uniform1i(program.at("mark_stride"), stride);
+    gl.viewport(0, 0, tile * tiles[0], tile * tiles[1]);  // so that the middle of each tile is inside
+    gl.drawArrays(gl.POINTS, 0, tiles[0] * tiles[1]);
   }
 
   uploadMesh() {
@@ -205,7 +271,7 @@ class Stage {
     return made[kind];
   }
   shadingOf(program, lamps, discs) {
-    const made = { ...this.program(this.data.programs.shading_vertex, program), lamps: [...lamps] }, columns = this.data.lamp.columns;
+    const made = { ...this.tileProgram(program), lamps: [...lamps] }, columns = this.data.lamp.columns;
     if (discs) made.discs = this.floatTexture(columns, discs.length / (4 * columns), discs);
     return made;
   }
@@ -273,33 +339,80 @@ class Stage {
     return target;
   }
 
-  // Shades a G-buffer into the sum of that name, or adds to it. `weights` are those of one paint, or {left, right, at}: of
-  // two, which meet at that part of the width.
-  shade(name, gbuffer, weights, environment, add) {
+  // Shades rows of a G-buffer into the sum of that name. `weights` are those of one paint, or {left, right, at}: of two, which
+  // meet at that part of the width.
+  shade(name, gbuffer, weights, environment, begin = 0, end = gbuffer.height) {
     const gl = this.gl, target = this.target("sum " + name, gbuffer.width, gbuffer.height, this.sumKind, false);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
-    gl.viewport(0, 0, gbuffer.width, gbuffer.height);
-    if (add) {
-      gl.enable(gl.BLEND);
-      gl.blendFunc(gl.ONE, gl.ONE);
-    } else {
-      gl.disable(gl.BLEND);
-    }
+    gl.disable(gl.BLEND);
+    this.cast(gbuffer, weights, environment, begin, end);
+    return Object.assign(target, { stride: 1, smooth: false });
+  }
+  // Draws what shade() does into the framebuffer that is bound: the whole picture, or the tiles that have edges.
+  cast(gbuffer, weights, environment, begin, end, edges = null) {
+    const gl = this.gl, border = weights.left ? Math.round(weights.at * gbuffer.width) : gbuffer.width;
     gl.bindVertexArray(this.noVertices);
     gl.enable(gl.SCISSOR_TEST);
-    const border = weights.left ? Math.round(weights.at * gbuffer.width) : gbuffer.width;
-    for (const [paint, begin, end] of [[weights.left ?? weights, 0, border], [weights.right, border, gbuffer.width]]) {
-      if (end === begin) continue;
-      this.useShading(gbuffer, paint, environment, this.shading(environment, paint.tilts !== null));
-      gl.scissor(begin, 0, end - begin, gbuffer.height);
-      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    for (const [paint, from, to] of [[weights.left ?? weights, 0, border], [weights.right, border, gbuffer.width]]) {
+      if (to === from) continue;
+      gl.scissor(from, begin, to - from, end - begin);
+      this.castOne(gbuffer, paint, environment, this.shading(environment, paint.tilts !== null), edges);
     }
     gl.disable(gl.SCISSOR_TEST);
-    gl.disable(gl.BLEND);
     gl.activeTexture(gl.TEXTURE0);
-    return target;
   }
-  // Chooses a program of shading(), with all that it reads.
+  // One program of shading(), whose own uniforms `set` sets.
+  castOne(gbuffer, paint, environment, program, edges = null, set = () => {}) {
+    const gl = this.gl;
+    if (!edges) {
+      gl.viewport(0, 0, gbuffer.width, gbuffer.height);
+      this.useShading(gbuffer, paint, environment, { ...program.beside, lamps: [] });
+      set(program.beside);
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+    const unit = this.useShading(gbuffer, paint, environment, program);
+    set(program);
+    this.drawTiles(program, gbuffer, (edges ?? gbuffer).texture, unit, edges ? { tile: edgeTile, pick: [1, 0, 0, 0] } : {});
+  }
+
+  // The steps by which pixels of a sum become the mean of many samples, where they differ from those beside them. Each step is one draw.
+  *smooth(name, sum, camera, weights, environment, stops, samples) {
+    if (sum.smooth) return;
+    const gl = this.gl, { width, height } = sum, shifts = sampleShifts(samples), kept = samples * 28 * width * height <= mostSampleBytes;
+    const gbufferOf = (k) => this.gbuffer(kept ? `${name} ${k}` : `${name} sample`, camera, width, height, shifts[k], environment);
+    const edges = this.markEdges(this.gbuffer(name, camera, width, height, [0, 0], environment), sum, 2 ** stops / (this.environment(environment).white || 1));
+    for (let k = 1; k < samples; ++k) {
+      const gbuffer = gbufferOf(k);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, sum.framebuffer);
+      gl.enable(gl.BLEND);
+      gl.blendColor(0, 0, 0, 1 / samples);
+      gl.blendFunc(gl.CONSTANT_ALPHA, k === 1 ? gl.CONSTANT_ALPHA : gl.ONE);
+      this.cast(gbuffer, weights, environment, 0, height, edges);
+      gl.disable(gl.BLEND);
+      yield;
+    }
+    sum.smooth = true;
+  }
+  // Marks the pixels of the mesh and at its outline that differ from those beside them.
+  markEdges(gbuffer, sum, gain) {
+    const gl = this.gl, program = (this.edgeProgram ??= this.program(this.data.programs.shading_vertex, edgeFragment));
+    const edges = this.target("edges", sum.width, sum.height, gl.R8, false);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, edges.framebuffer);
+    gl.viewport(0, 0, edges.width, edges.height);
+    gl.disable(gl.BLEND);
+    gl.useProgram(program.program);
+    gl.uniform1f(program.at("gain"), gain);
+    [["gbuffer", gbuffer], ["picture", sum]].forEach(([name, { texture }], unit) => {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.uniform1i(program.at(name), unit);
+    });
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindVertexArray(this.noVertices);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    return edges;
+  }
+  // Chooses a program of shading(), with all that it reads, and returns the first unit that it leaves free.
   useShading(gbuffer, { texture, tilts, meshColor }, environment, program) {
     const gl = this.gl, made = this.environment(environment);
     gl.useProgram(program.program);
@@ -327,58 +440,61 @@ class Stage {
     gl.uniform2fv(program.at("ground_turn"), this.turnVector);
     for (const [uniform, member] of [["light_direction", "direction"], ["light_white", "white"], ["light_disc", "disc"]])
       if (program.lamps.length > 0) gl.uniform3fv(program.at(uniform + "[0]"), program.lamps.flatMap((lamp) => lamp[member]));
+    return unit;
   }
 
   // Covers a framebuffer, or the screen where it is null, by what a program makes of a target. `set` sets its other uniforms.
   cover(framebuffer, program, sampler, source, set) {
     const gl = this.gl;
+    const { width, height } = framebuffer === null ? this.canvas : source;
     gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
-    gl.viewport(0, 0, source.width, source.height);
+    gl.viewport(0, 0, width, height);
     gl.useProgram(program.program);
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, source.texture);
     gl.uniform1i(program.at(sampler), 0);
-    gl.uniform1i(program.at("rows"), source.height);
+    gl.uniform1i(program.at("rows"), height);
     set(program);
     gl.bindVertexArray(this.noVertices);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
-  // Brings a sum of samples to the screen, or into a framebuffer.
-  show(sum, samples, environment, stops, framebuffer = null) {
-    this.display(sum, samples, this.environment(environment).white, stops, framebuffer, this.screen);
+  // Brings a sum to the screen, or into a framebuffer.
+  show(sum, environment, stops, framebuffer = null) {
+    this.display(sum, this.environment(environment).white, stops, framebuffer, this.screen);
   }
-  // The mesh in several paints, in cells that stand in so many columns, with so many samples a pixel.
-  showCells(camera, width, height, columns, weights, environment, stops, samples) {
+  // The steps that draw the mesh in several paints, in cells that stand in so many columns, with so many samples a pixel.
+  *showCells(camera, width, height, columns, weights, environment, stops, samples) {
     const gl = this.gl, rows = weights.length / columns, target = this.target("cell screen", width, height, gl.RGBA8, false);
     this.resize(columns * width, rows * height);
-    weights.forEach((own, i) => {
-      let sum = null;
-      for (let k = 0; k < samples; ++k) sum = this.shade("cell", this.gbuffer(`cell ${k}`, camera, width, height, samples > 1 ? sampleShifts(samples)[k] : [0, 0], environment), own, environment, k > 0);
-      this.show(sum, samples, environment, stops, target.framebuffer);
+    for (const [i, own] of weights.entries()) {
+      const sum = this.shade("cell", this.gbuffer("cell", camera, width, height, [0, 0], environment), own, environment);
+      if (samples > 1) yield* this.smooth("cell", sum, camera, own, environment, stops, samples);
+      this.show(sum, environment, stops, target.framebuffer);
       const left = (i % columns) * width, bottom = (rows - 1 - Math.floor(i / columns)) * height;
       gl.bindFramebuffer(gl.READ_FRAMEBUFFER, target.framebuffer);
       gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
       gl.blitFramebuffer(0, 0, width, height, left, bottom, left + width, bottom + height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
-    });
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+      if (samples > 1) yield;
+    }
   }
   // `white` is the luminance that exposure 0 brings to 1, and `screen` is "srgb" or "display-p3".
-  display(picture, samples, white, stops, framebuffer, screen) {
+  display(picture, white, stops, framebuffer, screen) {
     this.cover(framebuffer, this.displayProgram, "picture", picture, (program) => {
-      this.gl.uniform1f(program.at("share"), 1 / samples);
+      this.gl.uniform1i(program.at("stride"), picture.stride ?? 1);
       this.gl.uniformMatrix3fv(program.at("to_screen"), false, this.data.screens[screen]);
       this.gl.uniform1f(program.at("gain"), 2 ** stops / (white || 1));
     });
   }
   // Brings one picture to the screen, or two that meet at the column `border`.
   showSides(pictures, border, white, stops) {
-    const gl = this.gl, { width, height } = pictures[0];
+    const gl = this.gl, { width, height } = this.canvas;
     gl.enable(gl.SCISSOR_TEST);
     for (const [picture, begin, end] of [[pictures[0], 0, border], [pictures[1], border, width]]) {
       if (end === begin) continue;
       gl.scissor(begin, 0, end - begin, height);
-      this.display(picture, 1, white, stops, null, this.screen);
+      this.display(picture, white, stops, null, this.screen);
     }
     gl.disable(gl.SCISSOR_TEST);
   }
@@ -398,46 +514,64 @@ class Stage {
 
   // Draws a picture by the pixel centers alone, into the targets of that name. `overlay` is null, or what the program of that name draws over it.
   draw(name, camera, width, height, weights, environment, stops, overlay = null) {
-    this.resize(width, height);
+    this.resize(width, height);  // which waits for all that is still to be drawn
     const gbuffer = this.gbuffer(name, camera, width, height, [0, 0], environment);
-    this.show(this.shade(name, gbuffer, weights, environment, false), 1, environment, stops);
+    this.showOver(gbuffer, [this.shade(name, gbuffer, weights, environment)], width, environment, stops, overlay);
+  }
+  // Shows one sum, or two that meet at a column, and the overlay.
+  showOver(gbuffer, sums, border, environment, stops, overlay) {
+    this.shown = { gbuffer, sums, border };
+    this.resize(gbuffer.width, gbuffer.height);
+    this.showSides(sums, border, this.environment(environment).white, stops);
     if (overlay) this.drawOver(gbuffer, overlay);
   }
+  // The steps of a picture of samples. Those of the first are rows of the pixel centers, which take about budget_ms each; a step is told
+  // what the one before took. The time of all rows is returned.
+  *drawSteps(name, camera, width, height, weights, environment, stops, budget_ms, overlay) {
+    const gbuffer = this.gbuffer(name, camera, width, height, [0, 0], environment);
+    let took = 0, rows = Math.ceil(height / 8), begin = 0;
+    yield;
+    while (begin < height) {
+      const end = Math.min(height, begin + rows);
+      this.shade(name, gbuffer, weights, environment, begin, end);
+      const ms = yield;
+      took += Math.max(0.5, ms - 4);  // a step is seen to have ended up to 4 ms late
+      rows = clamped(Math.floor(((end - begin) * budget_ms) / ms), 8, 4 * rows);
+      begin = end;
+    }
+    this.showOver(gbuffer, [this.targets.get("sum " + name)], width, environment, stops, overlay);
+    return took;
+  }
+  // The steps that smooth the picture which was shown last, by the G-buffer of that name, and show it.
+  *smoothSteps(name, camera, weights, environment, stops, samples, overlay) {
+    const { gbuffer, sums, border } = this.shown;
+    for (const [i, sum] of sums.entries()) yield* this.smooth(name, sum, camera, sums.length > 1 ? [weights.left, weights.right][i] : weights, environment, stops, samples);
+    this.showOver(gbuffer, sums, border, environment, stops, overlay);
+  }
 
-  // The picture from gathered light, where that is kept for this view and this light; else it draws nothing. Returns whether it drew.
-  drawGathered(name, camera, width, height, weights, environment, stops, overlay = null) {
-    const own = weights.left ?? weights, key = this.gathered.keyOf(camera, width, height, environment);
-    if (this.gathered.held && this.gathered.held.key !== key) this.gathered.drop();
-    if (!this.gathered.serves(key, own, environment)) return false;
-    this.resize(width, height);
-    const gbuffer = this.gbuffer(name, camera, width, height, [0, 0], environment), sides = [this.gathered.shade("gathered", gbuffer, own, environment)];
-    if (weights.left) sides.push(this.otherSide(key, gbuffer, weights.right, environment));
-    this.showSides(sides, weights.left ? Math.round(weights.at * width) : width, this.environment(environment).white, stops);
-    if (overlay) this.drawOver(gbuffer, overlay);
+  // The picture from gathered light, where that is kept for this view and this light; else it draws nothing. Of `stride` pixels along both
+  // sides it draws one, and those pictures need not look exactly where the lobes of the paint do. Returns whether it drew.
+  drawGathered(name, camera, width, height, weights, environment, stops, overlay = null, stride = 1) {
+    const { gathered } = this, own = weights.left ?? weights, key = gathered.keyOf(camera, width, height, environment);
+    if (gathered.held && gathered.held.key !== key) gathered.drop();
+    if (!gathered.serves(key, own, environment, stride)) return false;
+    const gbuffer = this.gbuffer(name, camera, width, height, [0, 0], environment), sums = [gathered.shade("gathered " + stride, gbuffer, own, environment, stride)];
+    if (weights.left) sums.push(this.otherSide(key, gbuffer, weights.right, environment));
+    this.showOver(gbuffer, sums, weights.left ? Math.round(weights.at * width) : width, environment, stops, overlay);
     return true;
   }
   // The paint beside the design, which stays while the design changes.
   otherSide(key, gbuffer, weights, environment) {
     const known = this.targets.get("sum other side"), own = key + weights.version;
     if (known && known.key === own) return known;
-    const target = this.shade("other side", gbuffer, weights, environment, false);
+    const target = this.shade("other side", gbuffer, weights, environment);
     target.key = own;
     return target;
   }
-  // Gathers some of the light of a view, and returns whether there is more to be gathered.
-  gather(name, camera, width, height, weights, environment) {
+  // Gathers some of the light of a view, in so many rows, and returns whether there is more to be gathered.
+  gather(name, camera, width, height, weights, environment, others = true, rows = height) {
     const key = this.gathered.keyOf(camera, width, height, environment);
-    return this.gathered.gather(key, this.gbuffer(name, camera, width, height, [0, 0], environment), weights.left ?? weights, environment);
-  }
-
-  // One more sample of a smoother picture; shows it after the last one.
-  refine(camera, weights, environment, stops, sample, samples, overlay = null) {
-    const { width, height } = this.canvas;
-    const gbuffer = this.gbuffer("samples", camera, width, height, sampleShifts(samples)[sample], environment);
-    const sum = this.shade("samples", gbuffer, weights, environment, sample > 0);
-    if (sample !== samples - 1) return;
-    this.show(sum, samples, environment, stops);
-    if (overlay) this.drawOver(this.gbuffer("centers", camera, width, height, [0, 0], environment), overlay);
+    return this.gathered.gather(key, this.gbuffer(name, camera, width, height, [0, 0], environment), weights.left ?? weights, environment, others, rows);
   }
 
   // Rings and the highlight of the light from `toward`, as the environment sees it, over what the canvas shows.
@@ -511,25 +645,40 @@ class Stage {
     gl.clear(gl.COLOR_BUFFER_BIT);
   }
 
-  // Returns when everything is drawn.
-  wait() {
-    const gl = this.gl;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);  // the others hold floats, which cannot be read as bytes
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  // A promise that is kept when everything is drawn.
+  drawn() {
+    const gl = this.gl, fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    return new Promise((resolve) => {
+      const look = () => {
+        if (!gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return setTimeout(look, 1);
+        gl.deleteSync(fence);
+        return resolve();
+      };
+      look();
+    });
   }
 
   // A small picture for a tile, as pixels of a canvas.
   tile(camera, width, height, weights, environment, stops) {
     const gbuffer = this.gbuffer("tile", camera, width, height, [0, 0], environment);
-    return this.pixels(this.shade("tile", gbuffer, weights, environment, false), this.environment(environment).white, stops);
+    return this.pixels(this.shade("tile", gbuffer, weights, environment), this.environment(environment).white, stops);
   }
   // The pixels of a canvas by which a screen of sRGB shows a picture.
-  pixels(radiance, white, stops) {
+  async pixels(radiance, white, stops) {
     const gl = this.gl, { width, height } = radiance, target = this.target("tile screen", width, height, gl.RGBA8, false);
-    this.display(radiance, 1, white, stops, target.framebuffer, "srgb");
+    this.display(radiance, white, stops, target.framebuffer, "srgb");
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
-    const pixels = new Uint8ClampedArray(4 * width * height), picture = new ImageData(width, height);
-    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    const pixels = new Uint8ClampedArray(4 * width * height), picture = new ImageData(width, height), buffer = gl.createBuffer();
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
+    gl.bufferData(gl.PIXEL_PACK_BUFFER, pixels.length, gl.STREAM_READ);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, 0);
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    await this.drawn();
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
+    gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, pixels);
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    gl.deleteBuffer(buffer);
     for (let y = 0; y < height; ++y)  // rows come from below
       picture.data.set(pixels.subarray(4 * width * (height - 1 - y), 4 * width * (height - y)), 4 * width * y);
     return picture;
@@ -538,7 +687,7 @@ class Stage {
   // The radiance of every pixel center, as floats from the upper left corner.
   radiance(camera, width, height, weights, environment) {
     const gbuffer = this.gbuffer("radiance", camera, width, height, [0, 0], environment);
-    return this.valuesOf(this.shade("radiance", gbuffer, weights, environment, false));
+    return this.valuesOf(this.shade("radiance", gbuffer, weights, environment));
   }
   // The radiance from gathered light, which is gathered for it.
   gatheredRadiance(camera, width, height, weights, environment) {

@@ -22,7 +22,7 @@ const german = {
   "Pictures": "Bilder", "Open, drop or paste pictures anywhere on the page. They stay on this computer; saved sessions hold them.": "Öffnen Sie Bilder, oder ziehen oder fügen Sie sie irgendwo auf der Seite ein. Sie bleiben auf diesem Rechner; gespeicherte Sitzungen enthalten sie.",
   "New board": "Neue Tafel", "Dropper": "Pipette", "move the picture": "das Bild bewegen", "radius": "Radius", "zoom": "Vergrößerung", "keep a flop that is lighter than the face": "einen Flop behalten, der heller als die Aufsicht ist",
   "Swap face and flop": "Aufsicht und Flop tauschen", "Remove this picture": "Dieses Bild entfernen", "Palette": "Palette", "Keep this paint": "Diesen Lack behalten", "Remove": "Entfernen",
-  "Figures": "Zahlen", "Handing over": "Weitergeben", "Name": "Name", "Code": "Code", "Notes, for the card and the session": "Notizen, für die Karte und die Sitzung",
+  "Figures": "Zahlen", "Handing over": "Weitergeben", "Name": "Name", "Code": "Code", "Notes, for the card, the session and paint XML": "Notizen, für die Karte, die Sitzung und Paint-XML",
   "Save paint XML": "Lack-XML sichern", "Save with lobes": "Mit Keulen sichern", "Save CSV": "CSV sichern", "Save CxF": "CxF sichern", "Save session": "Sitzung sichern", "Save picture": "Bild sichern", "Save a turn as film": "Eine Drehung als Film sichern",
   "Print a card": "Karte drucken", "Copy link": "Verweis kopieren", "The same by commands": "Dasselbe als Befehle", "Copy the commands": "Befehle kopieren",
   "Paints (XML, CSV, CxF, XLSX, CGATS, QTX ...), meshes (OBJ, glTF), light (HDR), pictures and sessions; they can be dropped on the page as well":

@@ -100,32 +100,33 @@ class Tiles {
     if (this.timer !== undefined) cancelIdle(this.timer);
     this.timer = undefined;
   }
-  drawNext() {
+  async drawNext() {
     this.timer = undefined;
-    if (this.app.stageView.lost) return;
+    if (this.app.stageView.lost || !this.app.stageView.sharp) return;  // they follow the picture
     while (this.waiting.length > 0 && !this.waiting[0].canvas.isConnected) this.waiting.shift();
-    const next = this.waiting.shift(), app = this.app, { view } = app.stageView;
+    const next = this.waiting.shift(), app = this.app, now = {};
     if (!next) return;
-    if (next.canvas.isConnected) {
-      try {
-        if (app.stageView.traced !== null) this.drawTraced(next);
-        else this.drawTile(next, view);
-      } catch (error) {
-        next.canvas.replaceWith(made("small", { text: error.message }));
-      }
+    this.timer = now;
+    try {
+      if (app.stageView.traced !== null) await this.drawTraced(next);
+      else await this.drawTile(next, app.stageView.view);
+    } catch (error) {
+      next.canvas.replaceWith(made("small", { text: error.message }));
     }
+    if (this.timer !== now) return;
+    this.timer = undefined;
     this.go();
   }
-  drawTile({ canvas, paint }, view) {
+  async drawTile({ canvas, paint }, view) {
     const { app } = this, { width, height } = canvas;
     app.engine.ask({ do: "fit", paint });
     this.weights = app.stage.weights(app.engine, this.weights);
-    const picture = app.stage.tile(cameraOf({ ...view, distance: 0.8 * view.distance }), width, height, this.weights, app.stageView.environment, app.stageView.stops);
+    const picture = await app.stage.tile(cameraOf({ ...view, distance: 0.8 * view.distance }), width, height, this.weights, app.stageView.environment, app.stageView.stops);
     canvas.getContext("2d").putImageData(picture, 0, 0);
   }
   // The whole traced view, in the middle of the tile.
-  drawTraced({ canvas, paint }) {
-    const { app } = this, picture = app.traced.tile(app.stageView.traced, paint, app.stageView.stops);
+  async drawTraced({ canvas, paint }) {
+    const { app } = this, picture = await app.traced.tile(app.stageView.traced, paint, app.stageView.stops);
     const whole = made("canvas", { width: picture.width, height: picture.height }), scale = Math.min(canvas.width / picture.width, canvas.height / picture.height);
     whole.getContext("2d").putImageData(picture, 0, 0);
     const context = canvas.getContext("2d"), width = scale * picture.width, height = scale * picture.height;

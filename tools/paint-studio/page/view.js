@@ -5,8 +5,9 @@
 const whenIdle = (action) => (window.requestIdleCallback ? requestIdleCallback(action, { timeout: 400 }) : setTimeout(action, 30));
 const cancelIdle = (number) => (window.requestIdleCallback ? cancelIdleCallback(number) : clearTimeout(number));
 
-const firstBudget_ms = 70;  // a picture that takes longer is drawn with fewer pixels first
+const firstBudget_ms = 30;  // a picture that takes longer is drawn with fewer pixels first
 const slowPicture_ms = 40;  // the light of a view at rest is gathered where a picture takes longer
+const stepBudget_ms = 40;   // of a draw of a better picture, behind which an edit may have to wait
 const scales = [1, 0.7, 0.5, 0.35];  // few, so that what is visible is seldom drawn anew
 
 class StageView {
@@ -26,9 +27,16 @@ class StageView {
     this.level = 0;  // of `scales`, while something moves
     this.slow = this.fast = 0;  // frames in a row
     this.full_ms = 0;  // what a picture of all pixels took, once that is known
+    this.gathered_ms = 0;  // the same from gathered light
+    this.sharp = true;  // whether the picture is drawn with all samples
+    this.times = {};  // first_ms, sharp_ms: from an edit or a move to its first picture, and to that of all samples
     this.makeControls();
     this.shadow();
-    new ResizeObserver(() => this.redraw()).observe(this.canvas);
+    new ResizeObserver(() => {
+      this.full_ms *= this.area ? (this.canvas.clientWidth * this.canvas.clientHeight) / this.area : 1;
+      this.area = this.canvas.clientWidth * this.canvas.clientHeight;
+      this.redraw();
+    }).observe(this.canvas);
   }
 
   // How cars stand beside each other: two below each other where the picture is not wide.
@@ -52,11 +60,17 @@ class StageView {
   }
   // Finds the shadow of the mesh on itself while the page has nothing else to do.
   shadow() {
-    const { stage } = this, go = () => {
+    const { stage } = this, go = async () => {
       if (stage !== this.stage || this.lost) return;
-      if (stage.occlusion.step()) this.shadowing = whenIdle(go);
-      else this.redraw();
+      const waits = !this.sharp || this.lastFrame !== undefined;  // the picture comes first
+      if (!waits && !stage.occlusion.step()) {
+        this.redraw();
+        return;
+      }
+      await (waits ? new Promise((resolve) => setTimeout(resolve, 100)) : stage.drawn());
+      if (this.search === go) this.shadowing = whenIdle(go);
     };
+    this.search = go;
     stage.occlusion.begin();
     cancelIdle(this.shadowing);
     this.shadowing = whenIdle(go);
@@ -326,32 +340,44 @@ class StageView {
     this.drawing = undefined;
     if (this.lost) return;
     this.rest(null);
+    const since = this.since = this.asked ?? performance.now();
+    this.asked = undefined;
+    this.sharp = moving || this.traced !== null;
+    this.drawFirst(moving, now);
+    if (!moving) this.stage.drawn().then(() => { this.times.first_ms = performance.now() - since; });
+  }
+  drawFirst(moving, now) {
     this.stage.occlusion.held = moving && this.full_ms > 16;
     if (moving && this.lastFrame !== undefined && now - this.lastFrame < 400) this.pace(now - this.lastFrame);
     this.lastFrame = moving ? now : undefined;
     if (this.traced !== null) {
       this.stage.gathered.drop();
-      return this.drawTraced(moving);
+      this.drawTraced(moving);
+      return;
     }
-    if (this.cars > 1) return this.drawCars(moving);
+    if (this.cars > 1) {
+      this.drawCars(moving);
+      return;
+    }
     if (this.drawGathered(moving)) return;
-    const first = scales.find((scale) => scale * scale * this.full_ms <= firstBudget_ms) ?? scales.at(-1);
-    const scale = moving ? Math.min(scales[this.level], first) : first, [width, height] = this.size(scale);
-    this.stage.draw(scale < 1 ? "first" : "centers", this.camera, width, height, this.weights, this.environment, this.stops, this.overlay);
-    if (!moving) this.rest(() => this.sharpen(scale));
+    const known_ms = this.full_ms || Infinity, first = scales.find((scale) => scale * scale * known_ms <= firstBudget_ms) ?? scales.at(-1);
+    const scale = moving ? Math.min(scales[this.level], first) : first;
+    this.stage.draw(scale < 1 ? "first" : "centers", ...this.picture(scale), this.overlay);
+    if (!moving) this.rest(this.finishing(this.sharpening(scale)));
   }
   // Whole cars beside each other in the same view and light: the design, and the paints of app.beside().
-  drawCars(moving, samples = 1) {
+  drawCars(moving) {
     const [width, height] = this.size(moving ? scales[this.level] : 1), { columns, rows } = this.grid, paints = [this.app.paint, ...this.app.beside(this.cars - 1)];
     paints.forEach((paint, i) => {
       if (this.cells[i]?.paint === paint) return;
       this.app.engine.ask({ do: "fit", paint });
       this.cells[i] = Object.assign(this.stage.weights(this.app.engine, this.cells[i] ?? null), { paint });
     });
-    this.stage.showCells(this.camera, Math.floor(width / columns), Math.floor(height / rows), columns, paints.map((_, i) => this.cells[i]), this.environment, this.stops, samples);
+    const steps = (samples) => this.stage.showCells(this.camera, Math.floor(width / columns), Math.floor(height / rows), columns, paints.map((_, i) => this.cells[i]), this.environment, this.stops, samples);
+    for (const _ of steps(1));
     document.getElementById("cars").style.gridTemplateColumns = `repeat(${columns}, 1fr)`;
     document.getElementById("cars").replaceChildren(...paints.map(({ name }) => made("span", { text: name })));
-    if (!moving && samples === 1) this.rest(() => this.drawCars(false, 4));
+    if (!moving) this.rest(this.finishing(steps(4)));
   }
   setCars(count) {
     this.cars = count;
@@ -368,9 +394,10 @@ class StageView {
   }
   // Draws an edit of a view at rest; returns whether it did.
   drawGathered(moving) {
-    const scale = this.gatheredScale, [width, height] = this.size(scale);
-    if (!this.stage.drawGathered(scale < 1 ? "gathered" : "centers", this.camera, width, height, this.weights, this.environment, this.stops, this.overlay)) return false;
-    if (!moving) this.rest(() => (scale < 1 ? this.sharpen(scale) : this.gather()));
+    const scale = this.gatheredScale, name = scale < 1 ? "gathered" : "centers", expected_ms = this.gathered_ms || 0.4 * scale * scale * this.full_ms;
+    const stride = clamped(Math.ceil(Math.sqrt(expected_ms / firstBudget_ms)), 1, 4);
+    if (!this.stage.drawGathered(name, ...this.picture(scale), this.overlay, stride)) return false;
+    if (!moving) this.rest(this.finishing(this.sharpening(scale, stride)));
     return true;
   }
   // The light is gathered at as many pixels as memory allows for half of all layers, which is what a paint takes.
@@ -409,45 +436,53 @@ class StageView {
     return [Math.max(16, Math.round(this.canvas.clientWidth * ratio)), Math.max(9, Math.round(this.canvas.clientHeight * ratio))];
   }
 
-  // Plans the next step of sharpening, in the place of the one that was planned before.
-  rest(step, delay_ms = 60) {
-    clearTimeout(this.resting);
-    cancelIdle(this.restingIdle);
-    this.resting = step ? setTimeout(() => { this.restingIdle = whenIdle(step); }, delay_ms) : undefined;
-  }
-  // All pixels, then the light of the view in layers, and then samples: 16 to a pixel where the first picture took little time,
-  // else 4.
-  sharpen(scale) {
-    const begin = performance.now(), [width, height] = this.size(1);
-    if (scale < 1 || this.full_ms === 0) {
-      this.stage.draw("centers", this.camera, width, height, this.weights, this.environment, this.stops, this.overlay);
-      this.stage.wait();
-      const took = performance.now() - begin;
-      this.full_ms = this.full_ms === 0 ? took : 0.5 * (this.full_ms + took);
+  // The camera, size, paint and light of a picture of so many pixels, as Stage takes them.
+  picture(scale) { return [this.camera, ...this.size(scale), this.weights, this.environment, this.stops]; }
+
+  // The steps from a picture of those pixels to one of all and of many samples: 16 where the pixels took little time, else 4.
+  *sharpening(scale, stride = 1) {
+    const { stage } = this, samples = this.full_ms < slowPicture_ms ? 16 : 4;
+    if (stride > 1) {
+      yield* this.gathering(false);
+      stage.drawGathered(scale < 1 ? "gathered" : "centers", ...this.picture(scale), this.overlay);
+      this.gathered_ms = yield;
     }
-    this.gather();
+    if (scale < 1) {
+      const took_ms = yield* stage.drawSteps("centers", ...this.picture(1), stepBudget_ms, this.overlay);
+      this.full_ms = this.full_ms === 0 ? took_ms : 0.5 * (this.full_ms + took_ms);
+    }
+    yield* stage.smoothSteps("centers", this.camera, this.weights, this.environment, this.stops, samples, this.overlay);
   }
-  // A few layers at a time, so that the page can answer between them.
-  gather() {
-    if (this.full_ms < slowPicture_ms) return this.sample(0, 16);
-    const scale = this.gatheredScale, [width, height] = this.size(scale);
-    return this.rest(() => {
-      if (this.stage.gather(scale < 1 ? "gathered" : "centers", this.camera, width, height, this.weights, this.environment)) this.gather();
-      else this.sample(0, 4);
-    }, 10);
+  // The steps that gather the light of the view: what the paint needs, or all that there is room for.
+  *gathering(others) {
+    const scale = this.gatheredScale, [camera, width, height, weights, environment] = this.picture(scale);
+    for (let rows = Math.ceil(height / 8); this.stage.gather(scale < 1 ? "gathered" : "centers", camera, width, height, weights, environment, others, rows);)
+      rows = clamped(Math.floor((rows * stepBudget_ms) / (yield)), 8, 4 * rows);
   }
-  sample(number, samples) {
-    this.rest(() => {
-      const begin = performance.now();
-      this.stage.refine(this.camera, this.weights, this.environment, this.stops, number, samples, this.overlay);
-      if (number === 0) {
-        this.stage.wait();
-        this.full_ms = 0.5 * (this.full_ms + performance.now() - begin);
-      }
-      if (number + 1 < samples) this.sample(number + 1, samples);
-    });
+  // Those steps, and then the small pictures and, where pictures take long, the light of the view.
+  *finishing(steps) {
+    const { since } = this;
+    yield* steps;
+    yield;
+    this.sharp = true;
+    this.times.sharp_ms = performance.now() - since;
+    this.app.tiles.go();
+    if (this.full_ms >= slowPicture_ms && this.cars === 1 && !this.stage.occlusion.busy) yield* this.gathering(true);
   }
 
+  // Runs steps, in the place of those that ran before. Each waits until the one before is drawn and is told how long that took, so that the
+  // page can answer between them.
+  rest(steps) {
+    clearTimeout(this.resting);
+    this.steps = steps;
+    const next = async (took_ms) => {
+      const begin = performance.now();
+      if (this.steps !== steps || steps.next(took_ms).done) return;
+      await this.stage.drawn();
+      if (this.steps === steps) this.resting = setTimeout(next, 0, performance.now() - begin);
+    };
+    if (steps) this.resting = setTimeout(next, 0, 0);
+  }
   // The surface under a place of the window: null beside the mesh. `angle` is the aspecular angle to the light, and what is `lit` wears the
   // paint.
   pointAt(clientX, clientY) {

@@ -5,13 +5,14 @@ class Wheel {
     this.app = app;
     this.svg = document.getElementById("wheel");
     this.column = document.getElementById("lightness");
-    this.border = drawn("g", { "aria-hidden": "true" });  // what the screen shows at the lightness of the face
-    this.svg.append(this.border);
-    for (const radius of [25, 50, 75, 100]) this.svg.append(drawn("circle", { r: radius, class: "grid" }));
+    const back = document.getElementById("wheel-back");  // what seldom changes
+    this.border = drawn("g");  // what the screen shows at the lightness of the face
+    back.append(this.border);
+    for (const radius of [25, 50, 75, 100]) back.append(drawn("circle", { r: radius, class: "grid" }));
     for (const [x, y] of [[1, 0], [0, 1]])
-      this.svg.append(drawn("line", { x1: -105 * x, y1: -105 * y, x2: 105 * x, y2: 105 * y, class: "grid" }));
+      back.append(drawn("line", { x1: -105 * x, y1: -105 * y, x2: 105 * x, y2: 105 * y, class: "grid" }));
     [["+a*", 90, -3], ["-a*", -108, -3], ["+b*", 3, -101], ["-b*", 3, 108]].forEach(([text, x, y]) =>
-      this.svg.append(drawn("text", { x, y }, text)));
+      back.append(drawn("text", { x, y }, text)));
     this.match = drawn("polyline", { class: "seen", id: "match-way" });  // of the nearest paint
     this.way = drawn("polyline", { class: "way" });
     this.arrow = drawn("path", { class: "arrow" });
@@ -70,6 +71,9 @@ class Wheel {
   lightnessOf(event) { return [clamped((205 - this.pointOf(this.column, event).y) / 1.27, 0, 150), null, null]; }
 
   showBorder(border) {
+    const key = JSON.stringify(border);
+    if (this.borderKey === key) return;
+    this.borderKey = key;
     const at = ({ a, b }) => [a, -b].map((value) => value * Math.min(1, 108 / Math.hypot(a, b, 1e-9))).join(), before = (i) => border[(i + border.length - 1) % border.length];
     while (this.border.children.length < border.length) this.border.append(drawn("polygon", { class: "shown" }));
     border.forEach((point, i) => {
