@@ -24,6 +24,15 @@ void main() {
 }
 `;
 const startOfMesh = "  vec3 n = point.xyz;\n";  // in all programs, after what is seen beside the mesh
+const mostShown = 1.5;          // of white, that a sample of an edge counts, so that single bright samples do not sparkle
+const sampleFragment = `#version 300 es
+precision highp float;
+precision highp sampler2D;
+uniform sampler2D picture;
+uniform float most, share;
+out vec4 color;
+void main() { color = share * min(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), most); }
+`;
 const edgeFragment = `#version 300 es
 precision highp float;
 precision highp sampler2D;
@@ -380,18 +389,35 @@ class Stage {
     if (sum.smooth) return;
     const gl = this.gl, { width, height } = sum, shifts = sampleShifts(samples), kept = samples * 28 * width * height <= mostSampleBytes;
     const gbufferOf = (k) => this.gbuffer(kept ? `${name} ${k}` : `${name} sample`, camera, width, height, shifts[k], environment);
-    const edges = this.markEdges(this.gbuffer(name, camera, width, height, [0, 0], environment), sum, 2 ** stops / (this.environment(environment).white || 1));
+    const gain = 2 ** stops / (this.environment(environment).white || 1), edges = this.markEdges(this.gbuffer(name, camera, width, height, [0, 0], environment), sum, gain);
+    const [sample, mean] = ["edge sample", "edge mean"].map((one) => this.target(one, width, height, this.sumKind, false));
+    this.addSample(mean, sum, edges, mostShown / gain, 1 / samples, false);
     for (let k = 1; k < samples; ++k) {
       const gbuffer = gbufferOf(k);
-      gl.bindFramebuffer(gl.FRAMEBUFFER, sum.framebuffer);
-      gl.enable(gl.BLEND);
-      gl.blendColor(0, 0, 0, 1 / samples);
-      gl.blendFunc(gl.CONSTANT_ALPHA, k === 1 ? gl.CONSTANT_ALPHA : gl.ONE);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, sample.framebuffer);
       this.cast(gbuffer, weights, environment, 0, height, edges);
-      gl.disable(gl.BLEND);
+      this.addSample(mean, sample, edges, mostShown / gain, 1 / samples, true);
       yield;
     }
+    this.addSample(sum, mean, edges, 1e30, 1, false);
     sum.smooth = true;
+  }
+  // Puts a share of a picture, of which no value counts more than `most`, into the tiles of another one that have edges, or adds it.
+  addSample(target, picture, edges, most, share, add) {
+    const gl = this.gl, program = (this.sampleProgram ??= this.program(tileVertex, sampleFragment));
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
+    if (add) gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE);
+    gl.useProgram(program.program);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, picture.texture);
+    gl.uniform1i(program.at("picture"), 0);
+    gl.uniform1f(program.at("most"), most);
+    gl.uniform1f(program.at("share"), share);
+    gl.bindVertexArray(this.noVertices);
+    this.drawTiles(program, target, edges.texture, 1, { tile: edgeTile, pick: [1, 0, 0, 0] });
+    gl.activeTexture(gl.TEXTURE0);
+    gl.disable(gl.BLEND);
   }
   // Marks the pixels of the mesh and at its outline that differ from those beside them.
   markEdges(gbuffer, sum, gain) {
