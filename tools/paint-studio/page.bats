@@ -257,6 +257,17 @@ needs_browser() {
   [ "$status" -eq 0 ]
 }
 
+@test "Firefox shows the picture that Chromium shows" {
+  command -v firefox >/dev/null && command -v xvfb-run >/dev/null || skip "Firefox or xvfb-run is not installed"
+  [ -s candy_red-studio.f32 ] || skip "the pictures were not drawn"
+  run timeout 200 xvfb-run -a node --experimental-websocket "$code/firefox.js" page.html candy_red candy_red-studio.f32 640x360
+  echo "$output"
+  [ "$status" -eq 0 ]
+  # The control: another paint is another picture.
+  run timeout 200 xvfb-run -a node --experimental-websocket "$code/firefox.js" page.html candy_red silver_black_flop-studio.f32 640x360
+  [ "$status" -eq 1 ]
+}
+
 # Of the package axe-core of npm.
 @test "axe finds nothing that shuts anybody out" {
   needs_browser
