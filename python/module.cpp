@@ -120,6 +120,12 @@ fit::FitMethod method_of(const std::string& name) {
   throw std::runtime_error("method \"" + name + "\": l1, l2 and deltae are known");
 }
 
+double coat_of(double index) {
+  if (index == paint::kNoCoat || (index >= paint::kLeastCoatIndex && index <= paint::kMostCoatIndex)) return index;
+  throw std::runtime_error(fmt::format("coat_index {}: give 1 for none, or from {} to {}", index,
+                                       paint::kLeastCoatIndex, paint::kMostCoatIndex));
+}
+
 }  // namespace
 
 extern "C" {
@@ -183,7 +189,7 @@ const char* goniochrome_fit(const paint::Paint* const* paints, std::size_t count
   return answered([&] {
     fit::FitOptions options;
     options.method = method_of(method);
-    if (coat_index) options.coat_index = *coat_index;
+    if (coat_index) options.coat_index = coat_of(*coat_index);
     std::vector<paint::Paint> fitted;
     for (std::size_t i = 0; i < count; ++i) fitted.push_back(*paints[i]);
     const auto made = fit::fits({{basis, {exponents, exponents + lobes}, mirror}, options}, fitted);

@@ -52,6 +52,13 @@ class Module(unittest.TestCase):
         # The mean of the fit, which has its own share of gloss at the reading next to specular.
         self.assertAlmostEqual(apart.mean(), fitted.lobes.mean_de00, delta=0.05)
 
+    def test_a_coat_has_an_index(self):
+        self.assertEqual(goniochrome.fit([self.silver], self.basis, coat_index=1)[0].lobes.coat_index, 1)
+        self.assertEqual(goniochrome.fit([self.silver], self.basis, coat_index=1.6)[0].lobes.coat_index, 1.6)
+        for wrong in (float("nan"), 0, 0.9, 90):
+            with self.assertRaisesRegex(goniochrome.Error, "coat_index"):
+                goniochrome.fit([self.silver], self.basis, coat_index=wrong)
+
     def test_color_differences(self):
         # A pair of Sharma, Wu and Dalal 2005.
         one, two = numpy.array([50, 2.6772, -79.7751]), numpy.array([50, 0, -82.7485])

@@ -26,7 +26,8 @@ class FlakeTree {
   FlakeTree(double density, std::uint64_t seed) : density_(density), seed_(seed) {}
 
   // The number of flakes in the box: Poisson with the mean density * area() * part(), for any two boxes that do not
-  // meet independent. Ranges of tilts that differ by a power of 2 hold other flakes. Boxes of more than some 2e6 flakes, or 3e3 in each range of tilts, have their mean.
+  // meet independent. Ranges of tilts of which one is twice as wide hold other flakes. Boxes of more than some 2e6
+  // flakes, or of 3e3 in a narrow range of tilts, have their mean.
   double count(const FlakeBox& box) const;
 
  private:

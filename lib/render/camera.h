@@ -19,6 +19,7 @@ struct Camera {
   Vec3 up{0, 1, 0};
   double fov_deg = 30;  // vertical
 
+  bool operator==(const Camera&) const = default;
   // The camera on the orbit about the middle of the mesh's bounding box. At distance 1 the mesh just fits into a
   // picture of this aspect (width/height) from every azimuth; the distance is a factor.
   static Camera orbit(const mesh::Mesh& mesh, double azimuth_deg, double elevation_deg, double distance, double fov_deg,

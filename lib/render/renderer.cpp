@@ -30,12 +30,6 @@ constexpr std::size_t kMostKept = std::size_t{320} << 20;  // bytes of all G-buf
 constexpr std::size_t kMostSeen = std::size_t{128} << 20;  // bytes of what they show of textures
 constexpr std::size_t kPixelBytes = 4 * sizeof(float) + sizeof(std::uint32_t);
 
-bool same_view(const View& a, const View& b) {
-  const Camera &x = a.camera, &y = b.camera;
-  return a.width == b.width && a.height == b.height && x.eye == y.eye && x.target == y.target && x.up == y.up &&
-         x.fov_deg == y.fov_deg;
-}
-
 std::optional<rays::Floor> floor_of(const std::optional<Ground>& ground) {
   return ground ? std::optional(rays::Floor{ground->height}) : std::nullopt;
 }
@@ -67,7 +61,6 @@ struct Renderer::State : Sight {
   std::optional<envmap::SunlitSky> ray_sun;        // of the environment of ray_setup, where it has a sun
   std::shared_ptr<const EnvironmentTable> ray_table;
   std::optional<Transport> transport;
-  bool rough_rays = false;  // whether its rough coats are facets, as those of the picture that it corrects
   std::optional<envmap::BlockTree> ray_texels;  // of the environment of ray_setup; none: not yet
   std::unique_ptr<OpenResidual> residual;       // of these; null: not yet
   std::unique_ptr<CpuEngine> audited;           // has the maps of an engine that shades no single points
@@ -102,9 +95,8 @@ struct Renderer::State : Sight {
   Result<void> meet(const Scene& whole_scene);
   Result<void> add_seen_through(int sample, float gain, image::Image& picture);
   CorrectionNoise correct(int first, int count, image::Image& picture);
-  Result<Transport> traced_light(bool over_floor) const;
   Result<RayContext> ray_context(const Scene& whole_scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers);
-  Result<void> trace(const Scene& whole_scene, bool rough);
+  Result<void> trace(const Scene& whole_scene, bool rough_coats);
   Scene completed(const Scene& scene) const;
   // The light of which rays are drawn; a sun is asked for by itself.
   const envmap::Environment* ray_environment() const { return ray_sun ? &ray_sun->sky : ray_setup->environment; }
@@ -191,7 +183,8 @@ Result<void> Renderer::State::look_at(const View& wanted) {
     return {};
   }
   if (open_gl) GONIO_TRY(open_gl->rasterizer->resize(wanted.width, wanted.height));
-  if (!view || !same_view(*view, wanted) || view->samples != wanted.samples) {
+  if (!view || view->camera != wanted.camera || view->width != wanted.width || view->height != wanted.height ||
+      view->samples != wanted.samples) {
     GONIO_ASSIGN(rays, goniochrome::render::rays(wanted.camera, wanted.width, wanted.height));
     in_texture = -1;
     for (std::shared_ptr<Gbuffer>& old : kept) {
@@ -292,8 +285,8 @@ Result<void> Renderer::State::take(int first, int count, image::Image& picture) 
 
 // Nothing is found of an engine without maps, nor of one that was loaded without a plan.
 FoundMaps Renderer::State::audit(int sample) {
-  const bool by_cpu = &engine->info() == &CpuEngine::kInfo;
-  const CpuEngine* maps = by_cpu ? static_cast<const CpuEngine*>(engine) : audited.get();
+  const auto* own = dynamic_cast<const CpuEngine*>(engine);
+  const CpuEngine* maps = own != nullptr ? own : audited.get();
   if (!engine->info().is_planned || maps == nullptr || !effects.environment) return {};
   const std::shared_ptr<const Gbuffer> drawn = gbuffer(sample);
   return MapAudit{scene,         effects,        *maps,          summed(), ray_texels ? &*ray_texels : nullptr,
@@ -351,11 +344,8 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
                        picture);
     const float gain = static_cast<float>(end - begin) / static_cast<float>(count);
     const CorrectionNoise one = add_correction(*transport, samples, request, before, gain, picture);
-    all.de00_p95 += one.de00_p95 / std::sqrt(groups) / groups;
-    all.error_de00_p95 += one.error_de00_p95 / std::sqrt(groups) / groups, all.free_share += one.free_share / groups;
-    all.samples += one.samples, all.ms += one.ms;
-    all.reached = all.reached && one.reached, all.dark = (group == 0 || all.dark) && one.dark;
-    if (group == 0) all.found = one.found;
+    if (group == 0) all.dark = true, all.found = one.found;
+    all.add(one, groups);
   }
   if (effects.rays.floor)
     all.found.back().de00_p95 = std::max(
@@ -363,11 +353,10 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
   return all;
 }
 
-Result<void> Renderer::State::trace(const Scene& whole_scene, bool rough) {
+Result<void> Renderer::State::trace(const Scene& whole_scene, bool rough_coats) {
   transport.reset(), ray_failure.reset();
   if (!ray_setup || !ray_setup->absent.empty()) return {};
   ray_scene = whole_scene;
-  rough_rays = rough;
   if (ray_sun) ray_scene.lights.push_back(light_of(ray_sun->sun));
   if (whole_scene.mesh != nullptr) {
     GONIO_TRY(show(*whole_scene.mesh));
@@ -375,17 +364,11 @@ Result<void> Renderer::State::trace(const Scene& whole_scene, bool rough) {
   }
   if (ray_setup->environment != nullptr && ray_table == nullptr)
     ray_table = std::make_shared<const EnvironmentTable>(*ray_environment());
-  GONIO_ASSIGN(Transport created, traced_light(effects.rays.floor && ray_setup->floor));
-  transport.emplace(std::move(created));
-  return {};
-}
-
-Result<Transport> Renderer::State::traced_light(bool over_floor) const {
   PathScene paths;
   paths.scene = &ray_scene;
   paths.environment = ray_environment(), paths.mirrored = ray_setup->environment, paths.table = ray_table;
-  paths.rays = ray_mesh, paths.eye = whole;
-  paths.rough_coats = rough_rays;
+  paths.rays = ray_mesh, paths.eye = whole, paths.rough_coats = rough_coats;
+  const bool over_floor = effects.rays.floor && ray_setup->floor;
   if (over_floor) {
     paths.ground = ray_setup->floor;
     paths.rays = std::make_shared<const rays::RayScene>(ray_mesh->over({ray_setup->floor->height}));
@@ -396,7 +379,8 @@ Result<Transport> Renderer::State::traced_light(bool over_floor) const {
     const GroundRequest request = ground_request(tolerance_de00, effort_asked.seed, left_s);
     created.shade_ground(request, effects.rays.self || effects.rays.bounce ? effort_asked.bounces : 0);
   }
-  return created;
+  transport.emplace(std::move(created));
+  return {};
 }
 
 // Nothing is in the way of light on a convex mesh that is seen from outside.

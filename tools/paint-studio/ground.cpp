@@ -96,16 +96,17 @@ struct Square {
   double side;
   std::vector<std::uint8_t> texels;
 
-  std::uint8_t& at(int turn, int row, int column, int channel) {
-    return texels[4 * ((static_cast<std::size_t>(turn) * kSize + static_cast<std::size_t>(row)) * kSize +
-                       static_cast<std::size_t>(column)) +
-                  static_cast<std::size_t>(channel)];
+  static std::size_t index(int turn, int row, int column, int channel) {
+    return 4 * ((static_cast<std::size_t>(turn) * kSize + static_cast<std::size_t>(row)) * kSize +
+                static_cast<std::size_t>(column)) +
+           static_cast<std::size_t>(channel);
   }
+  std::uint8_t& at(int turn, int row, int column, int channel) { return texels[index(turn, row, column, channel)]; }
   // The part of its light that the ground keeps there.
   double kept(int turn, const Vec3& place) const {
     const double column = kSize * (place.x - low.x) / side, row = kSize * (place.z - low.z) / side;
     if (!(column >= 0 && column < kSize && row >= 0 && row < kSize)) return 1;
-    return const_cast<Square*>(this)->at(turn, static_cast<int>(row), static_cast<int>(column), 1) / 255.0;
+    return texels[index(turn, static_cast<int>(row), static_cast<int>(column), 1)] / 255.0;
   }
 };
 

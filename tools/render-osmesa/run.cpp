@@ -11,7 +11,6 @@
 #include "display/display.h"
 #include "image/frames.h"
 #include "image/shrink.h"
-#include "math/statistics.h"
 #include "picture_file.h"
 #include "plan_text.h"
 #include "render/aov.h"
@@ -288,7 +287,7 @@ void Shooting::tell(bool explains, const std::string& line) const {
 // The errors of maps where no surface is in the way of light.
 void Shooting::tell_maps() {
   if (frame_.maps.errors_de00.empty()) return;
-  const double de00 = math::percentile_95(frame_.maps.errors_de00);
+  const double de00 = frame_.maps.de00_p95();
   session_.results()["maps"] = {{"de00_p95", json_number(de00)}, {"points", frame_.maps.errors_de00.size()}};
   if (!plan_.effects.rays.any()) session_.say(fmt::format("maps: errors dE00 {:.2f} (p95)", de00));
 }
@@ -306,8 +305,7 @@ void Shooting::tell_rays() {
   const bool late = session_.common().time_limit_s > 0 && session_.common().tolerance_given && !rays.reached;
   stopped_ |= late;
   constexpr double kWorthTelling = 0.5;
-  const double tolerance = session_.common().tolerance,
-               maps = frame_.maps.errors_de00.empty() ? 0 : math::percentile_95(frame_.maps.errors_de00);
+  const double tolerance = session_.common().tolerance, maps = frame_.maps.de00_p95();
   tell(late, fmt::format("rays: {:.0f} samples a point in {:.0f} ms, errors dE00 {:.2f} (p95){}{}", rays.samples,
                          rays.ms, rays.error_de00_p95,
                          maps > kWorthTelling * tolerance ? fmt::format(", {:.2f} by maps alone", maps) : "",

@@ -39,6 +39,25 @@ double variance_along(const Vec3& v, const Covariance& c) {
          2 * (v.x * v.y * c[3] + v.x * v.z * c[4] + v.y * v.z * c[5]);
 }
 
+// The sizes of errors and their shares: those that differ by less than a fiftieth are taken together.
+class Bins {
+ public:
+  explicit Bins(const std::vector<double>& errors) : count_(static_cast<double>(errors.size())) {
+    for (const double error : errors)
+      ++counts_[static_cast<int>(std::lround(kPerOctave * std::log2(std::max(error, kLeast))))];
+  }
+  // Calls visit(error, share of all).
+  template <class Visit>
+  void each(const Visit& visit) const {
+    for (const auto& [bin, count] : counts_) visit(std::exp2(bin / kPerOctave), count / count_);
+  }
+
+ private:
+  static constexpr double kPerOctave = 36, kLeast = 1e-6;
+  std::map<int, double> counts_;  // by the logarithm
+  double count_;
+};
+
 }  // namespace
 
 Covariance Estimates::covariance() const {
@@ -85,28 +104,6 @@ double noise_de00(const color::Rgb& radiance, const Covariance& covariance, doub
   return std::sqrt(std::max(0.0, variance));
 }
 
-// Errors that differ by less than a fiftieth are taken together; those below this are none.
-namespace {
-class Bins {
- public:
-  explicit Bins(const std::vector<double>& errors) : all_(static_cast<double>(errors.size())) {
-    for (const double error : errors)
-      error > kNone ? ++counts_[static_cast<int>(std::lround(kPerOctave * std::log2(error)))] : ++none_;
-  }
-  // Calls visit(error, share of all).
-  template <class Visit>
-  void each(const Visit& visit) const {
-    if (none_ > 0) visit(0.0, none_ / all_);
-    for (const auto& [bin, count] : counts_) visit(std::exp2(bin / kPerOctave), count / all_);
-  }
-
- private:
-  static constexpr double kPerOctave = 36, kNone = 1e-4;
-  std::map<int, double> counts_;  // by the logarithm
-  double all_, none_ = 0;
-};
-}  // namespace
-
 double largest_errors(const std::vector<double>& deviations, const std::vector<double>& beside) {
   constexpr double kExceeded = 0.05;
   if (deviations.empty()) return 0;
@@ -114,16 +111,15 @@ double largest_errors(const std::vector<double>& deviations, const std::vector<d
   const auto exceeding = [&](double size) {
     double sum = 0;
     other.each([&](double error, double share) {
-      if (error >= size) return void(sum += error > 0 ? share : 0);
-      const double left = std::sqrt((size - error) * (size + error));
+      const double left = std::sqrt(std::max(0.0, size * size - error * error));
       noise.each([&](double deviation, double of_noise) {
-        if (deviation > 0) sum += share * of_noise * std::erfc(left / (std::numbers::sqrt2 * deviation));
+        sum += share * of_noise * std::erfc(left / (std::numbers::sqrt2 * deviation));
       });
     });
     return sum;
   };
-  constexpr double kLeast = 1e-6;
-  if (exceeding(kLeast) <= kExceeded) return 0;
+  constexpr double kNothing = 1e-4;
+  if (exceeding(kNothing) <= kExceeded) return 0;
   double low = 0, high = 1;
   while (exceeding(high) > kExceeded) high *= 2;
   for (int step = 0; step < 24; ++step) {

@@ -55,7 +55,8 @@ class Picture {
     const Gbuffer& g = surface.gbuffer;
     shifts_ = sample_shifts(request.pixel_samples);
     count_ = shifts_.size();
-    if (count_ > 1) coverage_ = coverage(transport.eye(), g.rays, g.width, g.height, shifts_);
+    if (count_ == 1) seen_ = std::span(&surface, 1);
+    coverage_ = seen_.empty() ? coverage(transport.eye(), g.rays, g.width, g.height, shifts_) : coverage(seen_);
     add_points();
   }
 
@@ -63,7 +64,7 @@ class Picture {
           const PathRequest& request)
       : transport_(transport),
         surface_(samples.front()),
-        seen_(&samples),
+        seen_(samples),
         base_(base),
         request_(request),
         deadline_(request.time_limit_s) {
@@ -126,9 +127,8 @@ class Picture {
     options_ = whole_ = request_.options;
     whole_.correction = false;
     first_whole_ = whole_;
-    const bool given = seen_ != nullptr || count_ == 1;  // the surfaces of all samples
-    if (!request_.options.correction || base_ == nullptr || !given) return;
-    const PixelFlags hidden = hidden_pixels(transport_, seen_ != nullptr ? std::span(*seen_) : std::span(&surface_, 1));
+    if (!request_.options.correction || base_ == nullptr || seen_.empty()) return;
+    const PixelFlags hidden = hidden_pixels(transport_, seen_);
     for (std::size_t i = 0; i < points_.size(); ++i) states_[i].hidden = hidden[place(points_[i])] != 0;
   }
 
@@ -172,14 +172,9 @@ class Picture {
     const std::size_t at = place(x, y);
     PathPoint point;
     point.x = x, point.y = y;
-    if (count_ > 1) {
-      const unsigned any = coverage_.any[at];
-      point.coverage = static_cast<float>(std::popcount(any)) / static_cast<float>(count_);
-      point.floor = coverage_.floor[at] == any;
-    } else {
-      point.coverage = surface_.hits[at].any() ? 1 : 0;
-      point.floor = surface_.hits[at].triangle == rays::kFloor;
-    }
+    const unsigned any = coverage_.any[at];
+    point.coverage = static_cast<float>(std::popcount(any)) / static_cast<float>(count_);
+    point.floor = coverage_.floor[at] == any;
     if (point.coverage == 0) return;
     number_[at] = static_cast<std::int32_t>(points_.size());
     points_.push_back(point);
@@ -219,25 +214,6 @@ class Picture {
           sample(wanted[k], more[wanted[k]]);
       }
     });
-  }
-
-  void sample(std::size_t i, int fours) {
-    if (count_ > 1) return sample_spread(i, fours);
-    State& state = states_[i];
-    const PathPoint& point = points_[i];
-    const Gbuffer& g = surface_.gbuffer;
-    const rays::Spot spot = spot_at(transport_.rays(), surface_, point.x, point.y);
-    const SeenPoint at(transport_, options_of(i), spot, rays::float3(g.to_viewer(point.x, point.y)));
-    if (!state.looked) {
-      state.looked = true, state.certain = at.certain(), state.deterministic = at.deterministic();
-      show(i, spot, 1, state.deterministic, rays::float3(g.to_viewer(point.x, point.y)));
-    }
-    if (state.certain && state.sums.fours() == 0) return;
-    const Round round(fours);
-    LightShares means[Round::kSequences];
-    // Without the shares that stopped, nothing may be left.
-    for (int fan = 0; fan < round.fans() && !state.certain; ++fan) add_fan(at, i, round, fan, means);
-    add_round(i, round, means);
   }
 
   // Keeps what the reconstruction needs of a sample that counts by `share` in its pixel.
@@ -323,8 +299,8 @@ class Picture {
   SeenPoint transport_at(std::size_t i, std::size_t sample, rays::Spot& spot, rays::Float3& to_viewer) const {
     const PathPoint& point = points_[i];
     const rays::RayScene& scene = transport_.eye();
-    if (seen_ != nullptr) {
-      const VisibleSurface& surface = (*seen_)[sample];
+    if (!seen_.empty()) {
+      const VisibleSurface& surface = seen_[sample];
       spot = spot_at(scene, surface, point.x, point.y);
       to_viewer = rays::float3(surface.gbuffer.to_viewer(point.x, point.y));
       return {transport_, options_of(i), spot, to_viewer};
@@ -355,7 +331,7 @@ class Picture {
 
   // The fans take the samples of the pixel in turn from one drawn by chance: the mean over all fans has the right
   // expectation, and the differences between samples count as noise while not all have been seen.
-  void sample_spread(std::size_t i, int fours) {
+  void sample(std::size_t i, int fours) {
     State& state = states_[i];
     const Round round(fours);
     const unsigned step = state.step, count = (static_cast<unsigned>(count_) + step - 1) / step;
@@ -583,7 +559,7 @@ class Picture {
   const Transport& transport_;
   const VisibleSurface& surface_;
   PathOptions options_, whole_, first_whole_;  // of what is drawn and, of a first round; the others without correction
-  const std::vector<VisibleSurface>* seen_ = nullptr;  // of each sample of a pixel; null: rays find what is seen
+  std::span<const VisibleSurface> seen_;       // of each sample of a pixel; empty: rays find what is seen
   const image::Image* base_;
   const PathRequest& request_;
   Deadline deadline_;
@@ -593,9 +569,9 @@ class Picture {
   double judging_s_ = 0;                       // after the last round
   std::size_t count_ = 1;                      // of the pixels' samples
   std::vector<std::array<double, 2>> shifts_;  // of these, where rays find what is seen
-  Coverage coverage_;                          // empty where the centers alone are seen
-  PixelFlags even_;                            // empty but where surfaces of all samples are given
-  std::vector<std::int32_t> number_;           // of the point of each pixel, or -1
+  Coverage coverage_;
+  PixelFlags even_;                   // empty but where surfaces of all samples are given
+  std::vector<std::int32_t> number_;  // of the point of each pixel, or -1
   std::vector<PathPoint> points_;
   std::vector<State> states_;
   unsigned drawn_ = kAllShares;  // the shares that are drawn on

@@ -28,7 +28,7 @@ PixelFlags flags_of(const Gbuffer& gbuffer, const Flag& flag) {
 
 }  // namespace
 
-Coverage coverage(const std::vector<VisibleSurface>& samples) {
+Coverage coverage(std::span<const VisibleSurface> samples) {
   const std::size_t pixels = samples.front().hits.size();
   Coverage result{std::vector<std::uint16_t>(pixels, 0), std::vector<std::uint16_t>(pixels, 0)};
   for (std::size_t sample = 0; sample < samples.size(); ++sample) {

@@ -16,7 +16,7 @@ namespace goniochrome::render {
 using PixelFlags = std::vector<std::uint8_t>;
 
 // Which samples meet the scene or its floor; at most 16 samples.
-Coverage coverage(const std::vector<VisibleSurface>& samples);
+Coverage coverage(std::span<const VisibleSurface> samples);
 
 // Pixels whose samples all show one piece, by part and normal.
 PixelFlags even_pixels(const std::vector<VisibleSurface>& samples);

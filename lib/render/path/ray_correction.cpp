@@ -111,6 +111,14 @@ bool is_smooth(const std::vector<rays::Float3>& light, const std::vector<bool>& 
 
 }  // namespace
 
+void CorrectionNoise::add(const CorrectionNoise& one, int groups) {
+  const double of_mean = 1 / (std::sqrt(groups) * groups);
+  de00_p95 += of_mean * one.de00_p95, error_de00_p95 += of_mean * one.error_de00_p95;
+  free_share += one.free_share / groups;
+  samples += one.samples, ms += one.ms;
+  reached = reached && one.reached, dark = dark && one.dark;
+}
+
 std::vector<const Gbuffer*> gbuffers_of(const std::vector<VisibleSurface>& samples) {
   std::vector<const Gbuffer*> gbuffers;
   for (const VisibleSurface& sample : samples) gbuffers.push_back(&sample.gbuffer);

@@ -43,6 +43,9 @@ struct CorrectionNoise {
   bool dark = false;    // whether the mesh changes nothing at all
   // The change by each of the effects, in the order of plans, and whether the first pass was its last.
   std::array<FoundShare, kShareCount> found;
+
+  // Adds one of so many groups of a pixel's samples; begin with `dark`.
+  void add(const CorrectionNoise& one, int groups);
 };
 
 // The background around the mesh of a picture with a floor that shows the environment.
