@@ -22,7 +22,7 @@ using rays::kInversePi;
 constexpr float kFloorParts = 32;
 constexpr std::uint32_t kFloorDirections = 4;
 // The most and least chance that a direction is drawn from the environment where there is one.
-constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F, kLeastWindowLightChance = 0.05F;
+constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F, kFloorLightChance = 0.5F;
 
 }  // namespace
 
@@ -31,9 +31,7 @@ struct PointTransport::Ray {
   Float3 direction;
   bool above = false;
   std::optional<EnvironmentTable::Place> place;  // where the direction was drawn from the environment
-  ProjectedGround::BrightSample bright;          // with a density above 0 where it was drawn from the brightest texels
   std::optional<std::uint32_t> place_triangle;   // where it was drawn toward a bright place of the surface
-  double weight = 1;                             // of the sample in the mean
 };
 
 PointTransport::PointTransport(const Transport& transport, const PathOptions& options, const Spot& spot,
@@ -54,15 +52,14 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
   }
   deterministic_ = on_projected_ ? transport.open_ground(spot) : transport.emitters_.radiance(spot.part);
   if (on_projected_) {
-    narrow_to_mesh();
-    window_ = transport.ground_->window(transport.rays_->world(spot.position), transport.mesh_box_);
     // Under the mesh most light is occluded: what is left of it is summed, instead of taken from that of the open
     // floor.
-    if (window_->half_width_rad >= kPi) correction_ = false, deterministic_ = {};
-    // The environment's own table draws a sun within its texel, but most other directions in vain.
-    if (transport.environment_)
-      light_chance_ = std::clamp(kMostLightChance * static_cast<float>(transport.ground_->light_share(*window_)),
-                                 kLeastWindowLightChance, kMostLightChance);
+    if (transport.is_under_mesh(spot)) {
+      correction_ = false, deterministic_ = {};
+    } else {
+      mesh_disc_ = transport.mesh_disc(spot);
+    }
+    if (transport.environment_) light_chance_ = kFloorLightChance;
   } else if (transport.environment_) {
     const float wide = 1 - painted_.narrow_share(transport.environment_->extent_sr());
     light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
@@ -82,14 +79,6 @@ color::Rgb PointTransport::reflect(const Float3& f, const color::Rgb& light) con
   return transport_.reflection_ != nullptr && !on_projected_
              ? color::reflected(*transport_.reflection_, rays::vec3(f), light)
              : rays::vec3(f) * light;
-}
-
-// The cone from the point about the sphere that holds the mesh, whose middle is the origin of local coordinates.
-void PointTransport::narrow_to_mesh() {
-  const float distance = rays::length(spot_.start), sine = transport_.mesh_radius_ / distance;
-  if (!(sine < 1)) return;
-  mesh_axis_ = (-1 / distance) * spot_.start;
-  mesh_cosine_ = std::sqrt(1 - sine * sine) - 1e-6F;
 }
 
 // A point is either seen or hidden. Of a disc the light without the mesh is known, and samples tell what the mesh takes
@@ -218,24 +207,12 @@ void PointTransport::add_mirror() {
 
 // The density of a direction that is not drawn from the environment, by the samplers of lights.
 double PointTransport::drawn_pdf(const Float3& direction, const Reflection& reflection) const {
-  return window_ ? transport_.ground_->density(*window_, rays::vec3(direction))
-                 : (1 - receiver_.chance()) * reflection.pdf;
+  if (mesh_disc_) return mesh_disc_->light.meets(rays::vec3(direction)) ? 1 / mesh_disc_->extent_sr() : 0;
+  return (1 - receiver_.chance()) * reflection.pdf;
 }
 
-PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan,
-                                              std::uint32_t rays) const {
+PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbers) const {
   Ray ray;
-  if (window_ && transport_.ground_->has_bright()) {
-    // So many rays of a fan go there, and the others look past them.
-    const std::uint32_t bright = rays / 4;
-    ray.weight = static_cast<double>(rays) / (of_fan < bright ? bright : rays - bright);
-    if (of_fan < bright) {
-      ray.bright = transport_.ground_->drawn_bright(numbers[1], numbers[2], numbers[3]);
-      ray.direction = rays::float3(ray.bright.direction);
-      ray.above = ray.bright.pdf > 0 && rays::dot(ray.direction, spot_.shading) > 0;
-      return ray;
-    }
-  }
   if (numbers[0] < light_chance_) {
     ray.place = transport_.environment_->place(numbers[1], numbers[2]);
     if (!(ray.place->density > 0)) return ray;
@@ -248,8 +225,8 @@ PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbe
           transport_.places_->drawn(receiver_, spot_.start, choice / places, numbers[1], numbers[2]);
       ray.place_triangle = place.triangle, ray.direction = place.direction;
     } else {
-      ray.direction = window_ ? rays::float3(transport_.ground_->drawn(*window_, choice, numbers[1], numbers[2]))
-                              : painted_.direction((choice - places) / (1 - places), numbers[1], numbers[2]);
+      ray.direction = mesh_disc_ ? Transport::drawn_from(*mesh_disc_, numbers[1], numbers[2]).direction
+                                 : painted_.direction((choice - places) / (1 - places), numbers[1], numbers[2]);
     }
   }
   ray.above = painted_.faces(ray.direction);
@@ -273,11 +250,6 @@ LightShares PointTransport::shown(const Ray& ray, bool occluded, const Sequence&
   double pdf = light_chance_ * light.pdf + (1 - light_chance_) * drawn_pdf(ray.direction, reflection);
   if (receiver_.chance() > 0)
     pdf += (1 - light_chance_) * receiver_.chance() * transport_.places_->pdf(receiver_, hit, ray.direction);
-  if (ray.bright.pdf > 0) {
-    pdf = ray.bright.pdf, light.radiance = ray.bright.radiance;
-  } else if (window_ && transport_.ground_->is_bright(rays::vec3(ray.direction))) {
-    return {};
-  }
   if (!(pdf > 0)) return {};
   const auto scaled = static_cast<float>(1 / pdf);
   if (!occluded) return {reflect(scaled * reflection.f_cos, light.radiance), {}, {}};
@@ -438,9 +410,10 @@ LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t be
         if (drawn[i][0] < light_chance_) transport_.environment_->fetch(drawn[i][1], drawn[i][2]);
       }
       for (std::uint32_t i = 0; i < traced; ++i) {
-        rays[i] = drawn_ray(drawn[i], i, traced);
+        rays[i] = drawn_ray(drawn[i]);
         fan.x[i] = rays[i].direction.x, fan.y[i] = rays[i].direction.y, fan.z[i] = rays[i].direction.z;
-        if (rays[i].above && rays::dot(rays[i].direction, mesh_axis_) >= mesh_cosine_) fan.wanted |= 1U << i;
+        if (rays[i].above && (!mesh_disc_ || mesh_disc_->light.meets(rays::vec3(rays[i].direction))))
+          fan.wanted |= 1U << i;
       }
       if (over_ground_) {
         Hit hits[kFan];
@@ -455,11 +428,7 @@ LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t be
       for (std::uint32_t i = 0; i < traced; ++i) {
         const bool is_occluded = (occluded >> i & 1U) != 0;
         if (!rays[i].above || (!is_occluded && (correction_ || !transport_.environment_))) continue;
-        if (rays[i].weight == 1) {
-          sum += shown(rays[i], is_occluded, sequence, first + i);
-        } else {
-          sum += rays[i].weight * shown(rays[i], is_occluded, sequence, first + i);
-        }
+        sum += shown(rays[i], is_occluded, sequence, first + i);
       }
     }
     if (!transport_.emitters_.empty())

@@ -25,32 +25,37 @@ Ground ground_at(double height) {
   return ground;
 }
 
-// The mean of cosine by density over directions that are drawn is the integral of the cosine over the window.
-TEST(ProjectedGround, DrawsEveryDirectionOfAWindowByItsDensity) {
+// Light that comes to the open floor from one side of a plane, by the rays and by the texels, of which each is a
+// constant patch.
+TEST(ProjectedGround, SharesItsLightAmongDirections) {
   const envmap::Environment sky = sunny();
   const auto ground = ProjectedGround::create(ground_at(0), sky, {});
   ASSERT_TRUE(ground.ok());
-  const mesh::Box box{{-1, 0, -2}, {1, 1.4, 2}};
-  for (const Vec3& at : {Vec3{0, 0, 0}, Vec3{1.5, 0, 0}, Vec3{-4, 0, 3}, Vec3{0.2, 0, -9}}) {
-    const ProjectedGround::Window window = ground->window(at, box);
-    double sum = 0, squares = 0;
-    constexpr int kDraws = 1 << 16;
-    for (int i = 0; i < kDraws; ++i) {
-      const auto numbers =
-          Sequence(mixed(7, static_cast<std::uint64_t>(i / 16)), 16).point(static_cast<std::uint32_t>(i % 16), 0);
-      const Vec3 direction = ground->drawn(window, numbers[0], numbers[1], numbers[2]);
-      const double density = ground->density(window, direction);
-      ASSERT_GT(density, 0);
-      // Cells at the edge reach out of the window: there only the light is drawn.
-      const bool inside = direction.y <= std::sin(window.top_rad) &&
-                          std::abs(std::remainder(std::atan2(direction.x, direction.z) - window.azimuth_rad,
-                                                  2 * kPi)) <= window.half_width_rad;
-      const double value = inside ? direction.y / density : 0;
-      sum += value, squares += value * value;
+  ASSERT_TRUE(ground->has_bright());
+  const Vec3 plane = normalized({1, 0.4, -0.3});
+  color::Rgb left, all;
+  constexpr int kParts = 8;
+  for (int row = 0; row < 16 * kParts; ++row) {
+    const double low = std::cos(kPi * (row + 1) / (32.0 * kParts)), high = std::cos(kPi * row / (32.0 * kParts));
+    for (int column = 0; column < 64 * kParts; ++column) {
+      const float* rgb = sky.radiance(column / kParts, row / kParts);
+      const color::Rgb light = kPi / (64 * kParts) * (high * high - low * low) * color::Rgb{rgb[0], rgb[1], rgb[2]};
+      all += light;
+      if (dot(sky.direction_at((column + 0.5) / kParts, (row + 0.5) / kParts), plane) > 0) left += light;
     }
-    const double mean = sum / kDraws, error = std::sqrt((squares / kDraws - mean * mean) / kDraws);
-    EXPECT_NEAR(mean, window.cosine, 4 * error) << at.x << " " << at.z;
-    EXPECT_LT(error, 0.02 * window.cosine);
+  }
+  color::Rgb shared, whole;
+  for (const auto& rays : {ground->soft_rays(1024), ground->bright_rays(64)}) {
+    for (const ProjectedGround::SharedRay& ray : rays) {
+      EXPECT_GT(ray.direction.y, 0);
+      whole += ray.share;
+      if (dot(ray.direction, plane) > 0) shared += ray.share;
+    }
+  }
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(whole[c], 1, 1e-6);
+    EXPECT_NEAR(all[c], ground->irradiance()[c], 1e-6 * all[c]);
+    EXPECT_NEAR(shared[c], left[c] / all[c], 0.005) << "channel " << c;
   }
 }
 
@@ -89,26 +94,7 @@ TEST(ProjectedGround, ShowsWhatTheMeshLeavesOfTheLight) {
       EXPECT_NEAR(seen.radiance[c], truth[c], 4 * deviation(seen, c) + 0.004 * ground->open_radiance(at)[c])
           << at.x << " " << at.z << ", channel " << c;
     }
-    // The mesh can change more light than it changes.
-    const double hidden = ground->light_share(ground->window(at, bounding_box(box)));
-    const color::Rgb open = ground->open_radiance(at);
-    EXPECT_LE(1 - seen.radiance[1] / open[1], hidden + 4 * deviation(seen, 1) / open[1] + 1e-3);
   }
-}
-
-// Far away it can change little, but for the long shadow of a low sun.
-TEST(ProjectedGround, TellsWhereAMeshChangesNothing) {
-  const envmap::Environment even = even_environment();
-  const auto ground = ProjectedGround::create(ground_at(0), even, {});
-  ASSERT_TRUE(ground.ok());
-  const mesh::Box box{{-1, 0, -2}, {1, 1.4, 2}};
-  EXPECT_EQ(ground->light_share(ground->window({0.5, 0, 1}, box)), 1);
-  EXPECT_LT(ground->light_share(ground->window({0, 0, 40}, box)), 1e-3);
-  std::vector<Light> low = {{normalized({0, 0.05, -1}), {3, 3, 3}}};
-  const auto lit = ProjectedGround::create(ground_at(0), even, low);
-  ASSERT_TRUE(lit.ok());
-  EXPECT_GT(lit->light_share(lit->window({0, 0, 20}, box)), 0.01) << "the shadow of the light falls there";
-  EXPECT_LT(lit->light_share(lit->window({0, 0, -40}, box)), 1e-3);
 }
 
 }  // namespace

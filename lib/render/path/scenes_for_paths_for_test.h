@@ -71,7 +71,7 @@ inline envmap::Environment even_environment(const color::Rgb& radiance = {1, 1, 
 struct PathStage {
   mesh::Mesh mesh;
   Scene scene;
-  std::optional<envmap::Environment> environment;
+  std::optional<envmap::Environment> environment, mirrored;
   std::vector<color::Rgb> emission;
   std::optional<Ground> ground;
   std::optional<Transport> transport;
@@ -88,6 +88,7 @@ struct PathStage {
     PathScene path;
     path.scene = &scene;
     path.environment = environment ? &*environment : nullptr;
+    path.mirrored = mirrored ? &*mirrored : nullptr;
     path.emission = emission;
     path.ground = ground;
     path.rough_coats = rough_coats;

@@ -225,6 +225,19 @@ Transport::SeenLamp Transport::seen_lamp(std::size_t lamp, const Float3& from) c
   return seen;
 }
 
+// Its middle is the origin of local coordinates.
+std::optional<Transport::SeenLamp> Transport::mesh_disc(const Spot& spot) const {
+  const float distance = rays::length(spot.start), sine = mesh_radius_ / distance;
+  if (!(sine < 1)) return {};
+  return SeenLamp({rays::vec3((-1 / distance) * spot.start), {}, std::asin(static_cast<double>(sine)) + 1e-6});
+}
+
+bool Transport::is_under_mesh(const Spot& spot) const {
+  const Vec3 at = rays_->world(spot.position);
+  const mesh::Box& box = mesh_box_;
+  return at.x >= box.low.x && at.x <= box.high.x && at.z >= box.low.z && at.z <= box.high.z && at.y < box.high.y;
+}
+
 // disc_direction() and the solid angle by pi sin^2 of the radius, which is 1/cos^2 of half of it.
 Transport::LampSample Transport::drawn_from(const SeenLamp& lamp, double u, double v) {
   const Light& light = lamp.light;

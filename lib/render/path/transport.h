@@ -205,6 +205,9 @@ class Transport {
     double extent_sr() const { return 2 * kPi * versine; }
   };
   SeenLamp seen_lamp(std::size_t lamp, const rays::Float3& from) const;
+  // The sphere about the mesh, as the point sees it; none from within.
+  std::optional<SeenLamp> mesh_disc(const rays::Spot& spot) const;
+  bool is_under_mesh(const rays::Spot& spot) const;
   // A direction to a lamp, drawn evenly from its disc by numbers in [0,1), and the radiance times solid angle of the
   // lamp in units of f cos_i: what a sample adds with the mean over samples.
   struct LampSample {
@@ -277,11 +280,10 @@ class PointTransport {
 
  private:
   struct Ray;
-  void narrow_to_mesh();
   void add_lights();
   void add_mirror();
   double drawn_pdf(const rays::Float3& direction, const Reflection& reflection) const;
-  Ray drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan, std::uint32_t rays) const;
+  Ray drawn_ray(const std::array<double, 4>& numbers) const;
   // Rays to a lamp, none of which is aimed yet.
   rays::Fan lamp_fan(const Transport::SeenLamp& lamp) const;
   // Sends a ray of a fan there if that is above the horizon.
@@ -301,13 +303,10 @@ class PointTransport {
   rays::Spot spot_;
   rays::Float3 to_viewer_;
   PaintedPoint painted_;
-  bool on_projected_;                              // on a floor that shows the environment
-  std::optional<ProjectedGround::Window> window_;  // of such a point: directions in which it may see the mesh
-  bool correction_;   // whether samples tell what the mesh changes: as asked, or of such a floor
-  bool over_ground_;  // over a floor whose ground is shaded
-  // Only directions within this cone can meet the mesh; of other floors and of the mesh itself all of them.
-  rays::Float3 mesh_axis_;
-  float mesh_cosine_ = -2;
+  bool on_projected_;                             // on a floor that shows the environment
+  std::optional<Transport::SeenLamp> mesh_disc_;  // of such a point beside the mesh: only rays within it can meet it
+  bool correction_;         // whether samples tell what the mesh changes: as asked, or of such a floor
+  bool over_ground_;        // over a floor whose ground is shaded
   float light_chance_ = 0;  // of a direction that is drawn from the environment
   BrightPlaces::Receiver receiver_;
   rays::Hit mirror_hit_;
