@@ -5,10 +5,8 @@
 
 #include "base/angles.h"
 #include "base/text.h"
-#include "brdf/lobe_model.h"
 #include "envmap/cube_map.h"
 #include "fit/paint_fit.h"
-#include "render/effects.h"
 
 namespace goniochrome::panels {
 
@@ -140,35 +138,27 @@ Result<EnvironmentPanels> EnvironmentPanels::make(const envmap::PrefilteredEnvir
                                                   const color::ViewingCondition& condition, double coat_index) {
   EnvironmentPanels panels;
   panels.coat_index_ = coat_index;
-  panels.env_ = &env;
-  for (const envmap::PrefilteredLobe& lobe : env.lobes) panels.exponents_.push_back(lobe.exponent);
-  if (panels.exponents_.empty())
+  for (const envmap::PrefilteredLobe& lobe : env.lobes) panels.columns_.exponents.push_back(lobe.exponent);
+  if (panels.exponents().empty())
     return input_error("the environment has no lobes: make it by prefilter-envmap with a basis or --exponents");
   double most = 0;
   const envmap::CubeMap& diffuse = env.diffuse.map;
   for (std::size_t i = 0; i < diffuse.texels.size(); i += 3) most = std::max(most, luminance(&diffuse.texels[i]));
   if (!(most > 0)) return input_error("the environment is black: there is no white to compare with");
   panels.luminance_ = most;
-  if (coat_index != paint::kNoCoat) panels.coat_diffuse_ = envmap::coat_diffuse_map(env);
+  render::Scene scene;
+  scene.env = &env;
+  GONIO_ASSIGN(panels.open_,
+               render::OpenLight::create(scene, panels.columns_, {coat_index}, {.horizon = false, .mirror = false}));
   panels.condition_ = condition;
   GONIO_ASSIGN(panels.white_, color::white_point(condition));
-  panels.fitter_ = std::make_shared<const fit::PaintFitter>(appearance_fitter(panels.exponents_));
+  panels.fitter_ = std::make_shared<const fit::PaintFitter>(appearance_fitter(panels.exponents()));
   return panels;
 }
 
-// The mirrored view stands for the light's direction, as it does in the renderer: pi P_1(n) is the irradiance, and
-// 2 pi/(E + 1) P_E(r) the light in a lobe of exponent E.
 EnvironmentPanels::Light EnvironmentPanels::light(const Vec3& normal, const Vec3& view) const {
-  const Vec3 mirrored = 2 * dot(normal, view) * normal - view;
-  const double cosine = std::max(0.0, dot(normal, mirrored));
-  const bool coated = coat_index_ != paint::kNoCoat;
-  const double let_out = coated ? brdf::coat_transmission(std::min(cosine, 1.0), coat_index_) : 1;
-  const color::Rgb diffuse =
-      coated ? let_out * brdf::mean_coat_transmission(coat_index_) * kPi * envmap::bilinear(*coat_diffuse_, normal)
-             : kPi * envmap::bilinear(env_->diffuse.map, normal);
-  Light light{diffuse, {}, cosine * let_out * let_out};
-  for (const envmap::PrefilteredLobe& lobe : env_->lobes)
-    light.lobes.push_back((2 * kPi / (lobe.exponent + 1)) * envmap::bilinear(lobe.map, mirrored));
+  Light light(columns_.count());
+  open_->at(normal, view, 0, light.data());
   return light;
 }
 
@@ -177,12 +167,12 @@ Result<paint::LobeFit> EnvironmentPanels::lobes(const paint::Appearance& appeara
 }
 
 color::Lab EnvironmentPanels::color(const paint::LobeFit& paint, const Light& light) const {
-  color::Rgb radiance = paint.diffuse * light.diffuse;
+  color::Rgb radiance = paint.diffuse * light[render::LobeColumns::diffuse()];
   for (const paint::Lobe& lobe : paint.lobes) {
-    const auto at = std::ranges::find(exponents_, lobe.exponent);
-    if (at == exponents_.end()) continue;
-    radiance +=
-        light.cosine * (lobe.directional_diffuse * light.lobes[static_cast<std::size_t>(at - exponents_.begin())]);
+    const auto at = std::ranges::find(exponents(), lobe.exponent);
+    if (at == exponents().end()) continue;
+    const auto number = static_cast<std::size_t>(at - exponents().begin());
+    radiance += lobe.directional_diffuse * light[render::LobeColumns::flake(number)];
   }
   return color::lab_from_rgb((1 / luminance_) * radiance, white_);
 }

@@ -9,12 +9,13 @@
 #include <vector>
 
 #include "base/result.h"
-#include "envmap/open_maps.h"
+
 #include "mesh/mesh.h"
 #include "mesh/seam.h"
 #include "panels/geometry_sets.h"
 #include "panels/trompe.h"
 #include "render/camera.h"
+#include "render/light_transport.h"
 
 namespace goniochrome::fit {
 class PaintFitter;
@@ -73,25 +74,19 @@ class EnvironmentPanels {
   static Result<EnvironmentPanels> make(const envmap::PrefilteredEnvironment& env,
                                         const color::ViewingCondition& condition, double coat_index = paint::kNoCoat);
 
-  // The light that a lobe model needs at a place: P of the normal, and of the mirrored view for every lobe. It is what
-  // the coat lets through, as the engines draw it: goniochrome-coats(7), "COAT".
-  struct Light {
-    color::Rgb diffuse;
-    std::vector<color::Rgb> lobes;
-    double cosine = 0;  // between normal and mirrored view, times both passages of a coat
-  };
+  // The light that each column of the environment's lobes gathers at a place, as render::OpenLight has it.
+  using Light = std::vector<color::Rgb>;
   Light light(const Vec3& normal, const Vec3& view) const;
 
   Result<paint::LobeFit> lobes(const paint::Appearance& appearance) const;
   color::Lab color(const paint::LobeFit& paint, const Light& light) const;
 
-  const std::vector<double>& exponents() const { return exponents_; }
+  const std::vector<double>& exponents() const { return columns_.exponents; }
 
  private:
-  const envmap::PrefilteredEnvironment* env_ = nullptr;
-  std::vector<double> exponents_;
+  render::LobeColumns columns_;
+  std::optional<render::OpenLight> open_;
   double coat_index_ = paint::kNoCoat;
-  envmap::MapPointer coat_diffuse_;  // where there is a coat
   color::ViewingCondition condition_;
   color::Xyz white_;
   double luminance_ = 1;

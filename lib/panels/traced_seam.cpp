@@ -32,13 +32,6 @@ struct TracedSeam::State {
   bool open = false;
   double step = 0;  // kBeside in the units of the mesh
 
-  EnvironmentPanels::Light light(const std::vector<color::Rgb>& of_columns) const {
-    EnvironmentPanels::Light light{of_columns[render::LobeColumns::diffuse()], {}, 1};
-    for (std::size_t lobe = 0; lobe < columns.exponents.size(); ++lobe)
-      light.lobes.push_back(of_columns[render::LobeColumns::flake(lobe)]);
-    return light;
-  }
-
   // The surface of the part under a place of the seam, a step away from its edge.
   std::optional<rays::Spot> spot(const Vec3& edge, const Vec3& inward, const Vec3& normal, int part) const {
     for (const double steps : {1.0, 3.0, 9.0}) {
@@ -93,9 +86,8 @@ Result<TracedSeam::Seen> TracedSeam::seen(const paint::LobeFit& worn, const mesh
   path.scene = &scene, path.environment = &*s.sky, path.table = s.table, path.rays = s.rays;
   GONIO_ASSIGN(const render::Transport transport, render::Transport::create(path));
   GONIO_ASSIGN(const render::WornPaints groups, render::worn_paints(s.columns, path));
-  GONIO_ASSIGN(
-      const render::OpenLight open,
-      render::OpenLight::create(*s.env, s.columns, {}, std::vector<double>(s.mesh->parts.size(), worn.coat_index)));
+  GONIO_ASSIGN(const render::OpenLight open,
+               render::OpenLight::create(scene, s.columns, std::vector<double>(s.mesh->parts.size(), worn.coat_index)));
   Seen seen;
   seen.lights.resize(views.size()), seen.open.resize(views.size());
   std::vector<char> beside(views.size());
@@ -107,7 +99,7 @@ Result<TracedSeam::Seen> TracedSeam::seen(const paint::LobeFit& worn, const mesh
       const bool is_a = side == SeamSide::kA;
       const Vec3 normal = is_a ? p.normal_a : p.normal_b;
       open.at(normal, view.view, number, columns.data());
-      seen.open[i] = s.light(columns);
+      seen.open[i] = columns;
       seen.lights[i] = seen.open[i];
       if (s.open) continue;
       auto spot = s.spot(is_a ? p.a : p.b, is_a ? -p.across : p.across, normal, number);
@@ -121,7 +113,7 @@ Result<TracedSeam::Seen> TracedSeam::seen(const paint::LobeFit& worn, const mesh
         const render::LobeEstimate estimate = point.estimate(columns.data(), kSequences, kDirections, own);
         for (std::size_t k = 0; k < columns.size(); ++k) columns[k] = estimate.direct[k] + estimate.bounced[k];
       }
-      seen.lights[i] = s.light(columns);
+      seen.lights[i] = columns;
     }
   });
   seen.beside = static_cast<std::size_t>(std::ranges::count(beside, 1));

@@ -69,7 +69,7 @@ std::vector<SeamView> from_above() {
 
 double mean_diffuse(const std::vector<EnvironmentPanels::Light>& lights) {
   double sum = 0;
-  for (const auto& light : lights) sum += light.diffuse.y / (kPi * kRadiance);
+  for (const auto& light : lights) sum += light.front().y / (kPi * kRadiance);
   return sum / static_cast<double>(lights.size());
 }
 
@@ -134,7 +134,7 @@ TEST(TracedSeam, ACoatLetsInWhatTheWallLeaves) {
     double sum = 0;
     const std::vector<SeamView> views = from_above();
     for (std::size_t i = 0; i < lights.size(); ++i)
-      sum += lights[i].diffuse.y / (kPi * kRadiance) / let_through(views[i].view.y);
+      sum += lights[i].front().y / (kPi * kRadiance) / let_through(views[i].view.y);
     return sum / static_cast<double>(lights.size());
   };
   for (const auto& [side, part, distance] :
@@ -173,7 +173,7 @@ TEST(TracedSeam, TheDifferenceThatAWallMakesIsToldWithItsNoiseForAnyNumberOfThre
     EXPECT_GT(lights->noise_de76, 0);
     EXPECT_LT(lights->noise_de76, 0.5);
     std::vector<double> values;
-    for (const auto& light : lights->b) values.push_back(light.diffuse.x);
+    for (const auto& light : lights->b) values.push_back(light.front().x);
     if (threads == 1) first = values;
     EXPECT_EQ(values, first);
   }
@@ -183,11 +183,11 @@ TEST(TracedSeam, TheDifferenceThatAWallMakesIsToldWithItsNoiseForAnyNumberOfThre
   const auto without = seam_lights(*panels, &*bare, gray, seam(), from_above(), "a", "b");
   ASSERT_TRUE(without.ok());
   EXPECT_EQ(without->worth_de76, 0);
-  EXPECT_NEAR(without->b.front().diffuse.x, kPi * kRadiance, 3e-3 * kPi * kRadiance);  // of the maps
+  EXPECT_NEAR(without->b.front().front().x, kPi * kRadiance, 3e-3 * kPi * kRadiance);  // of the maps
   const auto open = seam_lights(*panels, nullptr, gray, seam(), from_above(), "a", "b");
   ASSERT_TRUE(open.ok());
   EXPECT_EQ(open->worth_de76, 0);
-  EXPECT_EQ(open->a.front().diffuse, open->b.front().diffuse);
+  EXPECT_EQ(open->a.front().front(), open->b.front().front());
 }
 
 TEST(TracedSeam, WhatCannotBeTracedIsNamed) {
@@ -204,7 +204,7 @@ TEST(TracedSeam, WhatCannotBeTracedIsNamed) {
   const auto seen = traced->seen(matt(0.5), away, from_above(), SeamSide::kA, "a");
   ASSERT_TRUE(seen.ok());
   EXPECT_EQ(seen->beside, from_above().size());
-  EXPECT_EQ(seen->lights.front().diffuse, seen->open.front().diffuse);
+  EXPECT_EQ(seen->lights.front().front(), seen->open.front().front());
 }
 
 }  // namespace

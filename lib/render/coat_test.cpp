@@ -242,7 +242,7 @@ TEST(Coat, IsInTheOpenLightOfATransport) {
     ASSERT_TRUE(renderer.ok() && renderer->load(scene, "cpu").ok());
     Frame frame;
     ASSERT_TRUE(renderer->draw(view, frame).ok());
-    const auto open = OpenLight::create(env, columns, {}, {coat_index == 1.5 ? paint::kNoCoat : 1.5, coat_index});
+    const auto open = OpenLight::create(scene, columns, {coat_index == 1.5 ? paint::kNoCoat : 1.5, coat_index});
     const auto weights = column_weights(columns, paint.diffuse, paint.lobes, 60);
     ASSERT_TRUE(open.ok() && weights.ok());
     std::vector<color::Rgb> light(columns.count());

@@ -7,16 +7,12 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
-#include "envmap/open_maps.h"
-#include "math/cosine_power.h"
 #include "math/elementary.h"
 #include "render/aov.h"
 #include "render/effects.h"
 #include "render/gbuffer.h"
 #include "render/glints.h"
-#include "render/scene_effects.h"
-#include "render/spots.h"
-#include "render/unit_weights.h"
+#include "render/light_transport.h"
 #include "sketch/internal/sketch_lobes.h"
 #include "sketch/internal/traced_point.h"
 #include "sketch/internal/view_angles.h"
@@ -40,56 +36,29 @@ formats::Basis basis_of(const envmap::PrefilteredEnvironment& env) {
   return basis;
 }
 
-// One paint for each column, with weight 1 in it and nowhere else. All have all lobes, so that each of them is drawn.
-std::vector<paint::LobeFit> unit_paints(const formats::Basis& basis, double coat_index) {
-  paint::LobeFit blank;
-  blank.coat_index = coat_index;
-  for (const double exponent : basis.exponents) blank.lobes.push_back({exponent, {}, {}});
-  blank.lobes.push_back({paint::kMirrorExponent, {}, {}});
-  std::vector<paint::LobeFit> paints(search_columns(basis), blank);
-  const color::Rgb one{1, 1, 1};
-  paints.front().diffuse = one;
-  for (std::size_t j = 0; j < basis.exponents.size(); ++j)
-    paints[1 + 2 * j].lobes[j].directional_diffuse = one, paints[2 + 2 * j].lobes[j].gloss = one;
-  if (basis.mirror) paints.back().lobes.back().gloss = one;
-  return paints;
-}
-
 class Shading {
  public:
-  // `env` is null where lamps are all the light there is.
-  Shading(const image::AovFile& buffers, const envmap::PrefilteredEnvironment* env, formats::Basis basis, int normal,
-          int part)
-      : buffers_(buffers), env_(env), basis_(std::move(basis)), normal_(normal), part_(part) {
+  // `env` is null where lamps are all the light there is. Error: as OpenLight::create().
+  static Result<Shading> create(const image::AovFile& buffers, const envmap::PrefilteredEnvironment* env,
+                                formats::Basis basis, int normal, int part) {
+    Shading shading(buffers, std::move(basis), normal, part);
     // The narrow highlight of a lamp is summed over all samples, as it was drawn.
     const int most = env != nullptr ? kMostSamples : buffers.samples;
-    if (buffers.samples > 1) shifts_ = render::sample_shifts(std::min(buffers.samples, most));
+    if (buffers.samples > 1) shading.shifts_ = render::sample_shifts(std::min(buffers.samples, most));
+    if (drawn(buffers, "coat")) shading.coat_index_ = brdf::kCoatIndex;
     render::Scene scene;
-    if (drawn(buffers, "coat")) {
-      coat_index_ = brdf::kCoatIndex;
-      if (env != nullptr) coat_diffuse_ = envmap::coat_diffuse_map(*env);
-    }
-    scene.paints = unit_paints(basis_, coat_index_);
     scene.env = env;
     for (const image::AovLight& light : buffers.lights) scene.lights.push_back(render::light_of(light));
-    scene.gloss_deg.assign(scene.paints.size(), kGloss_deg);
     if (!lamps_are_discs(buffers))
       for (render::Light& lamp : scene.lights) lamp.radius_rad = 0;
-    render::Effects effects = render::effects_of(scene);
-    effects.fresnel = fresnel_ = drawn(buffers, "fresnel");
-    effects.horizon = drawn(buffers, "horizon");
-    weights_ = render::UnitWeights(scene, effects, basis_.exponents, coat_index_);
-    std::vector<render::Light> lights = scene.lights;
-    if (env != nullptr && drawn(buffers, "spots")) take_out_spots(*env, lights);
-    if (env_ != nullptr)
-      for (const envmap::PrefilteredLobe& lobe : env_->lobes) maps_.push_back(&lobe.map);
-    for (const render::Light& light : lights) {
-      if (light.radius_rad > 0) {
-        discs_.push_back(weights_.disc(light));
-      } else {
-        points_.push_back(light);
-      }
-    }
+    shading.lamps_ = scene.lights;
+    shading.fresnel_ = drawn(buffers, "fresnel");
+    const render::LobeColumns columns{shading.basis_.exponents};
+    GONIO_ASSIGN(auto open, render::OpenLight::create(scene, columns, {shading.coat_index_},
+                                                      {shading.fresnel_, drawn(buffers, "horizon"),
+                                                       drawn(buffers, "spots"), shading.basis_.mirror}));
+    shading.open_ = std::move(open);
+    return shading;
   }
 
   const formats::Basis& basis() const { return basis_; }
@@ -100,19 +69,23 @@ class Shading {
     const int x = static_cast<int>(place) % buffers_.image.width, y = static_cast<int>(place) / buffers_.image.width;
     const Vec3 n = normal(x, y), right = change(x - 1, y, x + 1, y), down = change(x, y - 1, x, y + 1);
     const std::size_t columns = search_columns(basis_);
-    std::fill_n(column, columns, Vec3{});
-    const double share = 1 / (buffers_.white_luminance * static_cast<double>(shifts_.size()));
     const double spread = mirror_spread(x, y) / std::sqrt(static_cast<double>(shifts_.size()));
+    std::vector<render::OpenView> views;
     for (const auto& [dx, dy] : shifts_)
-      add_sample(normalized(n + dx * right + dy * down), buffers_.to_viewer(x + dx, y + dy), spread, share, column);
+      views.push_back({normalized(n + dx * right + dy * down), buffers_.to_viewer(x + dx, y + dy)});
+    std::vector<color::Rgb> light(columns + 1);
+    open_->mean(views, 0, light.data());
+    // Gloss of the search is relative to the coat at the angle of its reading.
+    const double gloss_deg = fresnel_ ? kGloss_deg : brdf::kGlossIncidence_deg,
+                 gloss = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kDegree), brdf::kCoatIndex);
+    for (std::size_t k = 0; k < columns; ++k)
+      column[k] = ((k > 0 && k % 2 == 0 ? gloss : 1) / buffers_.white_luminance) * light[k];
+    for (const render::OpenView& view : views) add_images(view, spread, column[columns - 1]);
   }
 
  private:
-  struct View {
-    Vec3 normal, to_viewer, mirrored;
-    double cos_o;
-    double spread = 0;  // of the mirror directions of a sample, as render/glints.h has it
-  };
+  Shading(const image::AovFile& buffers, formats::Basis basis, int normal, int part)
+      : buffers_(buffers), basis_(std::move(basis)), normal_(normal), part_(part) {}
 
   Vec3 normal(int x, int y) const {
     const float* pixel = buffers_.image.pixel(x, y) + normal_;
@@ -140,79 +113,27 @@ class Shading {
                                  render::change_beside(mirrored, same, x, y, 0, 1));
   }
 
-  void add_sample(const Vec3& n, const Vec3& wo, double spread, double scale, Vec3* column) const {
-    const View view{n, wo, 2 * dot(n, wo) * n - wo, std::clamp(dot(n, wo), 0.0, 1.0), spread};
-    if (env_ != nullptr) add_environment(*env_, view, scale, column);
-    for (const render::Light& light : points_) add_light(light, view, scale, column);
-    for (std::size_t i = 0; i < discs_.size(); ++i) add_disc(i, view, scale, column);
-  }
-
-  void add_environment(const envmap::PrefilteredEnvironment& env, const View& view, double scale, Vec3* column) const {
-    const std::size_t last = search_columns(basis_) - 1;
-    const bool bare = coat_index_ == paint::kNoCoat;
-    const double c = view.cos_o;
-    const color::Rgb at_normal = envmap::bilinear(bare ? env.diffuse.map : *coat_diffuse_, view.normal);
-    weights_.add_diffuse(at_normal, c, scale, column);
-    weights_.add_lobes(maps_, at_normal, view.normal, view.mirrored, c, scale, column);
-    if (basis_.mirror)
-      column[last] += scale * weights_.at(last, weights_.table().mirror_slot(), c) *
-                      envmap::bilinear(env.mirror.map, view.mirrored);
-  }
-
-  // Lamps take the place of the spots in the maps, as in the engines.
-  void take_out_spots(const envmap::PrefilteredEnvironment& env, std::vector<render::Light>& lights) {
-    rest_ = env;
-    rest_.diffuse.map = *envmap::open_diffuse_map(env, env.spots.size());
-    if (coat_diffuse_ != nullptr) coat_diffuse_ = envmap::open_coat_diffuse_map(env, env.spots.size());
-    for (std::size_t i = 0; i < env.lobes.size(); ++i)
-      rest_.lobes[i].map = *envmap::open_map(env, env.lobes[i], env.spots.size());
-    for (const envmap::Spot& spot : env.spots) lights.push_back(render::light_of(spot));
-    env_ = &rest_;
-  }
-
-  void add_disc(std::size_t number, const View& view, double scale, Vec3* column) const {
-    const render::UnitWeights::Disc& disc = discs_[number];
-    if (dot(view.normal, disc.light.direction) <= -std::sin(disc.light.radius_rad)) return;
-    weights_.add_diffuse(disc, view.normal, view.cos_o, scale, column);
-    weights_.add_lobes(disc, view.normal, view.to_viewer, view.mirrored, scale, column);
-    const std::size_t last = search_columns(basis_) - 1;
-    const bool shown = basis_.mirror && disc.light.mirrored;
-    const double mirrored = shown ? render::mirrored_share(disc.light, view.mirrored, view.spread) : 0;
-    if (mirrored > 0)
-      column[last] += weights_.at(last, weights_.table().lamp_mirror_slot(), view.cos_o) *
-                      (mirrored * scale * disc.light.radiance());
-  }
-
-  void add_light(const render::Light& light, const View& view, double scale, Vec3* column) const {
-    const double cos_i = dot(view.normal, light.direction), c = view.cos_o;
-    if (cos_i <= 0) return;
-    const Vec3 apart = view.mirrored - light.direction, white = scale * kPi * light.white;
-    const double cos_half = std::sqrt(0.5 + 0.5 * dot(light.direction, view.to_viewer));
-    const double coat = fresnel_ ? brdf::fresnel_dielectric(cos_half, brdf::kCoatIndex) : 1;
-    const double base = cos_i * brdf::coat_transmission(std::min(cos_i, 1.0), coat_index_);
-    const render::WeightTable& table = weights_.table();
-    column[0] += base * weights_.at(0, table.light_slot(), c) * white;
-    for (std::size_t j = 0; j < basis_.exponents.size(); ++j) {
-      const double power = math::cos_power_from_versine(0.5 * dot(apart, apart), basis_.exponents[j]);
-      const std::size_t flake = 1 + 2 * j, gloss = flake + 1;
-      column[flake] += base * power * weights_.at(flake, table.directional_diffuse_slot(j), c) * white;
-      column[gloss] += coat * power * weights_.at(gloss, table.gloss_slot(j), c) * white;
-    }
+  // The mirror shows the lamps themselves.
+  void add_images(const render::OpenView& view, double spread, Vec3& mirror) const {
+    if (!basis_.mirror) return;
+    const double cos_o = std::clamp(dot(view.normal, view.to_viewer), 0.0, 1.0);
+    const double coat = fresnel_ ? brdf::fresnel_dielectric(cos_o, brdf::kCoatIndex) : 1;
+    const Vec3 mirrored = 2 * dot(view.normal, view.to_viewer) * view.normal - view.to_viewer;
+    for (const render::Light& lamp : lamps_)
+      if (lamp.radius_rad > 0)
+        mirror += (coat * render::mirrored_share(lamp, mirrored, spread) /
+                   (buffers_.white_luminance * static_cast<double>(shifts_.size()))) *
+                  lamp.radiance();
   }
 
   const image::AovFile& buffers_;
-  const envmap::PrefilteredEnvironment* env_;
-  envmap::PrefilteredEnvironment rest_;       // without bright spots
-  std::vector<const envmap::CubeMap*> maps_;  // of the lobes of the basis
   formats::Basis basis_;
   int normal_, part_;                                     // channels
   std::vector<std::array<double, 2>> shifts_ = {{0, 0}};  // of the samples of a pixel from its center
-  std::vector<render::Light> points_;                     // lamps without extent, and with it
-  std::vector<render::UnitWeights::Disc> discs_;
+  std::vector<render::Light> lamps_;
   double coat_index_ = paint::kNoCoat;
-  envmap::MapPointer coat_diffuse_;
   bool fresnel_ = false;
-  render::UnitWeights weights_;
+  std::optional<render::OpenLight> open_;
 };
 
 }  // namespace
@@ -230,7 +151,8 @@ Result<SketchLight> light_by(const image::AovFile& buffers, const envmap::Prefil
         "{}: it was drawn with a lamp at a place, and the buffers hold no places: give the buffers of a lamp far away, "
         "or of render-osmesa --aov transport",
         buffers.path);
-  const auto shading = std::make_shared<const Shading>(buffers, env, basis, normal, part);
+  GONIO_ASSIGN(auto made, Shading::create(buffers, env, basis, normal, part));
+  const auto shading = std::make_shared<const Shading>(std::move(made));
   SketchLight light{shading->basis(),
                     {},
                     [shading](std::uint32_t place, Vec3* out) { shading->shade(place, out); },

@@ -124,7 +124,7 @@ class OpenViews : public PaintViews {
     path.scene = &scene;
     GONIO_ASSIGN(const render::WornPaints worn, render::worn_paints(view.columns, path));
     view.classes = worn.groups.classes();
-    GONIO_ASSIGN(const render::OpenLight light, render::OpenLight::create(*scene.env, view.columns, {}, view.coats));
+    GONIO_ASSIGN(const render::OpenLight light, render::OpenLight::create(scene, view.columns, view.coats));
     const render::LobeTransport open = render::open_transport(light, view.columns, worn, samples_);
     view.shader = std::make_unique<render::TransportShader>(open, view_angles(open));
     return view;

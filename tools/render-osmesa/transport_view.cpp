@@ -146,11 +146,9 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
         bounces);
   std::optional<render::OpenLight> open;
   if (scene.env != nullptr && with_maps) {
-    const render::Effects effects = render::effects_of(scene);
-    GONIO_ASSIGN(open, render::OpenLight::create(*scene.env, columns,
-                                                 effects.anisotropy ? render::tilts_of(scene, effects)
-                                                                    : std::vector<std::vector<brdf::Tilt>>(),
-                                                 worn.coats));
+    render::Scene unlit = scene;
+    unlit.lights.clear();
+    GONIO_ASSIGN(open, render::OpenLight::create(unlit, columns, worn.coats));
   }
   const render::VisibleSurface surface = render::visible_surface(transport.rays(), seen.rays, seen.width, seen.height);
   std::optional<envmap::BlockTree> tree;

@@ -188,7 +188,7 @@ class Tracing {
         for (color::Rgb& light : open)
           for (int c = 0; c < 3; ++c) light[c] = *kept++;
       }
-      for (std::size_t k = 0; k < views.size(); ++k) mirrors[k] = open_->mirror(views[k], part);
+      mirrors = open_->mirrors(views, part);
     }
     const int sequences = std::min(batches, std::max(kSequences, fewest_));
     int of_each = 1;  // batches

@@ -28,7 +28,7 @@ TEST(LobeTransport, OfAConvexShapeIsThatOfTheMapsAndWithoutNoise) {
   const VisibleSurface surface =
       visible_surface(stage.transport->rays(), *rays({{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30}, 40, 30), 40, 30);
   const LobeColumns columns = *lobe_columns(stage.scene);
-  const OpenLight open = *OpenLight::create(maps(), columns, {});
+  const OpenLight open = *OpenLight::create(scene_under(maps()), columns);
   PathScene scene;
   scene.scene = &stage.scene;
   const TracedLobes traced = traced_lobes(*stage.transport, surface, columns, *worn_paints(columns, scene), &open, {});
@@ -58,7 +58,7 @@ TEST(LobeTransport, ARectangleHidesItsFormFactorFromTheDiffuseColumn) {
   const Transport& transport = stage.build();
   const LobeColumns columns{kExponents};
   const envmap::PrefilteredEnvironment even = constant_env({1, 1, 1}, kExponents);
-  const OpenLight open = *OpenLight::create(even, columns, {});
+  const OpenLight open = *OpenLight::create(scene_under(even), columns);
   PathScene scene;
   scene.scene = &stage.scene;
   const WornPaints worn = *worn_paints(columns, scene);
@@ -312,7 +312,7 @@ TEST(LobeTransport, HoldsAFloorThatShowsTheEnvironment) {
   Ground ground;
   ground.height = -1, ground.probe_eye = {0, 0.5, 0};
   const LobeColumns columns{kExponents};
-  const OpenLight open = *OpenLight::create(maps(), columns, {});
+  const OpenLight open = *OpenLight::create(scene_under(maps()), columns);
   Camera camera;
   camera.eye = {1, 2, 6};
   camera.fov_deg = 36;

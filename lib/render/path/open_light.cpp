@@ -9,64 +9,77 @@
 #include "brdf/lobe_model.h"
 #include "render/internal/seen.h"
 #include "render/scene_effects.h"
-#include "render/spots.h"
 
 namespace goniochrome::render {
 
 namespace {
 
 // Light off the coat has its reflectance in it, relative to nothing.
-std::vector<paint::LobeFit> unit_paints(const LobeColumns& columns, double coat_index) {
+void add_unit_paints(const LobeColumns& columns, double coat_index, bool mirror, std::vector<paint::LobeFit>& paints) {
   const color::Rgb one{1, 1, 1};
   const double reflectance = brdf::fresnel_dielectric(std::cos(brdf::kGlossIncidence_deg * kDegree), brdf::kCoatIndex);
   paint::LobeFit blank;
   blank.coat_index = coat_index;
   for (const double exponent : columns.exponents) blank.lobes.push_back({exponent, {}, {}});
-  blank.lobes.push_back({paint::kMirrorExponent, {}, {}});
-  std::vector<paint::LobeFit> paints(columns.count(), blank);
-  paints.front().diffuse = one;
+  if (mirror) blank.lobes.push_back({paint::kMirrorExponent, {}, {}});
+  const std::size_t first = paints.size();
+  paints.resize(first + columns.count(), blank);
+  paints[first].diffuse = one;
   for (std::size_t j = 0; j < columns.exponents.size(); ++j) {
-    paints[LobeColumns::flake(j)].lobes[j].directional_diffuse = one;
-    paints[LobeColumns::gloss(j)].lobes[j].gloss = reflectance * one;
+    paints[first + LobeColumns::flake(j)].lobes[j].directional_diffuse = one;
+    paints[first + LobeColumns::gloss(j)].lobes[j].gloss = reflectance * one;
   }
-  paints.back().lobes.back().gloss = one;
-  return paints;
+  if (mirror) paints.back().lobes.back().gloss = one;
 }
 
-}  // namespace
-
-Result<OpenLight> OpenLight::create(const envmap::PrefilteredEnvironment& env, const LobeColumns& columns,
-                                    std::vector<std::vector<brdf::Tilt>> tilts, std::vector<double> coats) {
-  OpenLight open;
-  open.env_ = &env, open.columns_ = columns, open.tilts_ = std::move(tilts), open.coats_ = std::move(coats);
-  for (const double exponent : columns.exponents) {
-    const envmap::PrefilteredLobe* lobe = env.lobe(exponent);
-    if (lobe == nullptr)
+Result<void> has_maps(const envmap::PrefilteredEnvironment& env, const LobeColumns& columns, bool mirror) {
+  for (const double exponent : columns.exponents)
+    if (env.lobe(exponent) == nullptr)
       return input_error("the environment has no lobe of exponent {}, which a transport of this basis needs",
                          shortest(exponent));
-    open.lobes_.push_back(envmap::open_map(env, *lobe, env.spots.size()));
-    open.maps_.push_back(open.lobes_.back().get());
-  }
-  if (env.diffuse.map.size == 0 || env.mirror.map.size == 0)
+  if (env.diffuse.map.size == 0 || (mirror && env.mirror.map.size == 0))
     return input_error(
         "the environment has no {} part, which a transport needs: make it with a basis that holds "
         "<mirror/>, by prefilter-envmap",
         env.diffuse.map.size == 0 ? "diffuse" : "mirror");
-  std::vector<double> different = open.coats_;
-  different.push_back(paint::kNoCoat);
-  for (const double coat_index : different) {
-    if (open.weights_.contains(coat_index)) continue;
-    Scene scene;
-    scene.paints = unit_paints(columns, coat_index);
-    scene.env = &env;
-    scene.gloss_deg.assign(scene.paints.size(), brdf::kGlossIncidence_deg);
-    Effects effects = effects_of(scene);
-    effects.fresnel = effects.horizon = effects.mirror = true;
-    open.weights_.emplace(coat_index, UnitWeights(scene, effects, columns.exponents, coat_index));
+  return {};
+}
+
+}  // namespace
+
+Result<OpenLight> OpenLight::create(const Scene& scene, const LobeColumns& columns, const std::vector<double>& coats,
+                                    const OpenEffects& effects) {
+  if (scene.env != nullptr) GONIO_TRY(has_maps(*scene.env, columns, effects.mirror));
+  OpenLight open;
+  open.columns_ = columns;
+  open.surfaces_.emplace_back();
+  for (std::size_t part = 0; part < std::max(coats.size(), scene.anisotropy.size()); ++part) {
+    Surface surface;
+    if (part < coats.size()) surface.coat_index = coats[part];
+    if (part < scene.anisotropy.size()) surface.brushed = scene.anisotropy[part];
+    const auto same = std::ranges::find_if(open.surfaces_, [&](const Surface& other) {
+      return other.coat_index == surface.coat_index && other.brushed.alpha_x == surface.brushed.alpha_x &&
+             other.brushed.alpha_y == surface.brushed.alpha_y;
+    });
+    open.of_parts_.push_back(static_cast<std::size_t>(same - open.surfaces_.begin()));
+    if (same == open.surfaces_.end()) open.surfaces_.push_back(surface);
   }
-  open.diffuse_ = envmap::open_diffuse_map(env, env.spots.size());
-  if (open.weights_.size() > 1) open.coat_diffuse_ = envmap::open_coat_diffuse_map(env, env.spots.size());
-  for (const envmap::Spot& spot : env.spots) open.spots_.push_back(open.weights_.begin()->second.disc(light_of(spot)));
+  Scene units;
+  units.env = scene.env, units.lights = scene.lights;
+  for (Light& lamp : units.lights) lamp.mirrored = false;
+  units.tilt_error = scene.tilt_error, units.most_tilts = scene.most_tilts;
+  for (const Surface& surface : open.surfaces_) {
+    add_unit_paints(columns, surface.coat_index, effects.mirror, units.paints);
+    units.anisotropy.resize(units.paints.size(), surface.brushed);
+  }
+  units.gloss_deg.assign(units.paints.size(), brdf::kGlossIncidence_deg);
+  Effects drawn = effects_of(units);
+  drawn.fresnel = effects.fresnel, drawn.horizon = drawn.environment && effects.horizon;
+  if (!effects.spots) drawn.spots = 0;
+  open.engine_ = std::make_shared<CpuEngine>();
+  GONIO_TRY(open.engine_->load(units, drawn));
+  for (std::size_t s = 0; s < open.surfaces_.size(); ++s)
+    open.surfaces_[s].tilts = tilts_of(units, drawn, s * columns.count()).tilts;
   return open;
 }
 
@@ -74,15 +87,19 @@ void OpenLight::sum(const envmap::BlockTree& tree, double tolerance_de00) {
   summed_.emplace(tree, tolerance_de00, columns_);
 }
 
-// A brushed surface gathers the mean over its tilted normals, as the engines have it.
-std::vector<LobeAxis> OpenLight::axes(const OpenView& view, int part) const {
-  const auto& [n, to_viewer] = view;
+std::size_t OpenLight::surface_of(int part) const {
   const auto p = static_cast<std::size_t>(part);
-  if (p >= tilts_.size() || tilts_[p].size() <= 1) return {{2 * dot(n, to_viewer) * n - to_viewer, 1}};
+  return p < of_parts_.size() ? of_parts_[p] : 0;
+}
+
+// A brushed surface gathers the mean over its tilted normals, as the engines have it.
+std::vector<LobeAxis> OpenLight::axes(const OpenView& view, const Surface& surface) {
+  const auto& [n, to_viewer] = view;
+  if (surface.tilts.size() <= 1) return {{2 * dot(n, to_viewer) * n - to_viewer, 1}};
   const double level2 = n.x * n.x + n.z * n.z;
   const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
   std::vector<LobeAxis> axes;
-  for (const brdf::Tilt& tilt : tilts_[p]) {
+  for (const brdf::Tilt& tilt : surface.tilts) {
     const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
     const Vec3 r = 2 * dot(m, to_viewer) * m - to_viewer;
     if (dot(m, to_viewer) > 0 && dot(r, n) > 0) axes.push_back({r, tilt.weight});
@@ -90,52 +107,38 @@ std::vector<LobeAxis> OpenLight::axes(const OpenView& view, int part) const {
   return axes;
 }
 
-double OpenLight::coat_of(int part) const {
-  const auto p = static_cast<std::size_t>(part);
-  return p < coats_.size() ? coats_[p] : paint::kNoCoat;
-}
-
-// By the maps and the bright spots, whatever is summed.
-void OpenLight::look_up(const OpenView& view, int part, color::Rgb* light) const {
-  const auto& [n, to_viewer] = view;
-  const double cos_o = std::clamp(dot(n, to_viewer), 0.0, 1.0), coat_index = coat_of(part);
-  const UnitWeights& weights = weights_.at(coat_index);
-  std::fill_n(light, columns_.count(), color::Rgb{});
-  const color::Rgb at_normal = envmap::bilinear(coat_index == paint::kNoCoat ? *diffuse_ : *coat_diffuse_, n);
-  weights.add_diffuse(at_normal, cos_o, 1, light);
-  for (const UnitWeights::Disc& spot : spots_) weights.add_diffuse(spot, n, cos_o, 1, light);
-  for (const LobeAxis& axis : axes(view, part)) {
-    weights.add_lobes(maps_, at_normal, n, axis.direction, cos_o, axis.share, light);
-    for (const UnitWeights::Disc& spot : spots_)
-      weights.add_lobes(spot, n, to_viewer, axis.direction, axis.share, light);
-  }
-  light[columns_.mirror()] = mirror(view, part);
-}
-
-color::Rgb OpenLight::mirror(const OpenView& view, int part) const {
-  const auto& [n, to_viewer] = view;
-  const UnitWeights& weights = weights_.at(coat_of(part));
-  return weights.at(columns_.mirror(), weights.table().mirror_slot(), std::clamp(dot(n, to_viewer), 0.0, 1.0)) *
-         envmap::bilinear(env_->mirror.map, 2 * dot(n, to_viewer) * n - to_viewer);
-}
-
-void OpenLight::at(const Vec3& n, const Vec3& to_viewer, int part, color::Rgb* light) const {
-  look_up({n, to_viewer}, part, light);
-  if (summed_) summed_->at(n, to_viewer, axes({n, to_viewer}, part), coat_of(part), light);
+// The columns of each view one after the other, by the maps, the bright spots and the lamps, whatever is summed.
+std::vector<color::Rgb> OpenLight::columns_at(const std::vector<OpenView>& views, std::size_t surface) const {
+  std::vector<VisiblePoint> points;
+  points.reserve(views.size() * columns_.count());
+  for (const OpenView& view : views)
+    for (std::size_t k = 0; k < columns_.count(); ++k)
+      points.push_back({.normal = view.normal,
+                        .to_viewer = view.to_viewer,
+                        .part = static_cast<int>(surface * columns_.count() + k)});
+  return engine_->colors(points);
 }
 
 void OpenLight::mean(const std::vector<OpenView>& views, int part, color::Rgb* light) const {
+  const std::size_t number = surface_of(part);
+  const std::vector<color::Rgb> seen = columns_at(views, number);
   std::fill_n(light, columns_.count(), color::Rgb{});
-  std::vector<color::Rgb> here(columns_.count()), summed;
-  for (const OpenView& view : views) {
-    look_up(view, part, here.data());
-    if (summed_ && summed.empty()) {
-      summed = here;
-      summed_->at(view.normal, view.to_viewer, axes(view, part), coat_of(part), summed.data());
-      for (std::size_t k = 0; k < here.size(); ++k) light[k] += summed[k] - here[k];
-    }
-    for (std::size_t k = 0; k < here.size(); ++k) light[k] += (1.0 / static_cast<double>(views.size())) * here[k];
-  }
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    light[i % columns_.count()] += (1.0 / static_cast<double>(views.size())) * seen[i];
+  if (!summed_) return;
+  const Surface& surface = surfaces_[number];
+  std::vector<color::Rgb> summed(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(columns_.count()));
+  summed_->at(views.front().normal, views.front().to_viewer, axes(views.front(), surface), surface.coat_index,
+              summed.data());
+  for (std::size_t k = 0; k < columns_.count(); ++k) light[k] += summed[k] - seen[k];
+}
+
+std::vector<color::Rgb> OpenLight::mirrors(const std::vector<OpenView>& views, int part) const {
+  std::vector<VisiblePoint> points;
+  const auto mirror = static_cast<int>(surface_of(part) * columns_.count() + columns_.mirror());
+  for (const OpenView& view : views)
+    points.push_back({.normal = view.normal, .to_viewer = view.to_viewer, .part = mirror});
+  return engine_->colors(points);
 }
 
 // Each column in the gray paint that its noise is judged by.

@@ -21,6 +21,12 @@ inline envmap::Environment sky() {
     return color::Rgb{0.5 + lamp, 0.4 + 0.02 * y + lamp, 0.7 + 0.8 * lamp};
   });
 }
+inline Scene scene_under(const envmap::PrefilteredEnvironment& env) {
+  Scene scene;
+  scene.env = &env;
+  return scene;
+}
+
 inline const envmap::PrefilteredEnvironment& maps() {
   static const envmap::PrefilteredEnvironment made = [] {
     const envmap::Environment env = sky();
@@ -59,7 +65,7 @@ struct Stage {
     path.scene.paints.back() = ball;
     path.environment = sky();
     path.scene.env = &maps();
-    open = *OpenLight::create(maps(), columns, {});
+    open = *OpenLight::create(path.scene, columns);
     dress(cup, ball);
   }
   static mesh::Mesh ball_in_cup() {
