@@ -112,7 +112,6 @@ struct RayScene::State {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::array<std::uint32_t, 3>> met;  // those triangles where rays pass some of them; else empty
   std::vector<std::uint32_t> part_of;
-  std::vector<std::array<float, 2>> texture;
   int parts = 0;
   mutable std::once_flag tree_made;
   mutable std::unique_ptr<const VertexTree> tree;
@@ -160,7 +159,6 @@ Result<RayScene> RayScene::create(const mesh::Mesh& mesh, const std::optional<Fl
   state->normals.reserve(mesh.normals.size());
   for (const Vec3& n : mesh.normals) state->normals.push_back(float3(n));
   state->triangles = mesh.triangles;
-  state->texture = mesh.texture;
   state->parts = static_cast<int>(mesh.parts.size());
   for (std::size_t part = 0; part < mesh.parts.size(); ++part)
     state->part_of.insert(state->part_of.end(), mesh.parts[part].count, static_cast<std::uint32_t>(part));
@@ -324,20 +322,6 @@ Spot RayScene::spot(const Hit& hit, const Float3& origin, const Float3& directio
   return spot;
 }
 
-Vec3 RayScene::tangent(const Hit& hit) const {
-  if (hit.triangle >= kFloor || state_->texture.empty()) return {};
-  const auto& vertex = state_->triangles[hit.triangle];
-  const std::array<Float3, 3> corner = corners(hit.triangle);
-  const auto& t0 = state_->texture[vertex[0]];
-  const auto& t1 = state_->texture[vertex[1]];
-  const auto& t2 = state_->texture[vertex[2]];
-  const Vec3 e1 = vec3(corner[1] - corner[0]), e2 = vec3(corner[2] - corner[0]);
-  const double u1 = t1[0] - t0[0], v1 = t1[1] - t0[1], u2 = t2[0] - t0[0], v2 = t2[1] - t0[1];
-  const Vec3 way = u1 * v2 > u2 * v1 ? v2 * e1 - v1 * e2 : v1 * e2 - v2 * e1;
-  const double size = goniochrome::length(way);
-  return size > 0 ? (1 / size) * way : Vec3{};
-}
-
 bool RayScene::any_above(const Float3& point, const Float3& normal, float margin) const {
   std::call_once(state_->tree_made, [this] {
     std::vector<Float3> points(state_->positions.begin(), state_->positions.end() - 1);
@@ -353,54 +337,6 @@ bool RayScene::is_convex() const {
     if (size > 0 && any_above(corners(triangle)[0], float3((1 / size) * area), kLift)) return false;
   }
   return true;
-}
-
-namespace {
-
-SurfacePoint surface_point(const RayScene& scene, const Hit& hit, const Float3& origin, const Float3& direction) {
-  if (!hit.any()) return {};
-  const Spot spot = scene.spot(hit, origin, direction);
-  return {hit.triangle,
-          hit.u,
-          hit.v,
-          spot.part,
-          spot.inside,
-          hit.distance / scene.scale(),
-          scene.world(spot.position),
-          vec3(spot.geometric),
-          goniochrome::normalized(vec3(spot.shading)),
-          scene.tangent(hit)};
-}
-
-}  // namespace
-
-std::optional<SurfacePoint> RayScene::closest(const Vec3& origin, const Vec3& direction) const {
-  const Float3 from = local(origin), toward = float3(direction);
-  const Hit hit = closest(from, toward);
-  if (!hit.any()) return std::nullopt;
-  return surface_point(*this, hit, from, toward);
-}
-
-void RayScene::closest(const Vec3& origin, std::span<const Vec3> directions, std::span<SurfacePoint> points) const {
-  const Float3 from = local(origin);
-  for (std::size_t first = 0; first < directions.size(); first += 8) {
-    const std::size_t count = std::min<std::size_t>(8, directions.size() - first);
-    Fan fan;
-    fan.origin = from;
-    fan.wanted = (1U << count) - 1;
-    for (std::size_t i = 0; i < 8; ++i) {
-      const Float3 d = float3(directions[first + std::min(i, count - 1)]);
-      fan.x[i] = d.x, fan.y[i] = d.y, fan.z[i] = d.z;
-    }
-    Hit hits[8];
-    closest(fan, hits);
-    for (std::size_t i = 0; i < count; ++i)
-      points[first + i] = surface_point(*this, hits[i], from, {fan.x[i], fan.y[i], fan.z[i]});
-  }
-}
-
-bool RayScene::occluded(const Vec3& origin, const Vec3& direction, double distance) const {
-  return occluded(local(origin), float3(direction), static_cast<float>(distance * scale()));
 }
 
 }  // namespace goniochrome::rays

@@ -6,7 +6,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "base/result.h"
@@ -43,17 +42,6 @@ struct Spot {
   float u = 0, v = 0;   // of the hit
 };
 
-// The point for callers outside of the kernels, in the units of the mesh.
-struct SurfacePoint {
-  std::uint32_t triangle = kNothing;
-  float u = 0, v = 0;
-  int part = 0;
-  bool inside = false;
-  double distance = 0;
-  Vec3 position, geometric, shading;
-  Vec3 tangent;  // unit, along growing u of the texture; 0 where the mesh has no texture coordinates
-};
-
 // Eight rays from one point. Rays whose bit of `wanted` is 0 are not traced.
 struct Fan {
   Float3 origin;
@@ -83,14 +71,6 @@ class RayScene {
   RayScene& operator=(RayScene&&) noexcept;
   ~RayScene();
 
-  // The nearest point of the surface on the ray, or nothing. `direction` is unit.
-  std::optional<SurfacePoint> closest(const Vec3& origin, const Vec3& direction) const;
-  // Variant for many rays from one point, nothing where triangle == kNothing.
-  void closest(const Vec3& origin, std::span<const Vec3> directions, std::span<SurfacePoint> points) const;
-  // True if anything lies between the origin and the distance.
-  bool occluded(const Vec3& origin, const Vec3& direction,
-                double distance = std::numeric_limits<double>::infinity()) const;
-
   int parts() const;  // of the mesh, and the floor as one more
   bool has_floor() const;
   std::size_t triangles() const;
@@ -101,7 +81,7 @@ class RayScene {
   Float3 local(const Vec3& world) const { return float3(scale() * (world - middle())); }
   Vec3 world(const Float3& at) const { return middle() + (1 / scale()) * vec3(at); }
 
-  // In local coordinates.
+  // In local coordinates; directions are unit.
   Hit closest(const Float3& origin, const Float3& direction) const;
   bool occluded(const Float3& origin, const Float3& direction,
                 float distance = std::numeric_limits<float>::infinity()) const;
@@ -124,8 +104,6 @@ class RayScene {
   // distance, local: distance^2/cos; 0 along the triangle.
   double by_solid_angle(std::uint32_t triangle, const Float3& direction, float distance) const;
   int part(std::uint32_t triangle) const;
-  // The tangent at a point of a triangle, unit, or 0: see SurfacePoint.
-  Vec3 tangent(const Hit& hit) const;
   // True if any vertex of the mesh lies more than `margin` above the plane through the point. A point from which none
   // does sees its whole hemisphere, the floor apart.
   bool any_above(const Float3& point, const Float3& normal, float margin) const;

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
@@ -69,6 +70,20 @@ double sphere_distance(const Vec3& origin, const Vec3& direction, double radius)
   return d < 0 ? -1 : -b - std::sqrt(d);
 }
 
+// The spot that a ray in the units of the mesh meets, and how far it is in these.
+struct Met {
+  Spot spot;
+  Vec3 position;
+  double distance = 0;
+};
+std::optional<Met> met_by(const RayScene& scene, const Vec3& origin, const Vec3& direction) {
+  const Float3 from = scene.local(origin), toward = float3(direction);
+  const Hit hit = scene.closest(from, toward);
+  if (!hit.any()) return std::nullopt;
+  const Spot spot = scene.spot(hit, from, toward);
+  return Met{spot, scene.world(spot.position), hit.distance / scene.scale()};
+}
+
 TEST(RayScene, MeetsASphereWhereTheClosedFormSays) {
   constexpr int kRows = 512;
   const double sagitta = std::pow(kPi / kRows, 2) / 8;
@@ -83,8 +98,11 @@ TEST(RayScene, MeetsASphereWhereTheClosedFormSays) {
     const Vec3 direction = normalized(aim - origin);
     const double outer = sphere_distance(origin, direction, 1),
                  inner = sphere_distance(origin, direction, 1 - 2 * sagitta);
-    const auto point = scene->closest(origin, direction);
-    EXPECT_EQ(point.has_value(), scene->occluded(origin, direction));
+    const auto point = met_by(*scene, origin, direction);
+    const auto occluded = [&](double distance) {
+      return scene->occluded(scene->local(origin), float3(direction), static_cast<float>(distance * scene->scale()));
+    };
+    EXPECT_EQ(point.has_value(), occluded(HUGE_VAL));
     if (inner > 0) {
       ASSERT_TRUE(point.has_value());
       ++met;
@@ -93,11 +111,11 @@ TEST(RayScene, MeetsASphereWhereTheClosedFormSays) {
       EXPECT_LE(point->distance, inner + 3e-6);
       // Along the ray the error of the plane grows as the ray grazes it.
       EXPECT_LT(length(point->position - (origin + point->distance * direction)),
-                3e-6 / std::abs(dot(point->geometric, direction)));
-      EXPECT_LT(length(point->shading - normalized(point->position)), 1e-4);  // linear between exact normals
-      EXPECT_FALSE(point->inside);
-      EXPECT_TRUE(scene->occluded(origin, direction, inner + 1e-5));
-      EXPECT_FALSE(scene->occluded(origin, direction, outer - 1e-5));
+                3e-6 / std::abs(dot(vec3(point->spot.geometric), direction)));
+      EXPECT_LT(length(vec3(point->spot.shading) - normalized(point->position)), 1e-4);  // linear between exact normals
+      EXPECT_FALSE(point->spot.inside);
+      EXPECT_TRUE(occluded(inner + 1e-5));
+      EXPECT_FALSE(occluded(outer - 1e-5));
     } else if (outer < 0) {
       EXPECT_FALSE(point.has_value());
       ++missed;
@@ -111,11 +129,11 @@ TEST(RayScene, SeesTheBackOfATurnedSurface) {
   const mesh::Mesh mesh = sphere(64);
   const auto scene = RayScene::create(mesh);
   ASSERT_TRUE(scene.ok());
-  const auto point = scene->closest(Vec3{}, Vec3{0, 0, 1});
+  const auto point = met_by(*scene, {}, {0, 0, 1});
   ASSERT_TRUE(point.has_value());
-  EXPECT_TRUE(point->inside);
-  EXPECT_LT(point->geometric.z, -0.99);
-  EXPECT_LT(point->shading.z, -0.99);
+  EXPECT_TRUE(point->spot.inside);
+  EXPECT_LT(point->spot.geometric.z, -0.99);
+  EXPECT_LT(point->spot.shading.z, -0.99);
 }
 
 TEST(RayScene, FansMeetWhatSingleRaysMeet) {
@@ -189,19 +207,19 @@ TEST(RayScene, AFloorLiesWhereItIsSaidAndReachesTheHorizon) {
   const auto scene = RayScene::create(mesh, Floor{3.0});
   ASSERT_TRUE(scene.ok());
   EXPECT_EQ(scene->parts(), 2);
-  const auto below = scene->closest(Vec3{100, 5, 10}, normalized(Vec3{0, -1e-4, 1}));
+  const auto below = met_by(*scene, {100, 5, 10}, normalized(Vec3{0, -1e-4, 1}));
   ASSERT_TRUE(below.has_value());
-  EXPECT_EQ(below->triangle, kFloor);
-  EXPECT_EQ(below->part, 1);
+  EXPECT_EQ(below->spot.triangle, kFloor);
+  EXPECT_EQ(below->spot.part, 1);
   EXPECT_NEAR(below->position.y, 3.0, 1e-6);
   EXPECT_NEAR(below->position.z, 20010, 2);
-  EXPECT_EQ(below->geometric, (Vec3{0, 1, 0}));
+  EXPECT_EQ(vec3(below->spot.geometric), (Vec3{0, 1, 0}));
   // A floor above the mesh shows its underside.
   const auto above = RayScene::create(mesh, Floor{9.0});
-  const auto under = above->closest(Vec3{100, 8, 10}, Vec3{0, 1, 0});
+  const auto under = met_by(*above, {100, 8, 10}, {0, 1, 0});
   ASSERT_TRUE(under.has_value());
-  EXPECT_TRUE(under->inside);
-  EXPECT_EQ(under->geometric, (Vec3{0, -1, 0}));
+  EXPECT_TRUE(under->spot.inside);
+  EXPECT_EQ(vec3(under->spot.geometric), (Vec3{0, -1, 0}));
 }
 
 // Triangles in every orientation that meet nothing but themselves: from no point of theirs may a ray above their plane

@@ -158,10 +158,13 @@ TEST(Panes, LetLightPass) {
              whole = rays::RayScene::create(shop.mesh);
   ASSERT_TRUE(passing.ok() && whole.ok());
   const Vec3 from{0.1, 0.1, 1}, toward{0, 0, -1};
-  EXPECT_EQ(whole->closest(from, toward)->part, 1);
-  EXPECT_EQ(passing->closest(from, toward)->part, 0);
-  EXPECT_FALSE(passing->occluded(Vec3{0.1, 0.1, 0.1}, Vec3{0, 0, 1}));
-  EXPECT_TRUE(whole->occluded(Vec3{0.1, 0.1, 0.1}, Vec3{0, 0, 1}));
+  const auto met_part = [&](const rays::RayScene& scene) {
+    return scene.part(scene.closest(scene.local(from), rays::float3(toward)).triangle);
+  };
+  EXPECT_EQ(met_part(*whole), 1);
+  EXPECT_EQ(met_part(*passing), 0);
+  EXPECT_FALSE(passing->occluded(passing->local({0.1, 0.1, 0.1}), {0, 0, 1}));
+  EXPECT_TRUE(whole->occluded(whole->local({0.1, 0.1, 0.1}), {0, 0, 1}));
   // Its spots are known nevertheless.
   const rays::Spot spot = passing->spot({2, 0.25F, 0.25F, 0}, passing->local(from), rays::float3(toward));
   EXPECT_EQ(spot.part, 1);

@@ -80,7 +80,7 @@ TEST(ProjectedGround, ShowsWhatTheMeshLeavesOfTheLight) {
       const double weight = 2 * kPi / (64 * kParts) * (high * high - low * low) / 2;
       for (int column = 0; column < 64 * kParts; ++column) {
         const Vec3 direction = stage.environment->direction_at((column + 0.5) / kParts, (row + 0.5) / kParts);
-        if (transport.rays().occluded(at + Vec3{0, 1e-5, 0}, direction)) continue;
+        if (transport.rays().occluded(transport.rays().local(at + Vec3{0, 1e-5, 0}), rays::float3(direction))) continue;
         const float* rgb = stage.environment->radiance(column / kParts, row / kParts);
         left += weight * color::Rgb{rgb[0], rgb[1], rgb[2]};
       }

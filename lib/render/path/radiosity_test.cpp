@@ -81,7 +81,9 @@ class Radiosity {
         const Vec3 way = lamp_area_.corner + (i + 0.5) / grid * lamp_area_.a + (j + 0.5) / grid * lamp_area_.b - point;
         const double d = length(way), cos_here = dot(normal, way) / d, cos_there = -dot(lamp_normal, way) / d;
         if (cos_here <= 0 || cos_there <= 0) continue;
-        if (!scene_.occluded(point + 1e-5 * normal, (1 / d) * way, 0.9999 * d)) sum += cos_here * cos_there / (d * d);
+        if (!scene_.occluded(scene_.local(point + 1e-5 * normal), rays::float3((1 / d) * way),
+                             static_cast<float>(0.9999 * d * scene_.scale())))
+          sum += cos_here * cos_there / (d * d);
       }
     }
     return sum / (grid * grid * kPi) * emission_;
@@ -98,16 +100,20 @@ class Radiosity {
     const double r = std::sqrt(a), phi = 2 * kPi * b;
     const Vec3 d =
         r * std::cos(phi) * rays::vec3(frame.x) + r * std::sin(phi) * rays::vec3(frame.y) + std::sqrt(1 - a) * normal;
-    const auto hit = scene_.closest(point + 1e-5 * normal, normalized(d));
-    if (!hit || hit->inside) return {};
-    const Corners& c = triangles_[hit->triangle];
+    const rays::Float3 from = scene_.local(point + 1e-5 * normal), toward = rays::float3(normalized(d));
+    const rays::Hit hit = scene_.closest(from, toward);
+    if (!hit.any()) return {};
+    const rays::Spot spot = scene_.spot(hit, from, toward);
+    if (spot.inside) return {};
+    const Corners& c = triangles_[hit.triangle];
     if (c.cuts == 0) return {};
-    const double u = static_cast<double>(hit->u) * c.cuts, v = static_cast<double>(hit->v) * c.cuts;
+    const double u = static_cast<double>(hit.u) * c.cuts, v = static_cast<double>(hit.v) * c.cuts;
     const int i = std::clamp(static_cast<int>(u), 0, c.cuts - 1),
               j = std::clamp(static_cast<int>(v), 0, c.cuts - 1 - i);
     const int upper = u - i + v - j > 1 && i + j < c.cuts - 1 ? 1 : 0;
     // Row i holds 2 (cuts - i) - 1 triangles.
-    return {static_cast<std::int64_t>(c.first) + i * (2 * c.cuts - i) + 2 * j + upper, hit->triangle, hit->position};
+    return {static_cast<std::int64_t>(c.first) + i * (2 * c.cuts - i) + 2 * j + upper, hit.triangle,
+            scene_.world(spot.position)};
   }
 
   void solve() {
