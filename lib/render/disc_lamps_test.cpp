@@ -11,7 +11,7 @@
 #include "render/cpu/cpu_engine.h"
 #include "render/exact.h"
 #include "render/glints.h"
-#include "render/path/path_estimate.h"
+#include "render/path/path_estimate_for_test.h"
 #include "render/path/path_tracer.h"
 #include "render/path/transport.h"
 #include "render/scene.h"

@@ -1,4 +1,4 @@
-// The light of one point by paths, for references and tests. goniochrome-paths(7), "PATHS".
+// The light of one point by paths. goniochrome-paths(7), "PATHS".
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,16 @@ struct PathEstimate {
   color::Rgb radiance;
   Covariance covariance{};
 };
-PathEstimate path_estimate(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
-                           const Vec3& to_viewer, int batches, std::uint64_t seed);
+inline PathEstimate path_estimate(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
+                                  const Vec3& to_viewer, int batches, std::uint64_t seed) {
+  const PointTransport at(transport, options, spot, rays::float3(to_viewer));
+  if (at.certain()) return {at.deterministic(), {}};
+  Estimates sums;
+  for (int k = 0; k < batches; ++k)
+    sums.add(at.batch_shares(mixed(mixed(seed, 0), static_cast<std::uint64_t>(k))).sum());
+  Covariance covariance = sums.covariance();
+  for (double& element : covariance) element /= batches;
+  return {at.deterministic() + sums.mean(), covariance};
+}
 
 }  // namespace goniochrome::render

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/path/path_estimate.h"
+#include "render/path/path_estimate_for_test.h"
 #include "render/path/path_tracer.h"
 #include "render/scenes_for_test.h"
 

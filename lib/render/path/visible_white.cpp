@@ -5,7 +5,6 @@
 
 #include "base/parallel.h"
 #include "math/statistics.h"
-#include "render/path/path_estimate.h"
 #include "render/path/path_tracer.h"
 
 namespace goniochrome::render {
@@ -13,7 +12,7 @@ namespace goniochrome::render {
 namespace {
 
 constexpr std::size_t kPoints = 256;
-constexpr int kBatches = 4;
+constexpr std::uint64_t kBatches = 4;
 
 }  // namespace
 
@@ -36,9 +35,10 @@ double visible_white(const Transport& transport, const VisibleSurface& surface, 
       const std::size_t i = lit[(2 * k + 1) * lit.size() / (2 * count)];
       const int x = static_cast<int>(i % static_cast<std::size_t>(g.width)),
                 y = static_cast<int>(i / static_cast<std::size_t>(g.width));
-      const color::Rgb white =
-          path_estimate(transport, options, spot_at(scene, surface, x, y), g.to_viewer(x, y), kBatches, mixed(seed, i))
-              .radiance;
+      const PointTransport at(transport, options, spot_at(scene, surface, x, y), rays::float3(g.to_viewer(x, y)));
+      color::Rgb white = at.deterministic();
+      for (std::uint64_t batch = 0; batch < kBatches && !at.certain(); ++batch)
+        white += (1.0 / kBatches) * at.batch_shares(mixed(mixed(seed, i), batch)).sum();
       luminance[k] = color::xyz_d65_from_rgb(white).Y;
     }
   });
