@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numbers>
+
+#include "base/angles.h"
+#include "math/statistics.h"
+#include "render/path/sequence.h"
 
 namespace goniochrome::render {
 
@@ -38,25 +40,6 @@ double variance_along(const Vec3& v, const Covariance& c) {
   return v.x * v.x * c[0] + v.y * v.y * c[1] + v.z * v.z * c[2] +
          2 * (v.x * v.y * c[3] + v.x * v.z * c[4] + v.y * v.z * c[5]);
 }
-
-// The sizes of errors and their shares: those that differ by less than a fiftieth are taken together.
-class Bins {
- public:
-  explicit Bins(const std::vector<double>& errors) : count_(static_cast<double>(errors.size())) {
-    for (const double error : errors)
-      ++counts_[static_cast<int>(std::lround(kPerOctave * std::log2(std::max(error, kLeast))))];
-  }
-  // Calls visit(error, share of all).
-  template <class Visit>
-  void each(const Visit& visit) const {
-    for (const auto& [bin, count] : counts_) visit(std::exp2(bin / kPerOctave), count / count_);
-  }
-
- private:
-  static constexpr double kPerOctave = 36, kLeast = 1e-6;
-  std::map<int, double> counts_;  // by the logarithm
-  double count_;
-};
 
 }  // namespace
 
@@ -104,29 +87,21 @@ double noise_de00(const color::Rgb& radiance, const Covariance& covariance, doub
   return std::sqrt(std::max(0.0, variance));
 }
 
+// Errors are drawn, normal numbers by Box and Muller's transform. Their percentile has an error below a hundredth.
 double largest_errors(const std::vector<double>& deviations, const std::vector<double>& beside) {
-  constexpr double kExceeded = 0.05;
+  constexpr std::uint32_t kDrawn = 1U << 15;
   if (deviations.empty()) return 0;
-  const Bins noise(deviations), other(beside.empty() ? std::vector<double>{0} : beside);
-  const auto exceeding = [&](double size) {
-    double sum = 0;
-    other.each([&](double error, double share) {
-      const double left = std::sqrt(std::max(0.0, size * size - error * error));
-      noise.each([&](double deviation, double of_noise) {
-        sum += share * of_noise * std::erfc(left / (std::numbers::sqrt2 * deviation));
-      });
-    });
-    return sum;
+  const auto any = [](const std::vector<double>& of, double number) {
+    return of.empty() ? 0 : of[static_cast<std::size_t>(number * static_cast<double>(of.size()))];
   };
-  constexpr double kNothing = 1e-4;
-  if (exceeding(kNothing) <= kExceeded) return 0;
-  double low = 0, high = 1;
-  while (exceeding(high) > kExceeded) high *= 2;
-  for (int step = 0; step < 24; ++step) {
-    const double middle = 0.5 * (low + high);
-    (exceeding(middle) > kExceeded ? low : high) = middle;
+  const Sequence::Set draws = Sequence(1, kDrawn).set(0);
+  std::vector<double> sizes(kDrawn);
+  for (std::uint32_t i = 0; i < kDrawn; ++i) {
+    const auto [point, other, u, v] = draws.point(i);
+    const double normal = std::sqrt(-2 * std::log(1 - u)) * std::cos(2 * kPi * v);
+    sizes[i] = std::hypot(any(deviations, point) * normal, any(beside, other));
   }
-  return high;
+  return math::percentile_95(std::move(sizes));
 }
 
 }  // namespace goniochrome::render
