@@ -14,19 +14,13 @@ using D = hn::CappedTag<float, kTransportLanes>;
 using V = hn::Vec<D>;
 using H = hn::Rebind<hwy::float16_t, D>;
 
-HWY_INLINE V load(const float* from) {
-  return hn::LoadU(D(), from);
-}
-HWY_INLINE V load(const hwy::float16_t* from) {
-  return hn::PromoteTo(D(), hn::LoadU(H(), from));
+HWY_INLINE V load(const std::uint16_t* from) {
+  return hn::PromoteTo(D(), hn::LoadU(H(), reinterpret_cast<const hwy::float16_t*>(from)));
 }
 
-template <class T>
-HWY_INLINE void Shade(const TransportBlock& block, const TransportWeights& w, float* rgb) {
+void ShadeTransport(const TransportBlock& block, const TransportWeights& w, float* rgb) {
   const D d;
-  const auto* direct = static_cast<const T*>(block.direct);
-  const auto* bounced = static_cast<const T*>(block.bounced);
-  const auto* classes = static_cast<const T*>(block.classes);
+  const std::uint16_t *direct = block.direct, *bounced = block.bounced, *classes = block.classes;
   for (std::size_t i = 0; i < kTransportLanes; i += hn::Lanes(d)) {
     V factor[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     if (bounced != nullptr) {
@@ -58,14 +52,6 @@ HWY_INLINE void Shade(const TransportBlock& block, const TransportWeights& w, fl
         for (std::size_t e = 0; e < 3; ++e) sum[c] = hn::MulAdd(hn::Set(d, m[3 * c + e]), light[e], sum[c]);
     }
     for (std::size_t c = 0; c < 3; ++c) hn::StoreU(sum[c], d, rgb + c * kTransportLanes + i);
-  }
-}
-
-void ShadeTransport(const TransportBlock& block, const TransportWeights& weights, float* rgb) {
-  if (block.halves) {
-    Shade<hwy::float16_t>(block, weights, rgb);
-  } else {
-    Shade<float>(block, weights, rgb);
   }
 }
 

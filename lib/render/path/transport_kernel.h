@@ -7,14 +7,13 @@
 
 namespace goniochrome::render {
 
-// Points that lie side by side: their light is kept as [column][channel][point], in halves or floats.
+// Points that lie side by side: their light is kept as [column][channel][point], in halves.
 constexpr std::size_t kTransportLanes = 16;
 
 struct TransportBlock {
-  const void* direct = nullptr;
-  const void* bounced = nullptr;  // null: none
-  const void* classes = nullptr;  // [class][channel][point]
-  bool halves = true;
+  const std::uint16_t* direct = nullptr;
+  const std::uint16_t* bounced = nullptr;  // null: none
+  const std::uint16_t* classes = nullptr;  // [class][channel][point]
 };
 
 struct TransportWeights {

@@ -13,7 +13,14 @@ namespace goniochrome::render {
 namespace {
 
 constexpr std::size_t kBlocksAtOnce = 64;
-constexpr float kMostHalf = 65504;
+
+// The power of two, 1 or less, that brings these values within the range of halves.
+float half_scale(float largest) {
+  constexpr float kMostHalf = 65504;
+  float scale = 1;
+  while (largest * scale >= kMostHalf) scale /= 2;
+  return scale;
+}
 
 }  // namespace
 
@@ -28,20 +35,16 @@ struct TransportShader::State {
     std::uint32_t count = 0;
   };
   std::size_t columns = 0, classes = 0, mirror = 0;
-  bool halves = true;
   float unit = 1;
   std::vector<Block> blocks;
-  std::vector<std::uint16_t> half_direct, half_bounced, half_classes;
-  std::vector<float> direct, bounced, of_classes;
+  std::vector<float> scales;                         // of the columns, whose light is kept times these
+  std::vector<std::uint16_t> direct, bounced, of_classes;  // halves
   std::vector<std::uint32_t> places;
   std::vector<float> view_deg;
   std::vector<color::Rgb> emission;  // by part
 
   void gather(const LobeTransport& t);
   void lay_out(const LobeTransport& t);
-  const void* at(const std::vector<std::uint16_t>& half, const std::vector<float>& wide, std::size_t place) const {
-    return halves ? static_cast<const void*>(half.data() + place) : static_cast<const void*>(wide.data() + place);
-  }
 };
 
 void TransportShader::State::gather(const LobeTransport& t) {
@@ -69,13 +72,25 @@ void TransportShader::State::gather(const LobeTransport& t) {
 }
 
 void TransportShader::State::lay_out(const LobeTransport& t) {
-  const std::size_t of_block = t.floats() * kTransportLanes, of_class = 3 * classes * kTransportLanes;
+  scales.assign(columns, HUGE_VALF);
+  for (const std::vector<float>* light : {&t.direct, &t.bounced}) {
+    std::vector<float> largest(columns, 0);
+    for (std::size_t i = 0; i < light->size(); ++i) {
+      float& of_column = largest[i % t.floats() / 3];
+      of_column = std::max(of_column, std::abs((*light)[i]));
+    }
+    for (std::size_t k = 0; k < columns; ++k) scales[k] = std::min(scales[k], half_scale(largest[k]));
+  }
+  // Classes are factors of a mean, which no common scale changes.
+  float largest_class = 0;
+  for (const float value : t.classes) largest_class = std::max(largest_class, std::abs(value));
+  const std::vector<float> of_class(classes, half_scale(largest_class));
   std::size_t bounced_blocks = 0;
   for (const Block& block : blocks) bounced_blocks += block.is_bounced ? 1 : 0;
-  const auto spread = [&](const std::vector<float>& from, std::size_t stride, std::size_t size, std::size_t count,
-                          bool all, std::vector<std::uint16_t>& half, std::vector<float>& wide) {
-    if (halves) half.resize(count * size);
-    if (!halves) wide.resize(count * size);
+  const auto spread = [&](const std::vector<float>& from, const std::vector<float>& scale, bool all,
+                          std::vector<std::uint16_t>& half) {
+    const std::size_t stride = 3 * scale.size(), size = stride * kTransportLanes;
+    half.resize((all ? blocks.size() : bounced_blocks) * size);
     parallel_for(blocks.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
       std::vector<float> lanes(size);
       for (std::size_t b = begin; b < end; ++b) {
@@ -83,16 +98,14 @@ void TransportShader::State::lay_out(const LobeTransport& t) {
         if (!all && !block.is_bounced) continue;
         for (std::size_t lane = 0; lane < kTransportLanes; ++lane)
           for (std::size_t k = 0; k < stride; ++k)
-            lanes[k * kTransportLanes + lane] = from[block.points[lane] * stride + k];
-        const std::size_t to = (all ? block.direct : block.bounced) * size;
-        if (halves) to_halves(lanes.data(), size, &half[to]);
-        if (!halves) std::ranges::copy(lanes, wide.begin() + static_cast<std::ptrdiff_t>(to));
+            lanes[k * kTransportLanes + lane] = scale[k / 3] * from[block.points[lane] * stride + k];
+        to_halves(lanes.data(), size, half.data() + (all ? block.direct : block.bounced) * size);
       }
     });
   };
-  spread(t.direct, t.floats(), of_block, blocks.size(), true, half_direct, direct);
-  spread(t.bounced, t.floats(), of_block, bounced_blocks, false, half_bounced, bounced);
-  spread(t.classes, 3 * classes, of_class, bounced_blocks, false, half_classes, of_classes);
+  spread(t.direct, scales, true, direct);
+  spread(t.bounced, scales, false, bounced);
+  spread(t.classes, of_class, false, of_classes);
 }
 
 Result<TransportPaint> transport_paint(const LobeColumns& columns, const paint::LobeFit& paint, double gloss_deg) {
@@ -125,10 +138,6 @@ TransportShader::TransportShader(const LobeTransport& t, std::vector<float> view
   s.unit = static_cast<float>(t.unit);
   s.emission = t.worn.emission, s.emission.resize(t.worn.groups.of_part.size());
   s.places = t.places, s.view_deg = std::move(view_deg);
-  const auto fits = [](const std::vector<float>& light) {
-    return std::ranges::all_of(light, [](float value) { return std::abs(value) < kMostHalf; });
-  };
-  s.halves = fits(t.direct) && fits(t.bounced) && fits(t.classes);
   s.gather(t);
   s.lay_out(t);
 }
@@ -136,8 +145,7 @@ TransportShader::~TransportShader() = default;
 
 std::size_t TransportShader::bytes() const {
   const State& s = *state_;
-  return 2 * (s.half_direct.size() + s.half_bounced.size() + s.half_classes.size()) +
-         4 * (s.direct.size() + s.bounced.size() + s.of_classes.size());
+  return 2 * (s.direct.size() + s.bounced.size() + s.of_classes.size());
 }
 
 void TransportShader::shade(const std::vector<TransportPaint>& paints, const color::ReflectionOperator* reflection,
@@ -153,11 +161,12 @@ void TransportShader::shade(const std::vector<TransportPaint>& paints, const col
   for (std::size_t part = 0; part < paints.size(); ++part) {
     for (const auto& weights : paints[part].weights) {
       Set set;
-      for (const color::Rgb& weight : weights) {
-        const color::Matrix3 m = color::reflection_matrix(reflection != nullptr ? *reflection : plain, weight);
+      for (std::size_t k = 0; k < weights.size(); ++k) {
+        const color::Matrix3 m = color::reflection_matrix(reflection != nullptr ? *reflection : plain, weights[k]);
         for (const auto& row : m)
-          for (const double value : row) set.matrices.push_back(gain * s.unit * static_cast<float>(value));
-        set.dark.push_back(weight == color::Rgb{} ? 1 : 0);
+          for (const double value : row)
+            set.matrices.push_back(gain * s.unit / s.scales[k] * static_cast<float>(value));
+        set.dark.push_back(weights[k] == color::Rgb{} ? 1 : 0);
       }
       sets[part].push_back(std::move(set));
     }
@@ -172,11 +181,10 @@ void TransportShader::shade(const std::vector<TransportPaint>& paints, const col
       const State::Block& block = s.blocks[b];
       const auto part = static_cast<std::size_t>(block.part);
       TransportBlock light;
-      light.halves = s.halves;
-      light.direct = s.at(s.half_direct, s.direct, block.direct * of_block);
+      light.direct = s.direct.data() + block.direct * of_block;
       if (block.is_bounced) {
-        light.bounced = s.at(s.half_bounced, s.bounced, block.bounced * of_block);
-        light.classes = s.at(s.half_classes, s.of_classes, block.bounced * of_class);
+        light.bounced = s.bounced.data() + block.bounced * of_block;
+        light.classes = s.of_classes.data() + block.bounced * of_class;
       }
       const auto shaded = [&](std::size_t set, float* to) {
         shade_transport(
@@ -191,20 +199,14 @@ void TransportShader::shade(const std::vector<TransportPaint>& paints, const col
         std::fill_n(rgb, 3 * kTransportLanes, 0.0F);
         for (std::size_t set = 0; set < views.size(); ++set) {
           float share[kTransportLanes];
-          bool any = false;
           for (std::size_t lane = 0; lane < kTransportLanes; ++lane) {
             const double view = std::clamp<double>(s.view_deg[block.points[lane]], views.front(), views.back());
-            const auto beside = [&](std::size_t next) {
-              const double width = std::abs(views[next] - views[set]);
-              return width > 0 ? std::max(0.0, 1 - std::abs(view - views[set]) / width) : 0;
-            };
-            double own = view == views[set] ? 1 : 0;
-            if (set > 0 && view < views[set]) own = beside(set - 1);
-            if (set + 1 < views.size() && view > views[set]) own = beside(set + 1);
-            share[lane] = static_cast<float>(own);
-            any = any || own > 0;
+            const std::size_t other = view < views[set] ? set - 1 : std::min(set + 1, views.size() - 1);
+            const double width = std::abs(views[other] - views[set]);
+            share[lane] =
+                view == views[set] ? 1 : static_cast<float>(std::max(0.0, 1 - std::abs(view - views[set]) / width));
           }
-          if (!any) continue;
+          if (std::ranges::none_of(share, [](float own) { return own > 0; })) continue;
           shaded(set, mixed);
           for (std::size_t k = 0; k < 3 * kTransportLanes; ++k) rgb[k] += share[k % kTransportLanes] * mixed[k];
         }
@@ -212,8 +214,8 @@ void TransportShader::shade(const std::vector<TransportPaint>& paints, const col
       const std::vector<float>& by_view = paints[part].mirror_by_view;
       if (!by_view.empty() && sets[part].front().dark[s.mirror] == 0) {
         const std::size_t skipped = 3 * s.mirror * kTransportLanes;
-        light.direct = s.at(s.half_direct, s.direct, block.direct * of_block + skipped);
-        if (block.is_bounced) light.bounced = s.at(s.half_bounced, s.bounced, block.bounced * of_block + skipped);
+        light.direct += skipped;
+        if (block.is_bounced) light.bounced += skipped;
         const Set& set = sets[part].front();  // the mirror's weight is one for all views
         shade_transport(light, {1, s.classes, &set.matrices[9 * s.mirror], &set.dark[s.mirror], factors.data()}, mixed);
         float more[kTransportLanes];
