@@ -49,7 +49,7 @@ class LobePoint::Classes {
 
   Reflected reflected(const Transport::Vertex& vertex, const Float3& to_light) const {
     const PaintedPoint::Parts parts = vertex.painted.parts(to_light);
-    return {parts.diffuse + parts.lobes - parts.gloss, parts.gloss, vertex.painted.at(to_light).pdf};
+    return {parts.diffuse + parts.lobes - parts.gloss, parts.gloss, parts.pdf};
   }
   void add_reflected(const Transport::Vertex&, const Reflected& f, double scale, const PathLight& light) {
     const auto s = static_cast<float>(scale);

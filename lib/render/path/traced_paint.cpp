@@ -207,9 +207,21 @@ float PaintedPoint::narrow_share(double light_sr) const {
   return sum / total_;
 }
 
-// Calls visit(lobe, sum over axes of share cos^E).
+// Calls visit(lobe, factor of its K_DD, factor of its K_G) for lobes whose sum over axes of share cos^E is not 0.
 template <class Visit>
-void PaintedPoint::visit_lobes(const Float3& to_light, const Visit& visit) const {
+PaintedPoint::Factors PaintedPoint::factors(const Float3& to_light, const Visit& visit) const {
+  Factors factors;
+  const float cos_i = rays::dot(normal_, to_light);
+  if (!(cos_i > 0)) return factors;
+  factors.base = let_in(cos_i) * cos_i;
+  factors.pdf = diffuse_chance_ * cos_i / kFloatPi;
+  if (coat_ != nullptr) {
+    const brdf::CoatFacets::Sent sent = coat_->sent(local(to_light), local(viewer_));
+    factors.coat = static_cast<float>(sent.f_cos);
+    factors.pdf += coat_chance_ * static_cast<float>(sent.pdf);
+  }
+  if (count_ == 0) return factors;
+  const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
   float powers[kMostTracedLobes] = {};
   const auto add = [&](const Float3& axis, float share) {
     add_powers(
@@ -218,8 +230,12 @@ void PaintedPoint::visit_lobes(const Float3& to_light, const Visit& visit) const
   };
   if (axes_.empty()) add(mirrored_, 1);
   for (const Axis& axis : axes_) add(axis.direction, axis.share);
-  for (int j = 0; j < count_; ++j)
-    if (powers[j] > 0) visit(lobes_[j], powers[j]);
+  for (int j = 0; j < count_; ++j) {
+    if (!(powers[j] > 0)) continue;
+    visit(lobes_[j], powers[j] * factors.base, powers[j] * fresnel);
+    factors.pdf += lobes_[j].chance * lobes_[j].normalization * powers[j] / axes_total_;
+  }
+  return factors;
 }
 
 // Calls visit(lobe, cos^E).
@@ -236,79 +252,34 @@ void PaintedPoint::visit_texels(const Float3& to_light, const Visit& visit) cons
 
 PaintedPoint::Parts PaintedPoint::parts(const Float3& to_light) const {
   Parts parts;
-  const float cos_i = std::max(rays::dot(normal_, to_light), 0.0F);
-  if (!faces(to_light)) return parts;
-  const float base = let_in(cos_i) * cos_i;
-  parts.diffuse = base * diffuse_ + cos_i * texel_diffuse_;
-  if (paint_ != nullptr && cos_i > 0) parts.lobes = mapped(to_light);
+  if (!faces(to_light) || !(total_ > 0)) return parts;
+  const Factors factors = this->factors(to_light, [&](const Lobe& lobe, float base, float coat) {
+    parts.lobes = parts.lobes + base * lobe.directional_diffuse;
+    parts.gloss = parts.gloss + coat * lobe.gloss;
+  });
+  const float cos_i = std::max(rays::dot(normal_, to_light), 0.0F), off_coat = bare_ * factors.coat;
+  parts.pdf = factors.pdf;
+  parts.diffuse = factors.base * diffuse_ + cos_i * texel_diffuse_;
+  parts.gloss = parts.gloss + Float3{off_coat, off_coat, off_coat};
+  parts.lobes = parts.lobes + parts.gloss;
+  if (paint_ != nullptr && cos_i > 0) parts.lobes = parts.lobes + mapped(to_light);
   visit_texels(to_light, [&](const TexelLobe& lobe, float power) {
     parts.lobes = parts.lobes + (std::exp(lobe.log_peak) * power * lobe.cosine(to_light)) * lobe.color;
+    parts.pdf += lobe.chance * lobe.normalization * power;
   });
-  if (!(cos_i > 0)) return parts;
-  if (coat_ != nullptr) {
-    const float sent = bare_ * static_cast<float>(coat_->sent(local(to_light), local(viewer_)).f_cos);
-    parts.gloss = {sent, sent, sent};
-    parts.lobes = parts.lobes + parts.gloss;
-  }
-  if (count_ == 0) return parts;
-  const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
-  visit_lobes(to_light, [&](const Lobe& lobe, float power) {
-    const Float3 gloss = (power * fresnel) * lobe.gloss;
-    parts.lobes = parts.lobes + (power * base) * lobe.directional_diffuse + gloss;
-    parts.gloss = parts.gloss + gloss;
-  });
+  parts.pdf /= total_;
   return parts;
-}
-
-Reflection PaintedPoint::at(const Float3& to_light) const {
-  const float cos_i = std::max(rays::dot(normal_, to_light), 0.0F);
-  if (!faces(to_light) || !(total_ > 0)) return {to_light, {}, 0};
-  const float base = let_in(cos_i) * cos_i;
-  Float3 f_cos = base * diffuse_ + cos_i * texel_diffuse_;
-  float pdf = diffuse_chance_ * cos_i / kFloatPi;
-  if (paint_ != nullptr && cos_i > 0) f_cos = f_cos + mapped(to_light);
-  visit_texels(to_light, [&](const TexelLobe& lobe, float power) {
-    f_cos = f_cos + (std::exp(lobe.log_peak) * power * lobe.cosine(to_light)) * lobe.color;
-    pdf += lobe.chance * lobe.normalization * power;
-  });
-  if (!(cos_i > 0)) return {to_light, f_cos, pdf / total_};
-  if (coat_ != nullptr) {
-    const brdf::CoatFacets::Sent sent = coat_->sent(local(to_light), local(viewer_));
-    const float gray = bare_ * static_cast<float>(sent.f_cos);
-    f_cos = f_cos + Float3{gray, gray, gray};
-    pdf += coat_chance_ * static_cast<float>(sent.pdf);
-  }
-  if (count_ > 0) {
-    const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
-    visit_lobes(to_light, [&](const Lobe& lobe, float power) {
-      f_cos = f_cos + (power * base) * lobe.directional_diffuse + (power * fresnel) * lobe.gloss;
-      pdf += lobe.chance * lobe.normalization * power / axes_total_;
-    });
-  }
-  return {to_light, f_cos, pdf / total_};
 }
 
 PaintedPoint::Shares PaintedPoint::shares(const Float3& to_light) const {
   Shares shares;
-  const float cos_i = rays::dot(normal_, to_light);
-  if (!(cos_i > 0) || !(total_ > 0)) return shares;
-  const float base = passages(cos_i) * cos_i;
-  shares.diffuse = base;
-  shares.pdf = diffuse_chance_ * cos_i / kFloatPi;
-  if (coat_ != nullptr) {
-    const brdf::CoatFacets::Sent sent = coat_->sent(local(to_light), local(viewer_));
-    shares.coat = static_cast<float>(sent.f_cos);
-    shares.pdf += coat_chance_ * static_cast<float>(sent.pdf);
-  }
-  if (count_ > 0) {
-    const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
-    visit_lobes(to_light, [&](const Lobe& lobe, float power) {
-      shares.directional_diffuse[lobe.number] = power * base;
-      shares.gloss[lobe.number] = power * fresnel;
-      shares.pdf += lobe.chance * lobe.normalization * power / axes_total_;
-    });
-  }
-  shares.pdf /= total_;
+  if (!(total_ > 0)) return shares;
+  const Factors factors = this->factors(to_light, [&](const Lobe& lobe, float base, float coat) {
+    shares.directional_diffuse[lobe.number] = let_out_ * base;
+    shares.gloss[lobe.number] = coat;
+  });
+  shares.diffuse = let_out_ * factors.base, shares.coat = factors.coat;
+  shares.pdf = factors.pdf / total_;
   return shares;
 }
 

@@ -104,14 +104,17 @@ class PaintedPoint {
   // A matt point of this K_D, in 1/sr.
   PaintedPoint(const rays::Float3& diffuse, const rays::Float3& normal, const rays::Float3& to_viewer);
 
-  // f cos_i and the density.
-  Reflection at(const rays::Float3& to_light) const;
   // The parts of f cos_i by themselves: that of the constant K_D, that of the lobes, among which a color map is, and of
-  // the latter that of gloss.
+  // the latter that of gloss; and the density.
   struct Parts {
     rays::Float3 diffuse, lobes, gloss;
+    float pdf = 0;
   };
   Parts parts(const rays::Float3& to_light) const;
+  Reflection at(const rays::Float3& to_light) const {
+    const Parts all = parts(to_light);
+    return {to_light, all.diffuse + all.lobes, all.pdf};
+  }
 
   // The factor of each weight of the paint in f cos_i: K_D, and of each lobe of the paint, by its number among those
   // with weight, K_DD and K_G; f cos_i of a rough coat; and the density that drawn() gives the direction. So that other
@@ -208,8 +211,12 @@ class PaintedPoint {
                       bool matt = false);
   rays::Float3 mapped(const rays::Float3& to_light) const;
   void set_axes(const std::vector<brdf::Tilt>& tilts);
+  // Above the horizon: the factor of what lies under the coat, f cos_i of a rough coat, and the density times total_.
+  struct Factors {
+    float base = 0, coat = 0, pdf = 0;
+  };
   template <class Visit>
-  void visit_lobes(const rays::Float3& to_light, const Visit& visit) const;
+  Factors factors(const rays::Float3& to_light, const Visit& visit) const;
   template <class Visit>
   void visit_texels(const rays::Float3& to_light, const Visit& visit) const;
 
