@@ -137,13 +137,9 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   if (failure_) return *failure_;
   if (add) return {};
   const int samples = sample == 0 ? 1 : static_cast<int>(std::lround(1 / gain));
-  VisibleSurface surface;
-  {
-    const std::shared_ptr<const Gbuffer> seen = sight.gbuffer(0);
-    surface.gbuffer.width = seen->width, surface.gbuffer.height = seen->height, surface.gbuffer.rays = seen->rays;
-  }
+  const std::shared_ptr<const Gbuffer> seen = sight.gbuffer(0);
+  const VisibleSurface surface = visible_surface(transport_->eye(), seen->rays, seen->width, seen->height);
   const Gbuffer& g = surface.gbuffer;
-  if (samples == 1) surface = visible_surface(transport_->eye(), Rays(g.rays), g.width, g.height);
   const Effort effort = sight.effort();
   const Stopwatch clock;
   transport_->draw_toward(transport_->find_bright_places(effort.bounces, effort.seed));
@@ -155,15 +151,8 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   request.seed = effort.seed;
   request.progress = effort.progress;
   request.white_luminance = white_luminance_;
-  if (!(request.white_luminance > 0)) {
-    if (samples > 1) {
-      request.white_luminance =
-          visible_white(*transport_, visible_surface(transport_->eye(), Rays(g.rays), g.width, g.height),
-                        effort.bounces, effort.seed);
-    } else {
-      request.white_luminance = visible_white(*transport_, surface, effort.bounces, effort.seed);
-    }
-  }
+  if (!(request.white_luminance > 0))
+    request.white_luminance = visible_white(*transport_, surface, effort.bounces, effort.seed);
   if (!(request.white_luminance > 0)) request.white_luminance = 1;
   request.pixel_samples = samples;
   const PathPicture picture = path_picture(*transport_, surface, nullptr, request);

@@ -10,8 +10,31 @@ namespace {
 
 constexpr std::size_t kSurfaceRowsAtOnce = 8;
 
-rays::Float3 pixel_direction(const Rays& rays, int x, int y) {
-  return rays::float3(rays.direction(x + 0.5, y + 0.5));
+// Calls visit(pixel, hit, direction) for each pixel of which a ray, this far from its center, meets something.
+template <class Visit>
+void visit_hits(const rays::RayScene& scene, const Rays& rays, int width, int height,
+                const std::array<double, 2>& shift, const Visit& visit) {
+  const rays::Float3 eye = scene.local(rays.eye);
+  parallel_for(static_cast<std::size_t>(height), kSurfaceRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      for (int x = 0; x < width; x += 8) {
+        rays::Fan fan;
+        fan.origin = eye;
+        for (int i = 0; i < 8; ++i) {
+          const rays::Float3 d = rays::float3(rays.direction(std::min(x + i, width - 1) + 0.5 + shift[0],
+                                                             static_cast<double>(y) + 0.5 + shift[1]));
+          fan.x[i] = d.x, fan.y[i] = d.y, fan.z[i] = d.z;
+          if (x + i < width) fan.wanted |= 1U << i;
+        }
+        rays::Hit hits[8];
+        scene.closest(fan, hits);
+        for (int i = 0; i < 8; ++i)
+          if (hits[i].any())
+            visit(y * static_cast<std::size_t>(width) + static_cast<std::size_t>(x + i), hits[i],
+                  rays::Float3{fan.x[i], fan.y[i], fan.z[i]});
+      }
+    }
+  });
 }
 
 }  // namespace
@@ -24,27 +47,12 @@ VisibleSurface visible_surface(const rays::RayScene& scene, const Rays& rays, in
   g.data.assign(4 * pixels, 0.0F);
   surface.hits.resize(pixels);
   const rays::Float3 eye = scene.local(rays.eye);
-  parallel_for(static_cast<std::size_t>(height), kSurfaceRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < width; x += 8) {
-        rays::Fan fan;
-        fan.origin = eye;
-        for (int i = 0; i < 8; ++i) {
-          const rays::Float3 d = pixel_direction(rays, std::min(x + i, width - 1), y);
-          fan.x[i] = d.x, fan.y[i] = d.y, fan.z[i] = d.z;
-          if (x + i < width) fan.wanted |= 1U << i;
-        }
-        rays::Hit* hits = &surface.hits[static_cast<std::size_t>(y) * width + x];
-        scene.closest(fan, hits);
-        for (int i = 0; i < 8 && x + i < width; ++i) {
-          if (!hits[i].any()) continue;
-          const rays::Spot spot = scene.spot(hits[i], eye, {fan.x[i], fan.y[i], fan.z[i]});
-          float* data = &g.data[(static_cast<std::size_t>(y) * width + x + i) * 4];
-          data[0] = spot.shading.x, data[1] = spot.shading.y, data[2] = spot.shading.z;
-          data[3] = static_cast<float>(spot.inside ? -(spot.part + 1) : spot.part + 1);
-        }
-      }
-    }
+  visit_hits(scene, rays, width, height, {}, [&](std::size_t at, const rays::Hit& hit, const rays::Float3& direction) {
+    const rays::Spot spot = scene.spot(hit, eye, direction);
+    const int part = spot.inside ? -(spot.part + 1) : spot.part + 1;
+    const float data[4] = {spot.shading.x, spot.shading.y, spot.shading.z, static_cast<float>(part)};
+    std::ranges::copy(data, &g.data[4 * at]);
+    surface.hits[at] = hit;
   });
   return surface;
 }
@@ -67,37 +75,21 @@ Coverage coverage(const rays::RayScene& scene, const Rays& rays, int width, int 
                   const std::vector<std::array<double, 2>>& shifts) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   Coverage result{std::vector<std::uint16_t>(pixels, 0), std::vector<std::uint16_t>(pixels, 0)};
-  const rays::Float3 eye = scene.local(rays.eye);
-  parallel_for(static_cast<std::size_t>(height), kSurfaceRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t job = begin * shifts.size(); job < end * shifts.size(); ++job) {
-      const std::size_t y = job / shifts.size(), sample = job % shifts.size();
-      for (int x = 0; x < width; x += 8) {
-        rays::Fan fan;
-        fan.origin = eye;
-        for (int i = 0; i < 8; ++i) {
-          const rays::Float3 d = rays::float3(rays.direction(std::min(x + i, width - 1) + 0.5 + shifts[sample][0],
-                                                             static_cast<double>(y) + 0.5 + shifts[sample][1]));
-          fan.x[i] = d.x, fan.y[i] = d.y, fan.z[i] = d.z;
-          if (x + i < width) fan.wanted |= 1U << i;
-        }
-        rays::Hit hits[8];
-        scene.closest(fan, hits);
-        for (int i = 0; i < 8 && x + i < width; ++i) {
-          const std::size_t at = y * static_cast<std::size_t>(width) + static_cast<std::size_t>(x + i);
-          const auto bit = static_cast<std::uint16_t>(1U << sample);
-          if (hits[i].any()) result.any[at] |= bit;
-          if (hits[i].triangle == rays::kFloor) result.floor[at] |= bit;
-        }
-      }
-    }
-  });
+  for (std::size_t sample = 0; sample < shifts.size(); ++sample) {
+    const auto bit = static_cast<std::uint16_t>(1U << sample);
+    visit_hits(scene, rays, width, height, shifts[sample],
+               [&](std::size_t at, const rays::Hit& hit, const rays::Float3&) {
+                 result.any[at] |= bit;
+                 if (hit.triangle == rays::kFloor) result.floor[at] |= bit;
+               });
+  }
   return result;
 }
 
 rays::Spot spot_at(const rays::RayScene& scene, const VisibleSurface& surface, int x, int y) {
   const Gbuffer& g = surface.gbuffer;
   return scene.spot(surface.hits[static_cast<std::size_t>(y) * g.width + x], scene.local(g.rays.eye),
-                    pixel_direction(g.rays, x, y));
+                    rays::float3(g.rays.direction(x + 0.5, y + 0.5)));
 }
 
 }  // namespace goniochrome::render
