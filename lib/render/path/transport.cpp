@@ -84,7 +84,6 @@ Result<Transport> Transport::in_channels(const PathScene& path_scene) {
   }
   GONIO_ASSIGN(transport.emitters_, Emitters::create(*transport.rays_, path_scene.emission));
   transport.lights_ = scene.lights;
-  for (const Light& light : scene.lights) transport.seen_.emplace_back(light);
   if (scene.reflection.k != color::component_wise().k) transport.reflection_ = &scene.reflection;
   return transport;
 }
@@ -209,13 +208,11 @@ PaintedPoint Transport::painted(const Spot& spot, const Float3& to_viewer) const
 
 Transport::SeenLamp::SeenLamp(const Light& of) : light(of) {
   const double half = std::sin(0.5 * light.radius_rad);
-  const Vec3 other = std::abs(light.direction.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  across = normalized(cross(other, light.direction)), along = cross(light.direction, across);
   versine = 2 * half * half;
 }
 
 Transport::SeenLamp Transport::seen_lamp(std::size_t lamp, const Float3& from) const {
-  if (!lights_[lamp].place) return seen_[lamp];
+  if (!lights_[lamp].place) return SeenLamp(lights_[lamp]);
   const Vec3 position = rays_->world(from);
   const double distance = length(lights_[lamp].place->position - position);
   SeenLamp seen(light_at(lights_[lamp], position));
@@ -238,16 +235,18 @@ bool Transport::is_under_mesh(const Spot& spot) const {
   return at.x >= box.low.x && at.x <= box.high.x && at.z >= box.low.z && at.z <= box.high.z && at.y < box.high.y;
 }
 
-// disc_direction() and the solid angle by pi sin^2 of the radius, which is 1/cos^2 of half of it.
+// The solid angle by pi sin^2 of the radius, which is 1/cos^2 of half of it.
 Transport::LampSample Transport::drawn_from(const SeenLamp& lamp, double u, double v) {
   const Light& light = lamp.light;
   const color::Rgb whole = kPi * light.white;
   if (!(light.radius_rad > 0)) return {rays::float3(light.direction), lamp.reach, whole, 0, 0};
-  const double versine = lamp.versine * u, ring = std::sqrt(versine * (2 - versine));
-  const float phi = 2 * rays::kFloatPi * static_cast<float>(v);
-  const Vec3 direction = (1 - versine) * light.direction + (ring * static_cast<double>(std::cos(phi))) * lamp.across +
-                         (ring * static_cast<double>(std::sin(phi))) * lamp.along;
-  return {rays::float3(direction), lamp.reach, (2 / (2 - lamp.versine)) * whole, 0, lamp.extent_sr()};
+  const Float3 middle = rays::float3(light.direction);
+  const rays::Frame frame = rays::frame_about(middle);
+  const auto versine = static_cast<float>(lamp.versine * u), phi = 2 * rays::kFloatPi * static_cast<float>(v);
+  const float ring = std::sqrt(versine * (2 - versine));
+  const Float3 direction =
+      (1 - versine) * middle + (ring * std::cos(phi)) * frame.x + (ring * std::sin(phi)) * frame.y;
+  return {direction, lamp.reach, (2 / (2 - lamp.versine)) * whole, 0, lamp.extent_sr()};
 }
 
 Transport::LampSample Transport::drawn_lamp(const Float3& from, double choice, double v) const {

@@ -197,9 +197,7 @@ class Transport {
     Light light;
     float reach = std::numeric_limits<float>::infinity();
     bool is_placed = false;
-    // Values of a disc: two unit vectors across its direction, and 1 - cos of its radius.
-    Vec3 across, along;
-    double versine = 0;
+    double versine = 0;  // 1 - cos of its radius
 
     explicit SeenLamp(const Light& light);
     double extent_sr() const { return 2 * kPi * versine; }
@@ -243,7 +241,6 @@ class Transport {
   Emitters emitters_;
   std::shared_ptr<const BrightPlaces> places_;  // see draw_toward()
   std::vector<Light> lights_;
-  std::vector<SeenLamp> seen_;  // those that have no place, as every point sees them; of the others only the number
   const color::ReflectionOperator* reflection_ = nullptr;  // null: channel by channel
   // The paths of a scene with spectra: all light of its points. Paints, emitters and lights are then gray, and what
   // directions and lamps are drawn by.
