@@ -193,11 +193,10 @@ class Fits {
     const float weight = (reach - std::abs(right)) * (reach - std::abs(down)) * (1 - far) * (1 - far);
     if (!(weight > 0)) return 0;
     const float scale = 1.0F / (static_cast<float>(window.reach) + 0.5F);
-    const auto tangents = tangents_of(normal.x, normal.y, normal.z);
-    std::array<float, kSurfaceFeatures> feature = {1, scale * across, scale * below};
-    for (std::size_t t = 0; t < 2; ++t)
-      feature[3 + t] =
-          (turned.x * tangents[t][0] + turned.y * tangents[t][1] + turned.z * tangents[t][2]) / window.normal;
+    const rays::Frame tangents = rays::frame_about(normal);
+    const std::array<float, kSurfaceFeatures> feature = {1, scale * across, scale * below,
+                                                         rays::dot(turned, tangents.x) / window.normal,
+                                                         rays::dot(turned, tangents.y) / window.normal};
     const float* fitted = coefficients(x, y);
     for (std::size_t f = 0; f < kSurfaceFeatures; ++f)
       for (std::size_t c = 0; c < kHalvesChannels; ++c) sum[c] += weight * feature[f] * *fitted++;

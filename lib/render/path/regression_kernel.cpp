@@ -1,7 +1,5 @@
 #include "render/path/regression_kernel.h"
 
-#include <cmath>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/path/regression_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -25,7 +23,7 @@ struct Frame {
   V normal[3], first[3], second[3], position[3], shift[2], part;
 };
 
-// Tangents of a normal without a branch, [Duff2017].
+// The tangents of rays::frame_about(), [Duff2017].
 HWY_INLINE void SetTangents(Frame& f) {
   const D d;
   const V one = hn::Set(d, 1.0F), sign = hn::CopySign(one, f.normal[2]);
@@ -150,11 +148,6 @@ SurfaceImage::SurfaceImage(int w, int h)
 
 void fit_row(const SurfaceImage& image, const RegressionWindow& window, int y, float* const* coefficients) {
   HWY_DYNAMIC_DISPATCH(FitRow)(image, window, y, coefficients);
-}
-
-std::array<std::array<float, 3>, 2> tangents_of(float x, float y, float z) {
-  const float sign = std::copysign(1.0F, z), a = -1 / (sign + z), b = x * y * a;
-  return {{{1 + sign * x * x * a, sign * b, -sign * x}, {b, sign + y * y * a, -y}}};
 }
 
 }  // namespace goniochrome::render

@@ -49,7 +49,4 @@ constexpr float kNoSlopes = 1e6F;
 // value for each element of the row.
 void fit_row(const SurfaceImage& image, const RegressionWindow& window, int y, float* const* coefficients);
 
-// Two tangents of a unit normal, continuous but for the poles of z.
-std::array<std::array<float, 3>, 2> tangents_of(float x, float y, float z);
-
 }  // namespace goniochrome::render
