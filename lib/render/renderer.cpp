@@ -321,13 +321,10 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
   CorrectionNoise all;
   if (!effects.rays.any() || !transport) return all;
   const int together = corrected_together(picture.width, picture.height), groups = (count + together - 1) / together;
-  CorrectionRequest request;
-  request.effects = effects.rays;
-  request.bounces = effort_asked.bounces;
-  request.tolerance_de00 = tolerance_de00 * std::sqrt(groups);
+  PathRequest request = correction_request(effects.rays, effort_asked.bounces, tolerance_de00 * std::sqrt(groups));
   for (const double de00 : maps_found ? maps_found->errors_de00 : std::vector<double>())
     request.beside_de00.push_back(de00 * std::sqrt(groups));
-  request.white_luminance = white_luminance;
+  request.white_luminance = white_luminance > 0 ? white_luminance : 1;
   request.most_samples = std::max(2 * kBatch, effects.most_ray_samples / groups);
   request.progress = effort_asked.progress;
   const Backdrop backdrop{effects.background, scene.background_color, ray_setup->environment};
@@ -343,7 +340,7 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
       add_surroundings(*transport, gbuffers_of(samples), backdrop, effects.rays, 1.0F / static_cast<float>(count),
                        picture);
     const float gain = static_cast<float>(end - begin) / static_cast<float>(count);
-    const CorrectionNoise one = add_correction(*transport, samples, request, before, gain, picture);
+    const PathPicture one = add_correction(*transport, samples, request, before, gain, picture);
     if (group == 0) all.dark = true, all.found = one.found;
     all.add(one, groups);
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/clock.h"
 #include "base/parallel.h"
 #include "render/internal/seen.h"
 #include "render/path/ray_points.h"
@@ -13,6 +12,8 @@ namespace goniochrome::render {
 namespace {
 
 constexpr std::size_t kCorrectedRowsAtOnce = 8;
+// The part of the tolerance that the effects may make up which the first pass shows to change so little.
+constexpr double kStopShare = 0.35;
 
 }  // namespace
 
@@ -37,13 +38,6 @@ VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer) {
   });
   return surface;
 }
-
-namespace {
-
-// The part of the tolerance that the effects may make up which the first pass shows to change so little.
-constexpr double kStopShare = 0.35;
-
-}  // namespace
 
 color::Rgb Backdrop::at(const rays::Float3& direction) const {
   if (background == Background::kColor) return color;
@@ -111,11 +105,11 @@ bool is_smooth(const std::vector<rays::Float3>& light, const std::vector<bool>& 
 
 }  // namespace
 
-void CorrectionNoise::add(const CorrectionNoise& one, int groups) {
+void CorrectionNoise::add(const PathPicture& one, int groups) {
   const double of_mean = 1 / (std::sqrt(groups) * groups);
-  de00_p95 += of_mean * one.de00_p95, error_de00_p95 += of_mean * one.error_de00_p95;
+  de00_p95 += of_mean * one.noise_p95_de00, error_de00_p95 += of_mean * one.error_p95_de00;
   free_share += one.free_share / groups;
-  samples += one.samples, ms += one.ms;
+  samples += one.samples_mean, ms += 1000 * one.time_s;
   reached = reached && one.reached, dark = dark && one.dark;
 }
 
@@ -156,37 +150,26 @@ void add_surroundings(const Transport& transport, const std::vector<const Gbuffe
         [&](std::size_t at, const color::Rgb& seen) { add_light(seen, gain, at, picture); });
 }
 
-CorrectionNoise add_correction(const Transport& transport, const std::vector<VisibleSurface>& samples,
-                               const CorrectionRequest& request, const image::Image& before, float gain,
-                               image::Image& picture) {
-  CorrectionNoise noise;
-  if (!request.effects.shadow) return noise;
-  const Stopwatch clock;
+PathRequest correction_request(const RayEffects& effects, int bounces, double tolerance_de00) {
   PathRequest paths;
-  paths.options.bounces = request.effects.self || request.effects.bounce ? request.bounces : 0;
-  paths.options.into_lobes = request.effects.self;
-  paths.options.into_diffuse = request.effects.bounce;
+  paths.options.bounces = effects.self || effects.bounce ? bounces : 0;
+  paths.options.into_lobes = effects.self;
+  paths.options.into_diffuse = effects.bounce;
   paths.options.correction = true;
   paths.reconstruct = true;
-  paths.beside_de00 = request.beside_de00;
-  paths.tolerance_de00 = request.tolerance_de00, paths.stop_de00 = kStopShare * request.tolerance_de00;
-  paths.white_luminance = request.white_luminance > 0 ? request.white_luminance : 1;
-  paths.seed = request.seed;
-  paths.most_samples = request.most_samples;
-  paths.time_limit_s = request.time_limit_s;
-  paths.progress = request.progress;
-  const PathPicture drawn = path_picture(transport, samples, &before, paths);
+  paths.tolerance_de00 = tolerance_de00, paths.stop_de00 = kStopShare * tolerance_de00;
+  return paths;
+}
+
+PathPicture add_correction(const Transport& transport, const std::vector<VisibleSurface>& samples,
+                           const PathRequest& request, const image::Image& before, float gain, image::Image& picture) {
+  PathPicture drawn = path_picture(transport, samples, &before, request);
   for (const PathPoint& point : drawn.points) {
     float* pixel =
         &picture.data[samples.front().gbuffer.index(point.x, point.y) * static_cast<std::size_t>(picture.channels)];
     for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>(point.radiance[c]);
   }
-  noise.de00_p95 = drawn.noise_p95_de00, noise.error_de00_p95 = drawn.error_p95_de00;
-  noise.samples = drawn.samples_mean;
-  noise.free_share = drawn.free_share;
-  noise.reached = drawn.reached, noise.dark = drawn.dark, noise.found = drawn.found;
-  noise.ms = 1000 * clock.elapsed_s();
-  return noise;
+  return drawn;
 }
 
 }  // namespace goniochrome::render

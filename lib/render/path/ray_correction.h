@@ -3,8 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <functional>
 
 #include "image/image.h"
 #include "render/effects.h"
@@ -19,18 +17,8 @@ VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer);
 // Samples of a pixel are corrected together, as many as there is memory for: 4 to 16.
 int corrected_together(int width, int height);
 
-struct CorrectionRequest {
-  RayEffects effects;
-  int bounces = 8;
-  double tolerance_de00 = 0.5;  // of the picture's errors, 95th percentile over the visible points
-  // The errors that the picture has beside those of rays, at any points of the mesh.
-  std::vector<double> beside_de00 = {};
-  double white_luminance = 1;
-  std::uint64_t seed = 1;
-  int most_samples = 1 << 16;  // of rays, at each point
-  double time_limit_s = 0;     // 0: none
-  std::function<void(double noise_de00, double seconds)> progress = {};
-};
+// The paths that find what these effects change, reconstructed. Effects that change little stop after the first round.
+PathRequest correction_request(const RayEffects& effects, int bounces, double tolerance_de00);
 
 // How the effects were drawn; of several samples the means.
 struct CorrectionNoise {
@@ -45,7 +33,7 @@ struct CorrectionNoise {
   std::array<FoundShare, kShareCount> found;
 
   // Adds one of so many groups of a pixel's samples; begin with `dark`.
-  void add(const CorrectionNoise& one, int groups);
+  void add(const PathPicture& one, int groups);
 };
 
 // The background around the mesh of a picture with a floor that shows the environment.
@@ -72,8 +60,7 @@ void add_surroundings(const Transport& transport, const std::vector<const Gbuffe
 // Adds `gain` times the correction, the mean over these samples of each pixel, to the first three channels of the
 // picture, which holds radiance times coverage.
 // `before` is the picture without corrections; it tells how visible noise is. Bit-identical for any number of threads.
-CorrectionNoise add_correction(const Transport& transport, const std::vector<VisibleSurface>& samples,
-                               const CorrectionRequest& request, const image::Image& before, float gain,
-                               image::Image& picture);
+PathPicture add_correction(const Transport& transport, const std::vector<VisibleSurface>& samples,
+                           const PathRequest& request, const image::Image& before, float gain, image::Image& picture);
 
 }  // namespace goniochrome::render
