@@ -13,28 +13,6 @@ constexpr unsigned kOfShadow = 0b0111;
 
 }  // namespace
 
-void FirstShares::keep(std::size_t point, const LightShares (&of_sequences)[2]) {
-  for (std::size_t k = 0; k < of_[point].size(); ++k) {
-    const color::Rgb& share = of_sequences[k / kShareCount].*kShares[k % kShareCount];
-    for (int c = 0; c < 3; ++c) of_[point][k][static_cast<std::size_t>(c)] = static_cast<float>(share[c]);
-  }
-}
-
-LightShares FirstShares::of(std::size_t point, std::size_t sequence) const {
-  LightShares shares;
-  for (std::size_t k = 0; k < kShareCount; ++k) {
-    const std::array<float, 3>& share = of_[point][sequence * kShareCount + k];
-    shares.*kShares[k] = {share[0], share[1], share[2]};
-  }
-  return shares;
-}
-
-LightShares FirstShares::mean(std::size_t point) const {
-  LightShares sum = of(point, 0);
-  sum += of(point, 1);
-  return 0.5 * sum;
-}
-
 color::Rgb sum_of(const LightShares& shares, unsigned bits) {
   color::Rgb sum;
   for (std::size_t k = 0; k < kShareCount; ++k)

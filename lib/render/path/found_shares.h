@@ -21,19 +21,6 @@ struct SharedPoint {
   color::Rgb base;
 };
 
-// The shares that both sequences of a first round found at each point.
-class FirstShares {
- public:
-  void resize(std::size_t points) { of_.resize(points); }
-  bool empty() const { return of_.empty(); }
-  void keep(std::size_t point, const LightShares (&of_sequences)[2]);
-  LightShares of(std::size_t point, std::size_t sequence) const;
-  LightShares mean(std::size_t point) const;
-
- private:
-  std::vector<std::array<std::array<float, 3>, 2 * kShareCount>> of_;
-};
-
 struct FoundShare {
   double de00_p95 = 0;   // that leaving it out changes; of direct light, with what is passed on
   bool stopped = false;  // whether the first round was its last

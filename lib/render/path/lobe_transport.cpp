@@ -12,24 +12,20 @@
 #include "render/effects.h"
 #include "render/internal/seen.h"
 #include "render/internal/wear.h"
-#include "render/path/round_cut.h"
+#include "render/path/rounds.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
 
 namespace {
 
-constexpr std::size_t kTogether = 64;
 constexpr int kFirstBatches = 2, kMostAtOnce = 512;
 constexpr int kDirections = kFan;  // of a batch
 // Later rounds draw as few sequences as tell a variance, each of as many directions as it takes: the longer a sequence,
 // the more evenly it covers the hemisphere.
 constexpr int kSequences = 8;
-// A point's own variance counts as its batches less one, that of its neighborhood as so many.
-constexpr double kNeighborhood = 4;
 // Directions at a probe; scaling is judged by ratios, in which the noise of a probe stands on both sides.
 constexpr int kProbeSequences = 4, kProbeDirections = 256;
-constexpr int kNeighborReach = 2;  // pixels to each side of the neighborhood
 
 class Tracing {
  public:
@@ -44,10 +40,10 @@ class Tracing {
       if (request.pixel_samples == 1) break;
       samples_.push_back(visible_surface(transport.rays(), g.rays.shifted(dx, dy), g.width, g.height));
     }
-    number_.assign(surface.hits.size(), -1);
+    by_pixel_ = PixelPoints(g.width, g.height);
     for (std::size_t i = 0; i < surface.hits.size(); ++i) {
       if (!surface.hits[i].any()) continue;
-      number_[i] = static_cast<std::int32_t>(t.places.size());
+      by_pixel_.add(static_cast<int>(i) % g.width, static_cast<int>(i) / g.width);
       t.places.push_back(static_cast<std::uint32_t>(i));
       t.part.push_back(std::abs(static_cast<int>(g.data[4 * i + 3])) - 1);
     }
@@ -97,14 +93,8 @@ class Tracing {
     std::vector<std::uint32_t> wanted;
     for (std::size_t i = 0; i < more.size(); ++i)
       if (more[i] > 0) wanted.push_back(static_cast<std::uint32_t>(i));
-    const std::size_t chunks = (wanted.size() + kTogether - 1) / kTogether;
-    parallel_for(chunks, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t chunk = begin; chunk < end; ++chunk) {
-        if (round_ > 0 && deadline_.passed()) return;  // the first round is whole
-        for (std::size_t k = chunk * kTogether; k < std::min(wanted.size(), (chunk + 1) * kTogether); ++k)
-          sample(wanted[k], more[wanted[k]]);
-      }
-    });
+    // The first round is whole.
+    draw_round(wanted, round_ > 0 ? &deadline_ : nullptr, [&](std::size_t i) { sample(i, more[i]); });
     ++round_;
   }
 
@@ -274,8 +264,8 @@ class Tracing {
     return std::max(figure(mesh), figure(floor));
   }
 
-  // The judgment is that of path_picture(): few estimates tell little of their variance, and the neighbors alone decide
-  // the number of samples of a point, so that no point stops where its own sums happen to be bright.
+  // The neighbors alone decide the number of samples of a point, so that no point stops where its own sums happen to be
+  // bright.
   void judge(std::size_t i) {
     LobeTransport& t = result_.transport;
     t.noise_de00[i] = shown_noise_[i] = 0, needed_[i] = 0;
@@ -285,20 +275,15 @@ class Tracing {
     const int x = static_cast<int>(t.places[i]) % t.width, y = static_cast<int>(t.places[i]) / t.width;
     double around[2 * kMostTracedLobes + 3] = {};
     int count = 0;
-    for (int v = std::max(0, y - kNeighborReach); v <= std::min(t.height - 1, y + kNeighborReach); ++v) {
-      for (int u = std::max(0, x - kNeighborReach); u <= std::min(t.width - 1, x + kNeighborReach); ++u) {
-        const std::int32_t number = number_[static_cast<std::size_t>(v) * static_cast<std::size_t>(t.width) + u];
-        const auto other = static_cast<std::size_t>(number);
-        if (number < 0 || other == i || batches_[other] < 2) continue;
-        ++count;
-        for (std::size_t k = 0; k < kinds; ++k) around[k] += variance_[other * kinds + k];
-      }
-    }
+    by_pixel_.visit_around(x, y, [&](std::size_t other) {
+      if (other == i || batches_[other] < 2) return;
+      ++count;
+      for (std::size_t k = 0; k < kinds; ++k) around[k] += variance_[other * kinds + k];
+    });
     const double freedom = freedom_[i];
     double worst = 0, needed = 0;
     for (std::size_t k = 0; k < kinds; ++k) {
-      const double own = variance_[i * kinds + k], mean = (around[k] + own) / (count + 1),
-                   found = (freedom * own + kNeighborhood * mean) / (freedom + kNeighborhood) / n;
+      const double own = variance_[i * kinds + k], found = smoothed_variance(own, freedom, around[k], count) / n;
       if (k == columns) {
         shown_noise_[i] = static_cast<float>(std::sqrt(found));
         continue;
@@ -310,24 +295,16 @@ class Tracing {
     needed_[i] = needed / (request_.tolerance_de00 * request_.tolerance_de00);
   }
 
-  // The number of further batches for each point: as its neighborhood asks for, at most four times the batches that it
-  // has. The twentieth part of the points that would need most get no more than the rest. Where the neighborhoods are
-  // content but the picture is not, all is scaled by what it lacks.
+  // The batches of the next round; whether there are any.
   bool plan(std::vector<int>& more) const {
-    const double lacking = result_.noise_p95_de00 / request_.tolerance_de00;
-    for (double scale = 1.1;; scale *= 1.1 * std::max(1.0, lacking * lacking)) {
-      const double most = std::min<double>(std::ceil(1.05 * scale * worse_percentile(needed_)), request_.most_batches);
-      bool any = false, limited = true;
-      for (std::size_t i = 0; i < batches_.size(); ++i) {
-        const double n = batches_[i], wanted = std::min(std::ceil(scale * needed_[i]), most) - n;
-        more[i] = static_cast<int>(std::clamp(wanted, 0.0, std::min<double>(3 * n, kMostAtOnce)));
-        more[i] = (more[i] + fewest_ - 1) / fewest_ * fewest_;
-        any = any || more[i] > 0;
-        limited = limited && (n == 0 || needed_[i] == 0 || n >= request_.most_batches);
-      }
-      if (any) return true;
-      if (limited || scale > 1e6) return false;
-    }
+    RoundLimits limits;
+    limits.of_point = request_.most_batches, limits.at_once = kMostAtOnce;
+    limits.typical = worse_percentile(needed_);
+    limits.lacking = result_.noise_p95_de00 / request_.tolerance_de00;
+    const bool any = plan_round(
+        limits, [this](std::size_t i) { return needed_[i]; }, [this](std::size_t i) { return batches_[i]; }, more);
+    for (int& batches : more) batches = (batches + fewest_ - 1) / fewest_ * fewest_;
+    return any;
   }
 
   const Transport& transport_;
@@ -339,7 +316,7 @@ class Tracing {
   Stopwatch clock_;
   TracedLobes result_;
   std::vector<VisibleSurface> samples_;  // of the pixels; none: their centers
-  std::vector<std::int32_t> number_;     // of the point of each pixel, or -1
+  PixelPoints by_pixel_;
   std::vector<float> open_light_;        // point, column, channel
   std::vector<float> variance_;          // of one batch: point, column, and the paint that is worn last; dE00^2
   std::vector<float> shown_noise_;       // of each point, in that paint

@@ -12,7 +12,7 @@
 #include "render/path/gathered.h"
 #include "render/path/pixel_pieces.h"
 #include "render/path/reconstruction.h"
-#include "render/path/round_cut.h"
+#include "render/path/rounds.h"
 #include "render/path/seen_point.h"
 
 namespace goniochrome::render {
@@ -22,18 +22,11 @@ namespace {
 // An error of so many tolerances is a speck. Its point gets at most so many times its samples, and all of these points
 // such a part of all samples or, where few points have any, as many for each point.
 constexpr double kSpeck = 2, kMostOfSpeck = 15, kSpecksShare = 0.5;
-// Points that one thread takes at a time.
-constexpr std::size_t kSampledTogether = 64;
 // Most points need no more than a few samples: the first round takes as many fours as tell a variance.
 constexpr int kFirstFours = 2;
-// No round draws more than so many times the fours that a point has.
-constexpr int kRoundGrowth = 3;
 // A round draws no less than this part of all fours so far: after each the noise of every point is judged anew, which
 // takes the time of a fan for every twenty points.
 constexpr double kLeastRound = 1.0 / 16;
-// A point's own variance counts by its freedom, that of its neighborhood as so many.
-constexpr double kErrorNeighborhood = 4;
-constexpr int kPixelReach = 2;  // pixels to each side of the neighborhood
 // The largest errors of a picture are about so many standard deviations of its noisiest points, in four pictures.
 constexpr double kDeviations = 1.4;
 // The samples of a pixel are first looked at, which took about as long as so many fours of a car in two probes.
@@ -116,7 +109,7 @@ class Picture {
  private:
   void add_points() {
     const Gbuffer& g = surface_.gbuffer;
-    number_.assign(static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height), -1);
+    by_pixel_ = PixelPoints(g.width, g.height);
     for (int y = 0; y < g.height; ++y)
       for (int x = 0; x < g.width; ++x) add_point(x, y);
     states_.resize(points_.size());
@@ -176,7 +169,7 @@ class Picture {
     point.coverage = static_cast<float>(std::popcount(any)) / static_cast<float>(count_);
     point.floor = coverage_.floor[at] == any;
     if (point.coverage == 0) return;
-    number_[at] = static_cast<std::int32_t>(points_.size());
+    by_pixel_.add(x, y);
     points_.push_back(point);
   }
 
@@ -198,22 +191,12 @@ class Picture {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(surface_.gbuffer.width) + static_cast<std::size_t>(x);
   }
 
-  // Chunks are taken in a scattered order, so that a picture that time cut short is noisy evenly. No clock ends a round
-  // that is needed.
+  // No clock ends a round that is needed.
   void sample(const std::vector<int>& more, bool is_needed) {
     std::vector<std::uint32_t> wanted;
     for (std::size_t i = 0; i < more.size(); ++i)
       if (more[i] > 0 || !states_[i].looked) wanted.push_back(static_cast<std::uint32_t>(i));
-    const std::size_t chunks = (wanted.size() + kSampledTogether - 1) / kSampledTogether;
-    const std::size_t step = scattering(chunks);
-    parallel_for(chunks, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (!is_needed && deadline_.passed()) return;
-        const std::size_t chunk = i * step % chunks;
-        for (std::size_t k = chunk * kSampledTogether; k < std::min(wanted.size(), (chunk + 1) * kSampledTogether); ++k)
-          sample(wanted[k], more[wanted[k]]);
-      }
-    });
+    draw_round(wanted, is_needed ? nullptr : &deadline_, [&](std::size_t i) { sample(i, more[i]); });
   }
 
   // Keeps what the reconstruction needs of a sample that counts by `share` in its pixel.
@@ -235,13 +218,13 @@ class Picture {
     if (!kept_.empty() && states_[i].sums.fours() == 0)
       for (std::size_t k = 0; k < Round::kSequences; ++k) kept_[i][k] = sum_of(means[k], kAllShares & ~drawn_);
     states_[i].sums.add(round, drawn);
-    if (first_.empty()) return;
-    first_.keep(i, means);
+    if (!first_.empty()) std::ranges::copy(means, first_[i].begin());
   }
 
   // The shares of a point in the first round, with the light that is known without samples.
   LightShares first_shares(std::size_t i) const {
-    LightShares shares = first_.mean(i);
+    LightShares shares = 0.5 * first_[i][0];
+    shares += 0.5 * first_[i][1];
     shares.direct += states_[i].deterministic;
     if (states_[i].hidden) shares.direct += -1.0 * base_at(points_[i]);
     return shares;
@@ -251,7 +234,7 @@ class Picture {
   SharedPoint mean_around(const PathPoint& point) const {
     SharedPoint sum;
     int count = 0;
-    visit_neighborhood(point, [&](std::size_t i) {
+    by_pixel_.visit_around(point.x, point.y, [&](std::size_t i) {
       if (is_unknown(i)) return;
       sum.shares += first_shares(i);
       if (base_ != nullptr) sum.base += base_at(points_[i]);
@@ -287,8 +270,7 @@ class Picture {
       if (states_[i].sums.fours() == 0) continue;
       color::Rgb drawn[Round::kSequences];
       for (std::size_t k = 0; k < Round::kSequences; ++k) {
-        const LightShares shares = first_.of(i, k);
-        drawn[k] = sum_of(shares, drawn_), kept_[i][k] = sum_of(shares, stopped);
+        drawn[k] = sum_of(first_[i][k], drawn_), kept_[i][k] = sum_of(first_[i][k], stopped);
       }
       states_[i].sums = {};
       states_[i].sums.add(round, drawn);
@@ -437,21 +419,6 @@ class Picture {
     return std::max(percentile_95(std::move(mesh)), percentile_95(std::move(floor)));
   }
 
-  // Calls visit(number) for each point near this one, itself among them.
-  template <class Visit>
-  void visit_neighborhood(const PathPoint& point, const Visit& visit) const {
-    for (int y = std::max(0, point.y - kPixelReach); y <= std::min(surface_.gbuffer.height - 1, point.y + kPixelReach);
-         ++y) {
-      for (int x = std::max(0, point.x - kPixelReach); x <= std::min(surface_.gbuffer.width - 1, point.x + kPixelReach);
-           ++x) {
-        const std::int32_t number = number_[place(x, y)];
-        if (number >= 0) visit(static_cast<std::size_t>(number));
-      }
-    }
-  }
-
-  // Few estimates tell little of their variance, and a point none of whose rays was occluded knows nothing of its
-  // neighbor's shadow: the mean over the neighborhood stands in.
   void judge(std::size_t i) {
     PathPoint& point = points_[i];
     State& state = states_[i];
@@ -463,7 +430,7 @@ class Picture {
     Covariance around{};
     color::Rgb light;
     int count = 0;
-    visit_neighborhood(point, [&](std::size_t other) {
+    by_pixel_.visit_around(point.x, point.y, [&](std::size_t other) {
       if (other == i || states_[other].sums.fours() == 0) return;
       ++count;
       light += points_[other].radiance;
@@ -471,8 +438,7 @@ class Picture {
     });
     const double freedom = state.sums.freedom();
     for (std::size_t k = 0; k < 6; ++k)
-      point.covariance[k] = (freedom * own[k] + kErrorNeighborhood * (around[k] + own[k]) / (count + 1)) /
-                            (freedom + kErrorNeighborhood) / fours;
+      point.covariance[k] = smoothed_variance(own[k], freedom, around[k], count) / fours;
     point.noise_de00 = noise_of(i, point.radiance, point.covariance);
     // How many samples a point is to get is decided by its neighbors alone: were its own sums asked, it would stop
     // where they happen to be bright, and the mean would be too.
@@ -503,33 +469,19 @@ class Picture {
     return std::max({std::sqrt(std::max(0.0, whole * whole - other * other)), least_aim(), 1e-9});
   }
 
-  // How many fours each point is to get next: as many as its neighborhood's noise asks for, at most so many
-  // times what it has. The twentieth part of the points that would need most get no more than the rest. Where the
-  // neighborhoods are content but the picture is not, or would draw too little for a round, all is scaled by what it
-  // lacks, unless points that got all that they may get keep the picture from its tolerance. Whether there are any.
+  // The fours of the next round, unless points that got all that they may get keep the picture from its tolerance: they
+  // end with what their neighborhoods ask for. Whether there are any.
   bool plan(const Errors& errors, std::vector<int>& more) const {
-    const double typical = worse_percentile([this](std::size_t i) { return states_[i].needed; });
-    const double limit = request_.most_samples / kOfFour;
-    const double lacking = std::min(errors.all / std::max(1e-9, request_.tolerance_de00), errors.noise / least_aim());
-    const bool in_vain =
-        request_.tolerance_de00 > 0 && tolerance() < worse_percentile([&](std::size_t i) {
-                                         return states_[i].sums.fours() >= limit ? points_[i].noise_de00 : 0;
-                                       });
-    const double least = kLeastRound * drawn();
-    for (double scale = 1;; scale *= 1.1 * std::max(1.0, lacking * lacking)) {
-      const double most = std::min(std::ceil(1.05 * scale * typical), limit);
-      double asked = 0;
-      bool limited = true;
-      for (std::size_t i = 0; i < points_.size(); ++i) {
-        const double n = counted(i), wanted = std::min(std::ceil(scale * states_[i].needed), most) - n;
-        more[i] = static_cast<int>(std::clamp(wanted, 0.0, kRoundGrowth * n));
-        asked += more[i];
-        limited = limited && (states_[i].certain || states_[i].needed == 0 || n >= limit);
-      }
-      if (asked >= least && asked > 0) return true;
-      if (in_vain) return false;
-      if (limited || scale > 1e6) return asked > 0;
-    }
+    RoundLimits limits;
+    limits.of_point = request_.most_samples / kOfFour;
+    limits.typical = worse_percentile([this](std::size_t i) { return states_[i].needed; });
+    limits.lacking = std::min(errors.all / std::max(1e-9, request_.tolerance_de00), errors.noise / least_aim());
+    limits.least = std::max(1.0, kLeastRound * drawn());
+    limits.in_vain = request_.tolerance_de00 > 0 && tolerance() < worse_percentile([&](std::size_t i) {
+                       return states_[i].sums.fours() >= limits.of_point ? points_[i].noise_de00 : 0;
+                     });
+    return plan_round(
+        limits, [&](std::size_t i) { return states_[i].needed; }, [&](std::size_t i) { return counted(i); }, more);
   }
 
   // A picture that is within its tolerance at 95 of 100 points may have specks at the others, most of them at edges,
@@ -571,12 +523,12 @@ class Picture {
   std::vector<std::array<double, 2>> shifts_;  // of these, where rays find what is seen
   Coverage coverage_;
   PixelFlags even_;                   // empty but where surfaces of all samples are given
-  std::vector<std::int32_t> number_;  // of the point of each pixel, or -1
+  PixelPoints by_pixel_;
   std::vector<PathPoint> points_;
   std::vector<State> states_;
   unsigned drawn_ = kAllShares;  // the shares that are drawn on
   FoundShares found_;
-  FirstShares first_;                                          // empty: not kept
+  std::vector<std::array<LightShares, Round::kSequences>> first_;  // of the first round; empty: not kept
   std::vector<Halves> kept_;                                   // of shares that stopped
   const double beside_ = percentile_95(request_.beside_de00);  // of the errors that are no noise
   std::vector<ShownPoint> shown_;                              // by the points; empty: nothing is reconstructed

@@ -1,12 +1,15 @@
-// Rounds of samples that end in time. goniochrome-paths(7), "Numbers".
+// Rounds of samples at the points of a picture: how many each point is to get, and how a round ends in time.
+// goniochrome-paths(7), "Numbers".
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <vector>
 
 #include "base/clock.h"
+#include "base/parallel.h"
 
 namespace goniochrome::render {
 
@@ -50,6 +53,89 @@ inline std::size_t scattering(std::size_t n) {
   auto step = static_cast<std::size_t>(0.6180339887 * static_cast<double>(n)) + 1;
   while (n > 1 && std::gcd(step, n) != 1) ++step;
   return step;
+}
+
+// Calls draw(point) for each of these points, in chunks in a scattered order, so that a picture that time cut short is
+// noisy evenly. Null: no clock ends the round.
+template <class Draw>
+void draw_round(const std::vector<std::uint32_t>& points, const Deadline* deadline, const Draw& draw) {
+  constexpr std::size_t kTogether = 64;
+  const std::size_t chunks = (points.size() + kTogether - 1) / kTogether, step = scattering(chunks);
+  parallel_for(chunks, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (deadline != nullptr && deadline->passed()) return;
+      const std::size_t first = i * step % chunks * kTogether;
+      for (std::size_t k = first; k < std::min(points.size(), first + kTogether); ++k) draw(points[k]);
+    }
+  });
+}
+
+// The points of a picture by their pixels.
+class PixelPoints {
+ public:
+  PixelPoints() = default;
+  PixelPoints(int width, int height)
+      : width_(width),
+        height_(height),
+        number_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kNone) {}
+
+  // Points are numbered as they are added.
+  void add(int x, int y) { number_[place(x, y)] = count_++; }
+  // Calls visit(number) for each point near a pixel, one in it among them.
+  template <class Visit>
+  void visit_around(int x, int y, const Visit& visit) const {
+    constexpr int kReach = 2;  // pixels to each side
+    for (int v = std::max(0, y - kReach); v <= std::min(height_ - 1, y + kReach); ++v)
+      for (int u = std::max(0, x - kReach); u <= std::min(width_ - 1, x + kReach); ++u)
+        if (number_[place(u, v)] != kNone) visit(std::size_t{number_[place(u, v)]});
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = ~0U;
+  std::size_t place(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+  }
+
+  int width_ = 0, height_ = 0;
+  std::uint32_t count_ = 0;
+  std::vector<std::uint32_t> number_;  // by pixel
+};
+
+// Few estimates tell little of their variance, and a point none of whose rays was occluded knows nothing of its
+// neighbor's shadow: the mean over the neighborhood stands in. `around` is the sum over so many neighbors.
+inline double smoothed_variance(double own, double freedom, double around, int neighbors) {
+  constexpr double kNeighborhood = 4;  // The neighborhood counts as so many degrees of freedom.
+  return (freedom * own + kNeighborhood * (around + own) / (neighbors + 1)) / (freedom + kNeighborhood);
+}
+
+struct RoundLimits {
+  double of_point = 0;     // that a point has in all
+  double typical = 0;      // The points that need more than most others get no more than this asks for.
+  double lacking = 1;      // noise of the picture, in its aim
+  double least = 1;        // of the round
+  double at_once = HUGE_VAL;  // of a point
+  bool in_vain = false;       // Nothing is scaled, because more samples would not reach the aim.
+};
+
+// How many samples each point is to get next: needed(point) less those that it has, at most three times these. Where the points are content but the picture is not, or would draw too little for a round, all is
+// scaled by what it lacks. Whether there are any.
+template <class Needed, class Has>
+bool plan_round(const RoundLimits& limits, const Needed& needed, const Has& has, std::vector<int>& more) {
+  constexpr double kGrowth = 3;
+  for (double scale = 1;; scale *= 1.1 * std::max(1.0, limits.lacking * limits.lacking)) {
+    const double most = std::min(std::ceil(1.05 * scale * limits.typical), limits.of_point);
+    double asked = 0;
+    bool limited = true;
+    for (std::size_t i = 0; i < more.size(); ++i) {
+      const double n = has(i), wanted = std::min(std::ceil(scale * needed(i)), most) - n;
+      more[i] = static_cast<int>(std::clamp(wanted, 0.0, std::min(kGrowth * n, limits.at_once)));
+      asked += more[i];
+      limited = limited && (needed(i) == 0 || n >= limits.of_point);
+    }
+    if (asked >= limits.least) return true;
+    if (limits.in_vain) return false;
+    if (limited || scale > 1e6) return asked > 0;
+  }
 }
 
 }  // namespace goniochrome::render

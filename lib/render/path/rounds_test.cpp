@@ -1,9 +1,9 @@
 // How a round is cut to what there is time for.
-#include "render/path/round_cut.h"
+#include "render/path/rounds.h"
 
 #include <gtest/gtest.h>
 
-namespace goniochrome::render::round_cut_test {
+namespace goniochrome::render::rounds_test {
 namespace {
 
 int by_fours(int n) {
@@ -52,4 +52,4 @@ TEST(RoundCut, DrawsNothingWhereNothingIsLeft) {
 }
 
 }  // namespace
-}  // namespace goniochrome::render::round_cut_test
+}  // namespace goniochrome::render::rounds_test
