@@ -60,27 +60,11 @@ constexpr std::uint32_t scrambled(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
-// The coordinates of the indices that have one byte other than 0, before they are scrambled. Those of any index are the
-// exclusive or of what its bytes give, so that a point of a sequence of any length takes four look-ups at most.
-using Coordinates = std::array<std::uint32_t, 4>;
-constexpr std::size_t kBytes = 4, kValues = 256;
-
-constexpr std::array<std::array<Coordinates, kValues>, kBytes> kOfByte = [] {
-  std::array<std::array<Coordinates, kValues>, kBytes> tables{};
-  for (std::size_t byte = 0; byte < kBytes; ++byte) {
-    for (std::size_t value = 1; value < kValues; ++value) {
-      const auto lowest = 8 * byte + static_cast<std::size_t>(std::countr_zero(value));
-      for (std::size_t d = 0; d < 4; ++d)
-        tables[byte][value][d] = tables[byte][value & (value - 1)][d] ^ kMatrixColumns[d][lowest];
-    }
-  }
-  return tables;
-}();
-
-Coordinates coordinates(std::uint32_t index) {
-  Coordinates x = kOfByte[0][index & 0xFFU];
-  for (std::size_t byte = 1; (index >>= 8) != 0; ++byte)
-    for (std::size_t d = 0; d < 4; ++d) x[d] ^= kOfByte[byte][index & 0xFFU][d];
+// The coordinates of an index before they are scrambled: the exclusive or of the columns of its bits.
+std::array<std::uint32_t, 4> coordinates(std::uint32_t index) {
+  std::array<std::uint32_t, 4> x{};
+  for (; index != 0; index &= index - 1)
+    for (std::size_t d = 0; d < 4; ++d) x[d] ^= kMatrixColumns[d][static_cast<std::size_t>(std::countr_zero(index))];
   return x;
 }
 
@@ -97,7 +81,7 @@ Sequence::Set::Set(std::uint64_t seed, std::uint32_t set, std::uint32_t mask) : 
 // 2^k points together.
 std::array<double, 4> Sequence::Set::point(std::uint32_t index) const {
   const std::uint32_t shuffled = reversed(scrambled(reversed(index), order_)) & mask_;
-  const Coordinates x = coordinates(shuffled);
+  const std::array<std::uint32_t, 4> x = coordinates(shuffled);
   std::array<double, 4> point{};
   for (std::size_t d = 0; d < 4; ++d) point[d] = reversed(scrambled(x[d], seeds_[d])) * 0x1p-32;
   return point;
