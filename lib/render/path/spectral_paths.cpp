@@ -26,16 +26,9 @@ void add(Floats& sum, float scale, const Floats& x) {
   for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += scale * x[b];
 }
 
-void add_product(Floats& sum, float scale, const Floats& x, const Floats& y, const Floats& z) {
-  for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += scale * x[b] * y[b] * z[b];
-}
-
-void add_product(Floats& sum, float scale, const Floats& x, const Floats& y) {
-  for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += scale * x[b] * y[b];
-}
-
-void multiply(Floats& path, float scale, const Floats& x) {
-  for (std::size_t b = 0; b < path.size(); ++b) path[b] *= scale * x[b];
+Floats product(Floats x, const Floats& y) {
+  for (std::size_t b = 0; b < x.size(); ++b) x[b] *= y[b];
+  return x;
 }
 
 color::Rgb gray(double value) {
@@ -91,10 +84,10 @@ Result<void> check_spectra(const PathScene& path_scene) {
 SpectralPaths::Paint SpectralPaths::laid_out(const paint::BandLobes& lobes, double gloss_deg, bool rough) {
   const double gloss_scale = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kDegree), brdf::kCoatIndex);
   Paint paint;
-  paint.views.resize(lobes.views.size());
+  paint.resize(lobes.views.size());
   for (std::size_t v = 0; v < lobes.views.size(); ++v) {
-    paint.views[v].diffuse = floats(lobes.views[v].diffuse);
-    paint.views[v].mirror = floats(lobes.views[v].mirror, rough ? 0 : 1);
+    paint[v].diffuse = floats(lobes.views[v].diffuse);
+    paint[v].mirror = floats(lobes.views[v].mirror, rough ? 0 : 1);
   }
   for (std::size_t j = 0; j < lobes.exponents.size(); ++j) {
     const bool any = std::ranges::any_of(lobes.views, [&](const paint::BandWeights& view) {
@@ -102,8 +95,8 @@ SpectralPaths::Paint SpectralPaths::laid_out(const paint::BandLobes& lobes, doub
     });
     if (!any) continue;
     for (std::size_t v = 0; v < lobes.views.size(); ++v) {
-      paint.views[v].directional_diffuse.push_back(floats(lobes.views[v].directional_diffuse[j]));
-      paint.views[v].gloss.push_back(floats(lobes.views[v].gloss[j], rough ? 0 : gloss_scale));
+      paint[v].directional_diffuse.push_back(floats(lobes.views[v].directional_diffuse[j]));
+      paint[v].gloss.push_back(floats(lobes.views[v].gloss[j], rough ? 0 : gloss_scale));
     }
   }
   return paint;
@@ -154,20 +147,22 @@ class SpectralPaths::Bands {
   void add_reflected(const Transport::Vertex& vertex, const PaintedPoint::Shares& f, double scale,
                      const PathLight& light) {
     const Light of = light_of(light);
-    add_product(sum_, static_cast<float>(scale * of.size), path_, f_cos(vertex, f), of.bands);
+    render::add(sum_, static_cast<float>(scale * of.size), product(product(path_, f_cos(vertex, f)), of.bands));
   }
   void add(double scale, const PathLight& light) {
     const Light of = light_of(light);
-    add_product(sum_, static_cast<float>(scale * of.size), path_, of.bands);
+    render::add(sum_, static_cast<float>(scale * of.size), product(path_, of.bands));
   }
   void reflect(const Transport::Vertex& vertex, const PaintedPoint::Shares& f, double scale) {
-    multiply(path_, static_cast<float>(scale), f_cos(vertex, f));
+    path_ = product(path_, f_cos(vertex, f));
+    this->scale(scale);
   }
   void mirror(const Transport::Vertex& vertex, double scale) {
     Carrier sum{};
     const float coat = vertex.painted.coat_mirror();
     blend(vertex, [&](const View& view, float part) { render::add(sum, part * coat, view.mirror); });
-    multiply(path_, static_cast<float>(scale), sum);
+    path_ = product(path_, sum);
+    this->scale(scale);
   }
   void scale(double factor) {
     for (float& band : path_) band *= static_cast<float>(factor);
@@ -204,8 +199,8 @@ class SpectralPaths::Bands {
   void blend(const Transport::Vertex& vertex, const Visit& visit) const {
     const Paint& paint = scene_.paints_[static_cast<std::size_t>(vertex.spot.part)];
     const PaintedPoint::Between& between = vertex.painted.between();
-    if (between.share < 1) visit(paint.views[between.low], 1 - between.share);
-    if (between.share > 0) visit(paint.views[between.high], between.share);
+    if (between.share < 1) visit(paint[between.low], 1 - between.share);
+    if (between.share > 0) visit(paint[between.high], between.share);
   }
 
   const SpectralPaths& scene_;

@@ -32,9 +32,7 @@ class SpectralPaths {
     Carrier diffuse{}, mirror{};
     std::vector<Carrier> directional_diffuse, gloss;  // by the number of the lobe in the traced paint
   };
-  struct Paint {
-    std::vector<View> views;
-  };
+  using Paint = std::vector<View>;
   class Bands;
   static Paint laid_out(const paint::BandLobes& lobes, double gloss_deg, bool rough);
   void add_path(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
