@@ -73,7 +73,7 @@ Studio loaded(const render::LobeTransport& light) {
                             {"basis", {{"name", "b2"}, {"exponents", kExponents}, {"mirror", false}}},
                             {"paints", {paint_json(plain(50, 10))}}})
                    .contains("error"));
-  studio.attached() = render::packed_view(light, std::vector<float>(light.places.size(), 20), {})->bytes;
+  studio.attached() = *render::packed_view(light, std::vector<float>(light.places.size(), 20), {});
   const Json answer = studio.answer(view_request());
   EXPECT_EQ(answer.value("width", 0), 416) << answer;
   EXPECT_EQ(answer.value("height", 0), 6);
@@ -149,7 +149,7 @@ TEST(TracedViews, RefuseWhatTheyCannotShow) {
   brushed.anisotropy = paint::Anisotropy{0.05, 0.3};
   EXPECT_THAT(error({{"do", "show"}, {"view", 3}, {"paint", paint_json(brushed)}}), HasSubstr("brushed otherwise"));
   EXPECT_THAT(error(view_request()), HasSubstr("damaged"));  // nothing is attached
-  const std::string bytes = render::packed_view(light, std::vector<float>(light.places.size(), 20), {})->bytes;
+  const std::string bytes = *render::packed_view(light, std::vector<float>(light.places.size(), 20), {});
   Json request = view_request();
   request["parts"].push_back({{"name", "door"}});
   studio.attached() = bytes;

@@ -130,7 +130,7 @@ Result<PackedTracedView> packed_traced_view(const std::string& path, const std::
   const std::vector<float> angles = render::view_angles_deg(light, seen);
   const auto packed = render::packed_view(light, angles, beside_of(file));
   if (!packed.ok()) return input_error("{}: {}", path, packed.error().message);
-  GONIO_ASSIGN(const render::UnpackedView unpacked, render::unpacked_view(packed->bytes));
+  GONIO_ASSIGN(const render::UnpackedView unpacked, render::unpacked_view(*packed));
   GONIO_ASSIGN(const std::vector<render::ShownPaints> shown, judges(light, mesh, basis, with_mirrors, paints));
   const render::PackingError error =
       render::packing_error(light, angles, unpacked, shown, render::operator_or_null(file.reflection));
@@ -143,7 +143,7 @@ Result<PackedTracedView> packed_traced_view(const std::string& path, const std::
     parts.push_back({{"name", plain_utf8(part.name)}, {"material", plain_utf8(part.material)}});
   const Vec3 middle = file.corner + 0.5 * light.width * file.right + 0.5 * light.height * file.down;
   const double fov_deg = 2 * std::atan2(0.5 * light.height * length(file.down), length(middle)) / kDegree;
-  const std::vector<std::uint8_t> bytes(packed->bytes.begin(), packed->bytes.end());
+  const std::vector<std::uint8_t> bytes(packed->begin(), packed->end());
   PackedTracedView view;
   view.error_de00 = error.p95_de00;
   view.json = {{"name", name},
@@ -166,7 +166,7 @@ Result<PackedTracedView> packed_traced_view(const std::string& path, const std::
                   {"points", light.places.size()},
                   {"columns", light.columns.count()},
                   {"bytes", bytes.size()},
-                  {"page_bytes", compressed_text(packed->bytes).size()},
+                  {"page_bytes", compressed_text(*packed).size()},
                   {"rounding_de00_mean", json_number(error.mean_de00)},
                   {"rounding_de00_p95", json_number(error.p95_de00)}};
   return Result(std::move(view));

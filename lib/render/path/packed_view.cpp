@@ -1,5 +1,7 @@
 #include "render/path/packed_view.h"
 
+#include <Imath/half.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,20 +24,12 @@ constexpr double kMostNumbers = 1e9;
 constexpr float kAngleSteps = 50;    // in a degree
 constexpr float kShareSteps = 2047;  // of a class in all bounced light; 255 changed a closed box by .15 dE00
 
-// A half without its sign, as a whole number: its exponent and mantissa, so that neighbors differ by 1.
+// A half without its sign, as a whole number: its bits, so that neighbors differ by 1.
 int magnitude(float value) {
-  if (value == 0) return 0;
-  if (!(value < kLargest)) return (31 << kMantissa) - 1;
-  int exponent = 0;
-  std::frexp(value, &exponent);
-  exponent = std::max(exponent, -13);  // below, steps stay as they are
-  const auto steps = static_cast<int>(std::lrint(std::ldexp(value, kMantissa + 1 - exponent)));
-  return ((exponent + 13) << kMantissa) + steps;
+  return value < kLargest ? Imath::half(value).bits() : Imath::half(kLargest).bits();
 }
 float of_magnitude(int number) {
-  const int exponent = number >> kMantissa, mantissa = number & ((1 << kMantissa) - 1);
-  if (exponent == 0) return std::ldexp(static_cast<float>(mantissa), -24);
-  return std::ldexp(static_cast<float>(mantissa + (1 << kMantissa)), exponent - 25);
+  return Imath::half(Imath::half::FromBits, static_cast<std::uint16_t>(number));
 }
 
 // Floats as halves times a power of two, without some of their bits.
@@ -191,18 +185,13 @@ double rounding_error(const LobeTransport& t, std::size_t column, bool bounced, 
   return percentile_95(std::move(errors));
 }
 
-Rounding rounding_of(const LobeTransport& t, std::size_t column, bool bounced, double& largest_error) {
+Rounding rounding_of(const LobeTransport& t, std::size_t column, bool bounced) {
   const std::vector<float>& light = bounced ? t.bounced : t.direct;
   float largest = 0;
   for (std::size_t i = 0; i < t.places.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(light[i * t.floats() + 3 * column + c]));
   Rounding rounding{scale_of(nominal_weight(t.columns, column), largest), kMostDropped};
-  double error = rounding_error(t, column, bounced, rounding);
-  while (error > kPackedError_de00 && rounding.dropped > 0) {
-    --rounding.dropped;
-    error = rounding_error(t, column, bounced, rounding);
-  }
-  largest_error = std::max(largest_error, error);
+  while (rounding.dropped > 0 && rounding_error(t, column, bounced, rounding) > kPackedError_de00) --rounding.dropped;
   return rounding;
 }
 
@@ -284,18 +273,11 @@ bool read_probes(LobeTransport& t, Reader& from) {
   return from.ok() && t.probed >= static_cast<int>(probes);
 }
 
-// The pixels beside the points.
-std::vector<std::size_t> pixels_beside(const LobeTransport& t) {
+// The pixels beside the points, where `seen` is 0.
+std::vector<std::size_t> pixels_beside(const std::vector<int>& seen) {
   std::vector<std::size_t> pixels;
-  auto next = t.places.begin();
-  const std::size_t all = static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height);
-  for (std::size_t i = 0; i < all; ++i) {
-    if (next != t.places.end() && *next == i) {
-      ++next;
-    } else {
-      pixels.push_back(i);
-    }
-  }
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (seen[i] == 0) pixels.push_back(i);
   return pixels;
 }
 
@@ -318,12 +300,12 @@ LobeTransport of_points(const LobeTransport& t, const std::vector<std::uint32_t>
 
 }  // namespace
 
-Result<PackedView> packed_view(const LobeTransport& t, const std::vector<float>& view_deg, const image::Image& beside) {
+Result<std::string> packed_view(const LobeTransport& t, const std::vector<float>& view_deg,
+                                const image::Image& beside) {
   const std::size_t points = t.places.size();
   if (points > kMostPagePoints)
     return input_error("it has {} points, and a page shows at most {}: trace it again in a smaller size", points,
                        kMostPagePoints);
-  PackedView view;
   Writer to;
   to.number(kVersion), to.number(t.width), to.number(t.height), to.number(t.bounces);
   to.number(t.unit), to.number(t.white_luminance);
@@ -338,7 +320,7 @@ Result<PackedView> packed_view(const LobeTransport& t, const std::vector<float>&
   for (const bool bounced : {false, true}) {
     const std::vector<float>& light = bounced ? t.bounced : t.direct;
     for (std::size_t k = 0; k < t.columns.count() && (!bounced || t.bounces > 0); ++k) {
-      const Rounding rounding = rounding_of(t, k, bounced, view.largest_error_de00);
+      const Rounding rounding = rounding_of(t, k, bounced);
       for (std::size_t c = 0; c < 3; ++c) {
         for (std::size_t i = 0; i < points; ++i) plane[i] = light[i * t.floats() + 3 * k + c];
         to.light(plane, rounding);
@@ -351,15 +333,14 @@ Result<PackedView> packed_view(const LobeTransport& t, const std::vector<float>&
   }
   to.number(!beside.data.empty());
   if (!beside.data.empty()) {
-    const std::vector<std::size_t> pixels = pixels_beside(t);
+    const std::vector<std::size_t> pixels = pixels_beside(seen);
     std::vector<float> values(pixels.size());
     for (std::size_t c = 0; c < 4; ++c) {
       for (std::size_t i = 0; i < pixels.size(); ++i) values[i] = beside.data[4 * pixels[i] + c];
       to.light(values, {scale_of(1, largest_of(values)), 1});
     }
   }
-  view.bytes = std::move(to.bytes);
-  return Result(std::move(view));
+  return Result(std::move(to.bytes));
 }
 
 Result<UnpackedView> unpacked_view(std::string_view bytes) {
@@ -399,7 +380,7 @@ Result<UnpackedView> unpacked_view(std::string_view bytes) {
     if (!read_probes(t, from)) return damaged;
   }
   if (from.count(1) == 1) {
-    const std::vector<std::size_t> pixels = pixels_beside(t);
+    const std::vector<std::size_t> pixels = pixels_beside(seen);
     view.beside = {t.width, t.height, 4, std::vector<float>(4 * seen.size(), 0.0F), {}};
     for (std::size_t c = 0; c < 4; ++c)
       from.light(pixels.size(), [&](std::size_t i, float value) { view.beside.data[4 * pixels[i] + c] = value; });

@@ -20,16 +20,12 @@ constexpr std::size_t kMostPagePoints = std::size_t{1} << 19;
 // its light, by no more than this: CIEDE2000, 95th percentile over some of the points.
 constexpr double kPackedError_de00 = 0.02;
 
-struct PackedView {
-  std::string bytes;              // smooth planes, which a general compressor makes much smaller
-  double largest_error_de00 = 0;  // of the columns, as kPackedError_de00 has it; halves may not reach that
-};
-
-// `view_deg` is what TransportShader takes, one angle for every point; they are rounded to 1/50 degree. `beside` has
-// what is seen beside the points, R G B A for every pixel; without pixels there is nothing. Shares of classes are
-// rounded to 1/2047, and the light of probes to 8 bits. Error: too many points.
-Result<PackedView> packed_view(const LobeTransport& transport, const std::vector<float>& view_deg,
-                               const image::Image& beside);
+// Smooth planes of bytes, which a general compressor makes much smaller. `view_deg` is what TransportShader takes, one
+// angle for every point; they are rounded to 1/50 degree. `beside` has what is seen beside the points, R G B A for
+// every pixel; without pixels there is nothing. Shares of classes are rounded to 1/2047, and the light of probes to 8
+// bits. Error: too many points.
+Result<std::string> packed_view(const LobeTransport& transport, const std::vector<float>& view_deg,
+                                const image::Image& beside);
 
 struct UnpackedView {
   LobeTransport light;  // without noise

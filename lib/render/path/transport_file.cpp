@@ -1,5 +1,7 @@
 #include "render/path/transport_file.h"
 
+#include <Imath/half.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -30,28 +32,15 @@ std::string class_name(int group) {
   return fmt::format("bounced-class-{:03}", group);
 }
 
-image::Image blank(const LobeTransport& t, int channels) {
-  image::Image image{t.width, t.height, channels, {}, {}};
-  image.data.assign(
-      static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height) * static_cast<std::size_t>(channels),
-      0.0F);
-  return image;
-}
-
 // The change of the gray paint of a column by rounding to halves, the 95th percentile.
 double half_error(const LobeTransport& t, const image::Image& image, std::size_t column) {
   std::vector<double> errors;
   const double weight = nominal_weight(t.columns, column);
   for (std::size_t i = 0; i < t.places.size(); i += 7) {
     const float* rgb = &image.data[3 * static_cast<std::size_t>(t.places[i])];
-    color::Rgb light{rgb[0], rgb[1], rgb[2]}, rounded;
-    for (int c = 0; c < 3; ++c) {
-      // To 11 bits, and to multiples of the smallest half.
-      int exponent = 0;
-      std::frexp(light[c], &exponent);
-      const double unit = std::max(std::ldexp(1.0, exponent - 11), 0x1p-24);
-      rounded[c] = unit * std::nearbyint(light[c] / unit);
-    }
+    const color::Rgb light{rgb[0], rgb[1], rgb[2]};
+    color::Rgb rounded;
+    for (int c = 0; c < 3; ++c) rounded[c] = Imath::half(rgb[c]);
     color::Rgb base;
     if (t.columns.is_gloss(column))
       base = (kNominalGray / kPi / t.white_luminance) * t.light(i, LobeColumns::diffuse());
@@ -88,20 +77,28 @@ std::string header_of(const LobeTransport& t) {
   return json_text(header);
 }
 
-// Light of every point and of one column.
-image::ImagePart light_part(const LobeTransport& t, std::size_t column, bool bounced, TransportParts& all) {
-  image::ImagePart part{part_name(t.columns, column, bounced), blank(t, 3), {}, image::PixelType::kHalf};
-  const std::vector<float>& light = bounced ? t.bounced : t.direct;
+// A part of these channels, which stand at every point from `first` of `stride`, relative to the diffuse white.
+image::ImagePart point_part(const LobeTransport& t, std::string name, const std::vector<float>& light,
+                            std::size_t stride, std::size_t first, std::vector<std::string> channels) {
+  const std::size_t count = channels.size();
+  image::Image image{t.width, t.height, static_cast<int>(count), {}, std::move(channels)};
+  image::ImagePart part{std::move(name), std::move(image), {}, image::PixelType::kHalf};
+  part.image.data.assign(count * static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height), 0.0F);
   const auto scale = static_cast<float>(1 / t.white_luminance);
   for (std::size_t i = 0; i < t.places.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      part.image.data[3 * static_cast<std::size_t>(t.places[i]) + c] = scale * light[i * t.floats() + 3 * column + c];
-  part.image.channel_names = {"R", "G", "B"};
+    for (std::size_t c = 0; c < count; ++c)
+      part.image.data[count * t.places[i] + c] = scale * light[i * stride + first + c];
+  return part;
+}
+
+image::ImagePart light_part(const LobeTransport& t, std::size_t column, bool bounced, TransportParts& all) {
+  image::ImagePart part = point_part(t, part_name(t.columns, column, bounced), bounced ? t.bounced : t.direct,
+                                     t.floats(), 3 * column, {"R", "G", "B"});
   part.attributes["goniochrome:column"] = t.columns.name(column);
   part.attributes["colorInteropID"] = kColorSpace;
-  const double error = half_error(t, part.image, column);
   const bool fits = std::ranges::all_of(part.image.data, [](float value) { return std::abs(value) < 65504; });
-  if (!fits || error > kHalfError_de00) {
+  const double error = fits ? half_error(t, part.image, column) : HUGE_VAL;
+  if (error > kHalfError_de00) {
     part.type = image::PixelType::kFloat;
     ++all.float_parts;
   } else {
@@ -112,18 +109,13 @@ image::ImagePart light_part(const LobeTransport& t, std::size_t column, bool bou
 }
 
 image::ImagePart class_part(const LobeTransport& t, int group, TransportParts& all) {
-  constexpr int kChannels = 3 * PaintGroups::kKinds;
-  image::ImagePart part{class_name(group), blank(t, kChannels), {}, image::PixelType::kHalf};
+  std::vector<std::string> channels;
   for (const char* kind : kKindNames)
-    for (const char* channel : {"R", "G", "B"}) part.image.channel_names.push_back(fmt::format("{}.{}", kind, channel));
-  const auto scale = static_cast<float>(1 / t.white_luminance);
-  const std::size_t stride = 3 * t.worn.groups.classes();
-  for (std::size_t i = 0; i < t.places.size(); ++i)
-    for (std::size_t c = 0; c < kChannels; ++c)
-      part.image.data[kChannels * static_cast<std::size_t>(t.places[i]) + c] =
-          scale * t.classes[i * stride + static_cast<std::size_t>(group) * kChannels + c];
-  all.bytes_per_point += 2 * kChannels;
-  return part;
+    for (const char* channel : {"R", "G", "B"}) channels.push_back(fmt::format("{}.{}", kind, channel));
+  const std::size_t count = channels.size();
+  all.bytes_per_point += 2 * static_cast<double>(count);
+  return point_part(t, class_name(group), t.classes, 3 * t.worn.groups.classes(),
+                    static_cast<std::size_t>(group) * count, std::move(channels));
 }
 
 // Probe by probe a row: once, then deeper.

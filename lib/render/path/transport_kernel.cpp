@@ -55,13 +55,6 @@ void ShadeTransport(const TransportBlock& block, const TransportWeights& w, floa
   }
 }
 
-void ToHalves(const float* from, std::size_t count, std::uint16_t* to) {
-  const hn::CappedTag<float, 1> one;
-  const hn::Rebind<hwy::float16_t, decltype(one)> half;
-  for (std::size_t i = 0; i < count; ++i)
-    hn::StoreU(hn::DemoteTo(half, hn::LoadU(one, from + i)), half, reinterpret_cast<hwy::float16_t*>(to + i));
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace goniochrome::render
 HWY_AFTER_NAMESPACE();
@@ -70,14 +63,9 @@ HWY_AFTER_NAMESPACE();
 namespace goniochrome::render {
 
 HWY_EXPORT(ShadeTransport);
-HWY_EXPORT(ToHalves);
 
 void shade_transport(const TransportBlock& block, const TransportWeights& weights, float* rgb) {
   HWY_DYNAMIC_DISPATCH(ShadeTransport)(block, weights, rgb);
-}
-
-void to_halves(const float* from, std::size_t count, std::uint16_t* to) {
-  HWY_DYNAMIC_DISPATCH(ToHalves)(from, count, to);
 }
 
 }  // namespace goniochrome::render

@@ -26,7 +26,4 @@ struct TransportWeights {
 // rgb: [channel][point].
 void shade_transport(const TransportBlock& block, const TransportWeights& weights, float* rgb);
 
-// Rounds to the nearest half; values are within its range.
-void to_halves(const float* from, std::size_t count, std::uint16_t* to);
-
 }  // namespace goniochrome::render

@@ -1,5 +1,7 @@
 #include "render/path/transport_shading.h"
 
+#include <Imath/half.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -92,14 +94,14 @@ void TransportShader::State::lay_out(const LobeTransport& t) {
     const std::size_t stride = 3 * scale.size(), size = stride * kTransportLanes;
     half.resize((all ? blocks.size() : bounced_blocks) * size);
     parallel_for(blocks.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
-      std::vector<float> lanes(size);
       for (std::size_t b = begin; b < end; ++b) {
         const Block& block = blocks[b];
         if (!all && !block.is_bounced) continue;
+        std::uint16_t* to = half.data() + (all ? block.direct : block.bounced) * size;
         for (std::size_t lane = 0; lane < kTransportLanes; ++lane)
           for (std::size_t k = 0; k < stride; ++k)
-            lanes[k * kTransportLanes + lane] = scale[k / 3] * from[block.points[lane] * stride + k];
-        to_halves(lanes.data(), size, half.data() + (all ? block.direct : block.bounced) * size);
+            to[k * kTransportLanes + lane] =
+                Imath::half(scale[k / 3] * from[block.points[lane] * stride + k]).bits();
       }
     });
   };
