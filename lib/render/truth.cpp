@@ -10,8 +10,8 @@
 #include "render/internal/seen.h"
 #include "render/path/noise.h"
 #include "render/path/ray_correction.h"
-#include "render/path/ray_points.h"
 #include "render/path/transport.h"
+#include "render/path/visible_surface.h"
 #include "render/picture_error.h"
 #include "render/scene_effects.h"
 

@@ -9,7 +9,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "render/panes.h"
-#include "render/path/path_tracer.h"
+#include "render/path/ray_correction.h"
 #include "render/path/visible_white.h"
 #include "render/scene_effects.h"
 
@@ -108,6 +108,8 @@ void PathEngine::load_paints(const Scene& scene) {
 void PathEngine::draw_background(const Rays& rays, int samples, image::Image& rgba) const {
   const auto shifts = sample_shifts(samples);
   const rays::Float3 eye = transport_->eye().local(rays.eye);
+  const Backdrop backdrop{effects_.background, scene_.background_color,
+                          scene_.texels != nullptr ? &scene_.texels->environment() : nullptr};
   parallel_for(static_cast<std::size_t>(rgba.height), 8, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < rgba.width; ++x) {
@@ -117,12 +119,7 @@ void PathEngine::draw_background(const Rays& rays, int samples, image::Image& rg
           const Vec3 direction = rays.direction(x + 0.5 + dx, y + 0.5 + dy);
           const double share = transport_->clear_share(eye, rays::float3(direction));
           clear += share;
-          if (share == 0) continue;
-          if (effects_.background == Background::kColor) {
-            sum += share * scene_.background_color;
-          } else if (effects_.background == Background::kEnvironment && scene_.texels != nullptr) {
-            sum += share * scene_.texels->environment().blended(direction);
-          }
+          if (share > 0) sum += share * backdrop.at(rays::float3(direction));
         }
         const auto count = static_cast<double>(shifts.size());
         float* pixel = rgba.pixel(x, y);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/parallel.h"
 #include "render/internal/seen.h"
-#include "render/path/ray_points.h"
 
 namespace goniochrome::render {
 
@@ -55,56 +55,6 @@ double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Ba
   return percentile_95(std::move(de00));
 }
 
-namespace {
-
-// A pixel beside which the light changes by more than this part shows an edge, such as that of a shadow on the floor.
-constexpr float kSmoothStep = 1.0F / 32;
-
-// Calls visit(pixel, light) for each pixel of a sample that shows no mesh but a floor or a background, if it is wanted.
-template <class Wanted, class Visit>
-void visit_surroundings(const Transport& transport, const Gbuffer& g, const Backdrop& backdrop,
-                        const RayEffects& effects, const Wanted& wanted, const Visit& visit) {
-  const rays::RayScene& scene = transport.rays();
-  const rays::Float3 eye = scene.local(g.rays.eye);
-  parallel_for(static_cast<std::size_t>(g.height), kCorrectedRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < g.width; ++x) {
-        if (g.part(x, y) >= 0 || !wanted(g.index(x, y))) continue;
-        const rays::Float3 direction = -rays::float3(g.to_viewer(x, y));
-        const rays::Hit hit = floor_hit(scene, eye, direction);
-        if (!hit.any() && backdrop.background == Background::kNone) continue;
-        visit(g.index(x, y), hit.any() ? transport.shaded_ground(scene.spot(hit, eye, direction)).shown(effects)
-                                       : backdrop.at(direction));
-      }
-    }
-  });
-}
-
-void add_light(const color::Rgb& light, float gain, std::size_t at, image::Image& picture) {
-  float* pixel = &picture.data[at * static_cast<std::size_t>(picture.channels)];
-  if (picture.channels > 3) pixel[3] += gain;
-  for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>(light[c]);
-}
-
-bool is_smooth(const std::vector<rays::Float3>& light, const std::vector<bool>& open, int width, int height, int x,
-               int y) {
-  const auto at = [&](int to_x, int to_y) {
-    return static_cast<std::size_t>(to_y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(to_x);
-  };
-  const std::size_t own = at(x, y);
-  const auto beside = [&](int to_x, int to_y) {
-    if (to_x < 0 || to_y < 0 || to_x >= width || to_y >= height) return true;
-    const std::size_t other = at(to_x, to_y);
-    if (!open[other]) return false;
-    const rays::Float3 &a = light[own], &b = light[other];
-    const auto near = [](float p, float q) { return std::abs(p - q) <= kSmoothStep * std::max(p, q); };
-    return near(a.x, b.x) && near(a.y, b.y) && near(a.z, b.z);
-  };
-  return open[own] && beside(x - 1, y) && beside(x + 1, y) && beside(x, y - 1) && beside(x, y + 1);
-}
-
-}  // namespace
-
 void CorrectionNoise::add(const PathPicture& one, int groups) {
   const double of_mean = 1 / (std::sqrt(groups) * groups);
   de00_p95 += of_mean * one.noise_p95_de00, error_de00_p95 += of_mean * one.error_p95_de00;
@@ -121,33 +71,30 @@ std::vector<const Gbuffer*> gbuffers_of(const std::vector<VisibleSurface>& sampl
 
 void add_surroundings(const Transport& transport, const std::vector<const Gbuffer*>& samples, const Backdrop& backdrop,
                       const RayEffects& effects, float gain, image::Image& picture) {
+  const rays::RayScene& scene = transport.rays();
   const Gbuffer& first = *samples.front();
-  const std::size_t pixels = first.data.size() / 4;
-  std::vector<rays::Float3> light(pixels);
-  std::vector<std::uint8_t> shown(pixels, 0);
-  visit_surroundings(
-      transport, first, backdrop, effects, [](std::size_t) { return true; },
-      [&](std::size_t at, const color::Rgb& seen) { light[at] = rays::float3(seen), shown[at] = 1; });
-  std::vector<bool> open(pixels, true);
-  for (const Gbuffer* sample : samples)
-    for (std::size_t i = 0; i < pixels; ++i)
-      if (sample->data[4 * i + 3] != 0) open[i] = false;
-  std::vector<std::uint8_t> smooth(pixels, 0);
+  const rays::Float3 eye = scene.local(first.rays.eye);
+  const auto shown = [&](const Gbuffer& g, int x, int y) -> std::optional<color::Rgb> {
+    if (g.part(x, y) >= 0) return std::nullopt;
+    const rays::Float3 direction = -rays::float3(g.to_viewer(x, y));
+    const rays::Hit hit = floor_hit(scene, eye, direction);
+    if (hit.any()) return transport.shaded_ground(scene.spot(hit, eye, direction)).shown(effects);
+    if (backdrop.background == Background::kNone) return std::nullopt;
+    return backdrop.at(direction);
+  };
   parallel_for(static_cast<std::size_t>(first.height), kCorrectedRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < first.width; ++x) {
-        const std::size_t at = first.index(x, y);
-        smooth[at] = is_smooth(light, open, first.width, first.height, x, y) ? 1 : 0;
-        if (shown[at] != 0)
-          add_light(rays::vec3(light[at]), smooth[at] != 0 ? gain * static_cast<float>(samples.size()) : gain, at,
-                    picture);
+        float* pixel = &picture.data[first.index(x, y) * static_cast<std::size_t>(picture.channels)];
+        for (const Gbuffer* sample : samples) {
+          const std::optional<color::Rgb> light = shown(*sample, x, y);
+          if (!light) continue;
+          if (picture.channels > 3) pixel[3] += gain;
+          for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>((*light)[c]);
+        }
       }
     }
   });
-  for (std::size_t sample = 1; sample < samples.size(); ++sample)
-    visit_surroundings(
-        transport, *samples[sample], backdrop, effects, [&](std::size_t at) { return smooth[at] == 0; },
-        [&](std::size_t at, const color::Rgb& seen) { add_light(seen, gain, at, picture); });
 }
 
 PathRequest correction_request(const RayEffects& effects, int bounces, double tolerance_de00) {

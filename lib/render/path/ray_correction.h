@@ -52,8 +52,7 @@ double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Ba
 std::vector<const Gbuffer*> gbuffers_of(const std::vector<VisibleSurface>& samples);
 
 // Adds `gain` times what each of these samples of the pixels shows beside the mesh: the floor, whose ground is shaded,
-// or, above the horizon, the background. Where these points are the floor, it adds their coverage. A pixel that shows
-// no edge counts by its first sample.
+// or, above the horizon, the background. Where these points are the floor, it adds their coverage.
 void add_surroundings(const Transport& transport, const std::vector<const Gbuffer*>& samples, const Backdrop& backdrop,
                       const RayEffects& effects, float gain, image::Image& picture);
 
