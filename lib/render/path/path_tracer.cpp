@@ -9,11 +9,11 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "render/internal/seen.h"
+#include "render/panes.h"
 #include "render/path/gathered.h"
 #include "render/path/pixel_pieces.h"
 #include "render/path/reconstruction.h"
 #include "render/path/rounds.h"
-#include "render/path/seen_point.h"
 
 namespace goniochrome::render {
 
@@ -40,30 +40,83 @@ std::uint64_t seed_of(std::uint64_t seed, std::uint64_t point, int batch) {
   return mixed(mixed(seed, point), static_cast<std::uint64_t>(batch));
 }
 
-class Picture {
+// The points that a camera sees along one ray: a point, or a pane and the points behind it.
+// goniochrome-coats(7), "PANES".
+class SeenPoint {
  public:
-  Picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
-          const PathRequest& request)
-      : transport_(transport), surface_(surface), base_(base), request_(request), deadline_(request.time_limit_s) {
-    const Gbuffer& g = surface.gbuffer;
-    shifts_ = sample_shifts(request.pixel_samples);
-    count_ = shifts_.size();
-    if (count_ == 1) seen_ = std::span(&surface, 1);
-    coverage_ = seen_.empty() ? coverage(transport.eye(), g.rays, g.width, g.height, shifts_) : coverage(seen_);
-    add_points();
+  // `spot` is of transport.eye(), and `to_viewer` is unit. The arguments but for these two must outlive the point.
+  SeenPoint(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
+            const rays::Float3& to_viewer)
+      : front_(transport, options, spot, to_viewer) {
+    if (transport.meets_pane({spot.triangle, spot.u, spot.v, 0})) look_behind(transport, options, spot, to_viewer);
   }
 
-  Picture(const Transport& transport, const std::vector<VisibleSurface>& samples, const image::Image* base,
+  // True as PointTransport has it; each point behind panes counts by the light that these let through.
+  bool certain() const {
+    bool certain = front_.certain();
+    for (const Behind& point : behind_) certain = certain && point.at.certain();
+    return certain;
+  }
+  color::Rgb deterministic() const {
+    color::Rgb sum = front_.deterministic();
+    for (const Behind& point : behind_) sum += static_cast<double>(point.passed) * point.at.deterministic();
+    return sum;
+  }
+  LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count) const {
+    LightShares sum = front_.certain() ? LightShares{} : front_.shares_of(sequence, first, count);
+    for (const Behind& point : behind_)
+      if (!point.at.certain()) sum += static_cast<double>(point.passed) * point.at.shares_of(sequence, first, count);
+    return sum;
+  }
+  color::Rgb floor_light() const {
+    color::Rgb sum = front_.floor_light();
+    for (const Behind& point : behind_) sum += static_cast<double>(point.passed) * point.at.floor_light();
+    return sum;
+  }
+
+ private:
+  struct Behind {
+    float passed;
+    PointTransport at;
+  };
+
+  void look_behind(const Transport& transport, const PathOptions& options, rays::Spot spot,
+                   const rays::Float3& to_viewer) {
+    const rays::Float3 direction = -to_viewer;
+    float share = 1;
+    while (share > kLeastPassed) {
+      const PassedPane passed = through_pane(transport.eye(), spot, direction);
+      if (!passed.hit.any()) return;
+      share *= passed.passed;
+      const rays::Spot next = transport.eye().spot(passed.hit, spot.position, direction);
+      behind_.push_back({share, PointTransport(transport, options, next, to_viewer)});
+      if (!transport.meets_pane(passed.hit)) return;
+      spot = next;
+    }
+  }
+
+  PointTransport front_;
+  std::vector<Behind> behind_;
+};
+
+class Picture {
+ public:
+  Picture(const Transport& transport, std::span<const VisibleSurface> samples, const image::Image* base,
           const PathRequest& request)
       : transport_(transport),
         surface_(samples.front()),
         seen_(samples),
         base_(base),
         request_(request),
-        deadline_(request.time_limit_s) {
-    count_ = samples.size();
-    coverage_ = coverage(samples);
-    even_ = even_pixels(samples);
+        deadline_(request.time_limit_s),
+        count_(samples.size()) {
+    if (count_ > 1) even_ = even_pixels(samples);
+    if (count_ == 1 && request.pixel_samples > 1) {
+      shifts_ = sample_shifts(request.pixel_samples);
+      count_ = shifts_.size(), seen_ = {};
+    }
+    const Gbuffer& g = surface_.gbuffer;
+    coverage_ = seen_.empty() ? coverage(transport.eye(), g.rays, g.width, g.height, shifts_) : coverage(seen_);
     add_points();
   }
 
@@ -368,16 +421,13 @@ class Picture {
   // Radiance, error and noise of every point from its sums.
   Errors judge() {
     each_point([&](std::size_t i) { show_own(i); });
-    if (request_.reconstruct) {
-      reconstruct();
-      fill_gaps();
-    } else {
-      each_point([this](std::size_t i) { judge(i); });
-    }
     if (!request_.reconstruct) {
+      each_point([this](std::size_t i) { judge(i); });
       const double noise = worse_percentile([this](std::size_t i) { return points_[i].noise_de00; });
       return {noise, noise};
     }
+    reconstruct();
+    fill_gaps();
     std::vector<double> mesh, floor;
     for (const PathPoint& point : points_) (point.floor ? floor : mesh).push_back(point.noise_de00);
     const double on_floor = largest_errors(floor);
@@ -536,15 +586,9 @@ class Picture {
 
 }  // namespace
 
-PathPicture path_picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
+PathPicture path_picture(const Transport& transport, std::span<const VisibleSurface> samples, const image::Image* base,
                          const PathRequest& request) {
-  return Picture(transport, surface, base, request).draw();
-}
-
-PathPicture path_picture(const Transport& transport, const std::vector<VisibleSurface>& samples,
-                         const image::Image* base, const PathRequest& request) {
-  return samples.size() == 1 ? path_picture(transport, samples.front(), base, request)
-                             : Picture(transport, samples, base, request).draw();
+  return Picture(transport, samples, base, request).draw();
 }
 
 }  // namespace goniochrome::render

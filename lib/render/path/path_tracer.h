@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "image/image.h"
@@ -69,12 +70,13 @@ struct PathPicture {
 // `base`: with PathOptions::correction what the points show without the mesh in the way, R G B in the first channels of
 // each pixel; it tells how visible noise is, and is not added. Null: black. Bit-identical for any number of threads
 // while no time limit ends it.
-PathPicture path_picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
+// `samples` are the surfaces that the samples of the pixels see, at most 16; paths are spread over them. The points of
+// a surface may be others than those that rays find. PathRequest::pixel_samples counts where there is one surface.
+PathPicture path_picture(const Transport& transport, std::span<const VisibleSurface> samples, const image::Image* base,
                          const PathRequest& request);
-
-// The picture of pixels whose samples are these surfaces, of which there are at most 16: paths are spread over them,
-// and PathRequest::pixel_samples is not used. The points of a surface may be others than those that rays find.
-PathPicture path_picture(const Transport& transport, const std::vector<VisibleSurface>& samples,
-                         const image::Image* base, const PathRequest& request);
+inline PathPicture path_picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
+                                const PathRequest& request) {
+  return path_picture(transport, std::span(&surface, 1), base, request);
+}
 
 }  // namespace goniochrome::render

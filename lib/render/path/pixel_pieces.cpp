@@ -42,7 +42,7 @@ Coverage coverage(std::span<const VisibleSurface> samples) {
   return result;
 }
 
-PixelFlags even_pixels(const std::vector<VisibleSurface>& samples) {
+PixelFlags even_pixels(std::span<const VisibleSurface> samples) {
   const Gbuffer& first = samples.front().gbuffer;
   return flags_of(first, [&](int x, int y) {
     return std::ranges::all_of(samples, [&](const VisibleSurface& sample) {

@@ -19,7 +19,7 @@ using PixelFlags = std::vector<std::uint8_t>;
 Coverage coverage(std::span<const VisibleSurface> samples);
 
 // Pixels whose samples all show one piece, by part and normal.
-PixelFlags even_pixels(const std::vector<VisibleSurface>& samples);
+PixelFlags even_pixels(std::span<const VisibleSurface> samples);
 
 // The distance of pixels that are sampled first, a power of two: at least `least` of so many points are left.
 int first_spacing(std::size_t points, std::size_t least);

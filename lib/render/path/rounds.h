@@ -109,16 +109,17 @@ inline double smoothed_variance(double own, double freedom, double around, int n
 }
 
 struct RoundLimits {
-  double of_point = 0;     // that a point has in all
-  double typical = 0;      // The points that need more than most others get no more than this asks for.
-  double lacking = 1;      // noise of the picture, in its aim
-  double least = 1;        // of the round
+  double of_point = 0;        // that a point has in all
+  double typical = 0;         // The points that need more than most others get no more than this asks for.
+  double lacking = 1;         // noise of the picture, in its aim
+  double least = 1;           // of the round
   double at_once = HUGE_VAL;  // of a point
   bool in_vain = false;       // Nothing is scaled, because more samples would not reach the aim.
 };
 
-// How many samples each point is to get next: needed(point) less those that it has, at most three times these. Where the points are content but the picture is not, or would draw too little for a round, all is
-// scaled by what it lacks. Whether there are any.
+// How many samples each point is to get next: needed(point) less those that it has, at most three times these. Where
+// the points are content but the picture is not, or would draw too little for a round, all is scaled by what it lacks.
+// Whether there are any.
 template <class Needed, class Has>
 bool plan_round(const RoundLimits& limits, const Needed& needed, const Has& has, std::vector<int>& more) {
   constexpr double kGrowth = 3;

@@ -51,5 +51,42 @@ TEST(RoundCut, DrawsNothingWhereNothingIsLeft) {
   }
 }
 
+std::vector<int> planned(const RoundLimits& limits, const std::vector<double>& needed, const std::vector<double>& has) {
+  std::vector<int> more(needed.size(), 0);
+  const auto of = [](const std::vector<double>& list) { return [&list](std::size_t i) { return list[i]; }; };
+  const bool any = plan_round(limits, of(needed), of(has), more);
+  EXPECT_EQ(any, std::ranges::any_of(more, [](int n) { return n > 0; }));
+  return more;
+}
+
+// A point gets what it needs beyond what it has, at most three times that, and no more than typical points ask for.
+TEST(PlanRound, GivesPointsWhatTheyNeed) {
+  RoundLimits limits;
+  limits.of_point = 1000, limits.typical = 20;
+  EXPECT_EQ(planned(limits, {0, 3, 10, 20, 500}, {4, 4, 4, 4, 10}), (std::vector<int>{0, 0, 6, 12, 11}));
+  limits.at_once = 8;
+  EXPECT_EQ(planned(limits, {10, 20}, {4, 4}), (std::vector<int>{6, 8}));
+}
+
+// Where every point is content and the picture is not, all get more in proportion, but for points that need nothing;
+// none do where more would be in vain, or where all have all that they may get.
+TEST(PlanRound, ScalesWhatContentPointsNeed) {
+  RoundLimits limits;
+  limits.of_point = 1000, limits.typical = 4, limits.lacking = 2;
+  EXPECT_EQ(planned(limits, {4, 2, 0}, {4, 4, 4}), (std::vector<int>{12, 5, 0}));
+  limits.in_vain = true;
+  EXPECT_EQ(planned(limits, {4, 2, 0}, {4, 4, 4}), (std::vector<int>{0, 0, 0}));
+  limits.in_vain = false, limits.of_point = 4;
+  EXPECT_EQ(planned(limits, {4, 2, 0}, {4, 4, 4}), (std::vector<int>{0, 0, 0}));
+}
+
+TEST(PixelPoints, VisitsTheNeighborhoodOfAPixel) {
+  PixelPoints points(8, 4);
+  points.add(0, 0), points.add(2, 2), points.add(3, 2), points.add(7, 3);
+  std::vector<std::size_t> seen;
+  points.visit_around(1, 1, [&](std::size_t i) { seen.push_back(i); });
+  EXPECT_EQ(seen, (std::vector<std::size_t>{0, 1, 2}));
+}
+
 }  // namespace
 }  // namespace goniochrome::render::rounds_test
