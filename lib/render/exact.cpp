@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 #include "base/parallel.h"
 #include "render/integral/block_sums.h"
@@ -35,53 +36,47 @@ void gather_texels(const envmap::Environment& env, std::vector<AnyGatherer>& poi
   }
 }
 
-template <class AnyGatherer>
-void gather(const Surroundings& around, std::vector<AnyGatherer>& points) {
-  if (around.blocks != nullptr) {
-    for (AnyGatherer& point : points) gather_blocks(*around.blocks, point);
-  } else if (around.texels != nullptr) {
-    gather_texels(*around.texels, points);
-  }
-}
-
-}  // namespace
-
-std::vector<color::Rgb> reference_radiance(const std::vector<SurfacePoint>& points, const Surroundings& around,
-                                           const std::vector<Light>& lights) {
+// Sums the light at each point, whose gatherer is made by make(point, texel_rad).
+template <class Point, class Make>
+std::vector<color::Rgb> gathered(const std::vector<Point>& points, const Surroundings& around,
+                                 const std::vector<Light>& lights, const Make& make) {
   std::vector<color::Rgb> radiance(points.size());
   const envmap::Environment* env = around.texels;
   const double texel_rad = env != nullptr ? env->largest_texel_rad() : 0;
   parallel_for(points.size(), kPointsTogether, [&](std::size_t begin, std::size_t end) {
-    std::vector<Gatherer> gatherers;
-    for (std::size_t i = begin; i < end; ++i) gatherers.emplace_back(points[i], texel_rad, around.most_spread);
-    gather(around, gatherers);
+    std::vector<decltype(make(points[0], texel_rad))> gatherers;
+    for (std::size_t i = begin; i < end; ++i) gatherers.push_back(make(points[i], texel_rad));
+    if (around.blocks != nullptr) {
+      for (auto& gatherer : gatherers) gather_blocks(*around.blocks, gatherer);
+    } else if (env != nullptr) {
+      gather_texels(*env, gatherers);
+    }
     for (std::size_t i = begin; i < end; ++i) {
-      Gatherer& gatherer = gatherers[i - begin];
+      auto& gatherer = gatherers[i - begin];
       for (const Light& light : lights) gatherer.add_light(light_at(light, points[i].position));
-      if (env != nullptr) gatherer.add_mirror(env->blended(gatherer.reflected()));
+      if constexpr (std::is_same_v<Point, SurfacePoint>)
+        if (env != nullptr) gatherer.add_mirror(env->blended(gatherer.reflected()));
       radiance[i] = gatherer.sum();
     }
   });
   return radiance;
 }
 
+}  // namespace
+
+std::vector<color::Rgb> reference_radiance(const std::vector<SurfacePoint>& points, const Surroundings& around,
+                                           const std::vector<Light>& lights) {
+  return gathered(points, around, lights, [&](const SurfacePoint& point, double texel_rad) {
+    return Gatherer(point, texel_rad, around.most_spread);
+  });
+}
+
 std::vector<color::Rgb> textured_radiance(const std::vector<TexturedPoint>& points, const Surroundings& around,
                                           const std::vector<Light>& lights,
                                           const color::ReflectionOperator* reflection) {
-  std::vector<color::Rgb> radiance(points.size());
-  const envmap::Environment* env = around.texels;
-  const double texel_rad = env != nullptr ? env->largest_texel_rad() : 0;
-  parallel_for(points.size(), kPointsTogether, [&](std::size_t begin, std::size_t end) {
-    std::vector<TextureGatherer> gatherers;
-    for (std::size_t i = begin; i < end; ++i)
-      gatherers.emplace_back(points[i], reflection, texel_rad, around.most_spread);
-    gather(around, gatherers);
-    for (std::size_t i = begin; i < end; ++i) {
-      for (const Light& light : lights) gatherers[i - begin].add_light(light_at(light, points[i].position));
-      radiance[i] = gatherers[i - begin].sum();
-    }
+  return gathered(points, around, lights, [&](const TexturedPoint& point, double texel_rad) {
+    return TextureGatherer(point, reflection, texel_rad, around.most_spread);
   });
-  return radiance;
 }
 
 namespace {
@@ -105,14 +100,6 @@ Surroundings darkness(const Surroundings& around) {
   return none;
 }
 
-bool is_textured(const Scene& scene, int part) {
-  return scene.layer != nullptr && scene.layer->surface(part).texture != nullptr;
-}
-
-bool hides_paint(const Scene& scene, int part) {
-  return scene.layer != nullptr && scene.layer->surface(part).hides_paint();
-}
-
 // The textured ones of these points get their colors, and keep of what is there the part that is not covered.
 void put_textured(const Scene& scene, const std::vector<VisiblePoint>& points, const Effects& effects,
                   const Surroundings& around, std::vector<color::Rgb>& colors) {
@@ -120,7 +107,7 @@ void put_textured(const Scene& scene, const std::vector<VisiblePoint>& points, c
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const VisiblePoint& point = points[i];
-    if (!is_textured(scene, point.part)) continue;
+    if (scene.layer == nullptr || scene.layer->surface(point.part).texture == nullptr) continue;
     SurfaceLayer::Place place = scene.layer->place(point, i, effects);
     colors[i] = place.bare * colors[i];
     const std::size_t first = textured.size();
@@ -175,7 +162,7 @@ std::vector<color::Rgb> exact_radiance(const std::vector<VisiblePoint>& points, 
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto part = static_cast<std::size_t>(points[i].part);
-    if (hides_paint(scene, points[i].part)) continue;
+    if (scene.layer != nullptr && scene.layer->surface(points[i].part).hides_paint()) continue;
     surface.push_back({points[i].normal, points[i].to_viewer, &paints[part], &models[part], points[i].position});
     numbers.push_back(i);
   }
