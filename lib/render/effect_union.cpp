@@ -45,17 +45,7 @@ Effects united(const Effects& a, const Effects& b) {
 }
 
 bool covers(const Effects& all, const Effects& wanted) {
-  const Effects both = united(all, wanted);
-  const auto same_use = [](const Effects::LobeUse& x, const Effects::LobeUse& y) {
-    return x.exponent == y.exponent && x.directional_diffuse == y.directional_diffuse && x.gloss == y.gloss;
-  };
-  for (const auto flag : {&Effects::environment, &Effects::diffuse, &Effects::mirror, &Effects::fresnel, &Effects::coat,
-                          &Effects::horizon, &Effects::views, &Effects::satin, &Effects::stretch, &Effects::maps,
-                          &Effects::image_maps, &Effects::texture, &Effects::texture_filter, &Effects::anisotropy,
-                          &Effects::reflection, &Effects::extent, &Effects::panes, &Effects::sums})
-    if (both.*flag != all.*flag) return false;
-  return std::ranges::equal(both.lobes, all.lobes, same_use) && both.rays == all.rays && both.spots == all.spots &&
-         both.tilt_level == all.tilt_level && both.lights == all.lights && both.background == all.background;
+  return united(all, wanted) == all;
 }
 
 Effects with_all_lobes(const Effects& effects, const envmap::PrefilteredEnvironment& env) {

@@ -33,6 +33,7 @@ struct Effects {
   struct LobeUse {
     double exponent = 1;
     bool directional_diffuse = false, gloss = false;  // whether any paint has such a weight
+    bool operator==(const LobeUse&) const = default;
   };
   bool environment = false;
   bool diffuse = true;
@@ -66,6 +67,7 @@ struct Effects {
   int most_ray_samples = 1 << 16;  // of a visible point, in all samples of its pixel
   Background background = Background::kNone;
 
+  bool operator==(const Effects&) const = default;
   // Lights that engines of maps sum one by one: lamps, and bright spots of the environment as discs.
   std::size_t single_lights() const { return lights + spots; }
   bool discs() const { return extent || spots > 0; }

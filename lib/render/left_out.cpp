@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "math/statistics.h"
 #include "render/internal/seen.h"
 #include "render/plan/effect_list.h"
 #include "render/plan/ray_plan.h"
@@ -35,11 +36,10 @@ void compare(const Frame& planned, const Frame& full, double white, LeftOut& res
       if (full.gbuffer->part(x, y) < 0) continue;
       const float *a = planned.picture.pixel(x, y), *b = full.picture.pixel(x, y);
       de00.push_back(seen_difference({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, white));
-      result.de00_mean += de00.back();
-      result.de00_max = std::max(result.de00_max, de00.back());
     }
   }
-  if (!de00.empty()) result.de00_mean /= static_cast<double>(de00.size());
+  if (de00.empty()) return;
+  result.de00_mean = math::mean(de00), result.de00_max = std::ranges::max(de00);
   result.de00_p95 = percentile_95(std::move(de00));
 }
 
