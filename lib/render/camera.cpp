@@ -74,31 +74,4 @@ Result<Rays> rays(const Camera& camera, int width, int height) {
               pixel * axes.right, pixel * axes.down, camera.eye};
 }
 
-// With u = p - eye, d = u.forward and pixel size q: x = u.right/(d q) + width/2 pixels. Clip coordinates are
-// (2 x/width - 1) d and likewise for y (down), so a shift of the sampled point by s pixels moves the image by -s.
-std::array<float, 16> clip_matrix(const Camera& camera, const Rays& rays, int width, int height, const mesh::Box& box,
-                                  double shift_x, double shift_y) {
-  const Axes axes = axes_of(camera);
-  const double pixel = length(rays.right);
-  double nearest = 1e300, farthest = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 p{(corner & 1) != 0 ? box.high.x : box.low.x, (corner & 2) != 0 ? box.high.y : box.low.y,
-                 (corner & 4) != 0 ? box.high.z : box.low.z};
-    const double depth = dot(p - camera.eye, axes.forward);
-    nearest = std::min(nearest, depth), farthest = std::max(farthest, depth);
-  }
-  const double size = length(box.high - box.low);
-  const double far = std::max(1.001 * farthest, 1e-3 * size), near = std::max(0.999 * nearest, 1e-4 * far);
-  const Vec3 x = (2 / (width * pixel)) * axes.right - (2 * shift_x / width) * axes.forward;
-  const Vec3 y = (2 / (height * pixel)) * axes.down - (2 * shift_y / height) * axes.forward;
-  const Vec3 z = ((far + near) / (far - near)) * axes.forward;
-  const Vec3& w = axes.forward;
-  const auto f = [](double value) { return static_cast<float>(value); };
-  const Vec3& e = camera.eye;
-  return {f(x.x),       f(y.x), f(z.x),        f(w.x),        f(x.y),
-          f(y.y),       f(z.y), f(w.y),        f(x.z),        f(y.z),
-          f(z.z),       f(w.z), f(-dot(x, e)), f(-dot(y, e)), f(-dot(z, e) - 2 * far * near / (far - near)),
-          f(-dot(w, e))};
-}
-
 }  // namespace goniochrome::render

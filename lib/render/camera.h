@@ -2,8 +2,6 @@
 // goniochrome-rendering(7), "Cameras".
 #pragma once
 
-#include <array>
-
 #include "base/result.h"
 #include "base/vec3.h"
 #include "mesh/mesh.h"
@@ -38,11 +36,5 @@ struct Rays {
 // Error (usage): the eye is the target, or the fov is outside (0,180). An up vector along the line of sight is
 // replaced.
 Result<Rays> rays(const Camera& camera, int width, int height);
-
-// The matrix, column by column, that takes a world point to OpenGL's clip space with y DOWN, so that window coordinates
-// are those of `rays`. `shift_x` and `shift_y` (pixels) move the sampled point of every pixel. Near and far enclose the
-// box.
-std::array<float, 16> clip_matrix(const Camera& camera, const Rays& rays, int width, int height, const mesh::Box& box,
-                                  double shift_x, double shift_y);
 
 }  // namespace goniochrome::render

@@ -52,37 +52,34 @@ struct Noise {
 class Sight {
  public:
   virtual ~Sight() = default;
-  // The visible points of this sample of every pixel. They are rasterized when first asked for, and kept if there is
-  // room. Positions on the mesh follow from it by mesh_point().
+  // The visible points of this sample of every pixel, with triangles unless the buffer was given. They are found when
+  // first asked for, and kept if there is room. Positions on the mesh follow from it by mesh_point().
   virtual std::shared_ptr<const Gbuffer> gbuffer(int sample) = 0;
   // Where the pixels of that G-buffer lie on the textures of the scene; empty where the scene has none.
   virtual const std::vector<TexturePlace>& places(int sample) = 0;
   // Texture values of those pixels, kept from frame to frame; null where nothing is kept.
   virtual SeenPixels* seen_pixels(int) { return nullptr; }
-  // The OpenGL context of the renderer; null where the renderer was given a G-buffer and has no mesh.
+  // The OpenGL context of the renderer; null where it has none.
   virtual const GlContext* gl() const = 0;
   // True if it shows the mesh of the scene, and not a G-buffer that was given.
-  virtual bool shows_mesh() const { return gl() != nullptr; }
-  // The mesh as rays meet it, with the floor of the scene; null where OpenGL draws the G-buffers.
+  virtual bool shows_mesh() const { return false; }
+  // The mesh as rays meet it, with the floor of the scene; null where a G-buffer was given.
   virtual std::shared_ptr<const rays::RayScene> traced_mesh() const { return nullptr; }
   virtual Effort effort() const { return {}; }
-  // Rasterizes the sample and returns the rasterizer, which holds the G-buffer as a texture; null without OpenGL.
-  virtual const Rasterizer* rasterized(int sample) = 0;
 };
 
 // The name of an engine, and facts about it that are known before it is made.
 struct EngineInfo {
   const char* name;      // of --engine, in plans and in reports
   const char* sentence;  // what it does, for help
-  const char* where;     // where it shades, as in "12 ms on the processor"
   // True if plans may choose it and leave effects out for it. Otherwise it is used when it is asked for by name, and it
   // draws all effects, because leaving one out saves no time.
   bool is_planned;
   bool needs_texels;  // It sums the image that the environment was made from: Scene::texels.
   bool traces_rays;   // It sees the mesh in the way of light: it draws shadows, floors and parts that shine.
-  bool needs_opengl;  // It shades what OpenGL rasterizes; other engines shade what rays find visible, too.
-  bool needs_mesh;    // It cannot shade a G-buffer that comes from a file. All G-buffers that it gets have triangles.
-  bool draws_placed_lamps;  // Lamps may stand at a place, and G-buffers then have triangles.
+  bool needs_opengl;  // It shades in the OpenGL context of the renderer.
+  bool needs_mesh;    // It cannot shade a G-buffer that comes from a file.
+  bool draws_placed_lamps;  // Lamps may stand at a place.
   std::unique_ptr<Engine> (*make)(Sight& sight);
 };
 

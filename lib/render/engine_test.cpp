@@ -79,7 +79,6 @@ TEST(Engines, ShadeBuffersAndPointsAlike) {
     std::shared_ptr<const Gbuffer> gbuffer(int) override { return seen; }
     const std::vector<TexturePlace>& places(int) override { return none; }
     const GlContext* gl() const override { return nullptr; }
-    const Rasterizer* rasterized(int) override { return nullptr; }
   } sight;
   const World world;
   sight.seen = std::make_shared<const Gbuffer>(seen_by_rays(world.mesh, world.view.camera, 40, 40));

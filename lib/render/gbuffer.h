@@ -1,4 +1,4 @@
-// A G-buffer holds what is visible at one point of every pixel. It is rasterized once for a view; then every engine
+// A G-buffer holds what is visible at one point of every pixel. Rays find it once for a view; then every engine
 // shades it. What it does not store of a point on the mesh follows from the triangle and the ray through the pixel.
 // goniochrome-rendering(7), "RENDERING".
 #pragma once
@@ -9,14 +9,11 @@
 #include <limits>
 #include <vector>
 
-#include "base/result.h"
 #include "base/vec3.h"
 #include "mesh/mesh.h"
 #include "render/camera.h"
 
 namespace goniochrome::render {
-
-class GlContext;
 
 // Where a point lies on its texture.
 struct TexturePlace {
@@ -48,8 +45,7 @@ struct Gbuffer {
   int width = 0, height = 0;
   std::vector<float> data;  // 4 a pixel: unit normal turned to the viewer, part + 1 (negative: seen from inside), or 0
   Rays rays;                // through the points: their shift within the pixel is in the corner
-  std::vector<std::uint32_t> triangles = {};  // of the mesh, one a pixel; empty where they were not asked for, or where
-                                              // the buffer comes from a file
+  std::vector<std::uint32_t> triangles = {};  // of the mesh, one a pixel; empty where the buffer comes from a file
 
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }
   const float* at(int x, int y) const { return &data[index(x, y) * 4]; }
@@ -83,7 +79,7 @@ struct PlaneHit {
 PlaneHit plane_hit(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction);
 
 // Where a ray meets the plane of a triangle of the mesh. If that is outside of the triangle, as it is by a part of a
-// pixel where a rasterizer rounds, it is the nearest place within by shares of the corners; if the ray runs along the
+// pixel in a G-buffer of another program, it is the nearest place within by shares of the corners; if the ray runs along the
 // plane, the middle of the triangle.
 MeshPoint mesh_point(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction);
 
@@ -94,39 +90,5 @@ MeshPoint mesh_point(const mesh::Mesh& mesh, const Gbuffer& gbuffer, int x, int 
 // Where the samples of a pixel lie, from its center: a grid turned so that no two share a row or a column, which
 // resolves edges that are nearly upright or level in as many steps as there are samples.
 std::vector<std::array<double, 2>> sample_shifts(int samples);
-
-// Draws G-buffers with OpenGL.
-class Rasterizer {
- public:
-  // The context must outlive it. Error: see GlContext.
-  static Result<Rasterizer> create(const GlContext& gl);
-
-  // The mesh must outlive the drawing.
-  void upload(const mesh::Mesh& mesh);
-  Result<void> resize(int width, int height);
-
-  // Draws the points of all pixels that `rays`, without their shift, and the shift (in pixels) name. The result stays
-  // in texture().
-  void draw(const Camera& camera, const Rays& rays, double shift_x, double shift_y);
-  // Reads back what was drawn last, and the triangles if they are asked for.
-  void read(Gbuffer& gbuffer, bool with_triangles) const;
-
-  unsigned texture() const { return texture_; }  // of Gbuffer::data
-  const Rays& drawn_rays() const { return drawn_; }
-  int width() const { return width_; }
-  int height() const { return height_; }
-
- private:
-  explicit Rasterizer(const GlContext& gl) : gl_(&gl) {}
-
-  const GlContext* gl_;
-  const mesh::Mesh* mesh_ = nullptr;
-  Rays drawn_;
-  unsigned program_ = 0, vertex_array_ = 0, positions_ = 0, normals_ = 0, indices_ = 0;
-  unsigned texture_ = 0, triangles_ = 0, depth_ = 0, target_ = 0;
-  int width_ = 0, height_ = 0;
-  mesh::Box box_;     // about the origin below
-  Vec3 origin_ = {};  // of the positions that OpenGL has
-};
 
 }  // namespace goniochrome::render

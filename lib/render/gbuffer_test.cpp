@@ -14,29 +14,6 @@ View slanted_view(const mesh::Mesh& mesh, int samples = 1) {
   return {Camera::orbit(mesh, 33, 21, 1, 30, 1.5), 96, 64, samples, false};
 }
 
-// OpenGL rounds corners to 1/256 of a pixel, so that a pixel whose center is that close to an edge may have the
-// neighbor; on this sphere that is less than 1 % of what is seen. The rays through the pixels are the truth. The
-// control is another view.
-TEST(Gbuffer, HoldsTheTrianglesThatRaysMeet) {
-  const mesh::Mesh mesh = sphere_mesh(24);
-  auto renderer = Renderer::create();
-  ASSERT_TRUE(renderer.ok());
-  const View view = slanted_view(mesh);
-  const auto drawn = renderer->look(mesh, view);
-  ASSERT_TRUE(drawn.ok());
-  const auto differing = [&](const Camera& camera) {
-    const Gbuffer met = seen_by_rays(mesh, camera, view.width, view.height);
-    int count = 0;
-    for (std::size_t i = 0; i < met.triangles.size(); ++i) count += met.triangles[i] != (*drawn)->triangles[i];
-    return count;
-  };
-  const auto seen =
-      std::ranges::count_if((*drawn)->triangles, [](std::uint32_t triangle) { return triangle != kNoTriangle; });
-  EXPECT_GT(seen, 1000);
-  EXPECT_LE(differing(view.camera), seen / 100);
-  EXPECT_GT(differing(Camera::orbit(mesh, 34, 21, 1, 30, 1.5)), seen / 5);
-}
-
 // Pictures far from the origin are those at the origin, but for pixels whose center lies on an edge. As floats in the
 // world, corners of a sphere of radius 1 lay on a grid of .5 here.
 TEST(Gbuffer, IsTheSameFarFromTheOrigin) {

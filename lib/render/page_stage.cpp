@@ -12,7 +12,7 @@
 namespace goniochrome::render {
 
 PagePrograms page_programs() {
-  return {for_opengl_es(gbuffer_vertex_shader(true)), for_opengl_es(gbuffer_fragment_shader(true)),
+  return {for_opengl_es(gbuffer_vertex_shader()), for_opengl_es(gbuffer_fragment_shader()),
           for_opengl_es(shading_vertex_shader())};
 }
 

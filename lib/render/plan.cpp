@@ -1,23 +1,23 @@
 #include "render/plan.h"
 
+#include <limits>
+
 namespace goniochrome::render {
 
+Decision decision_of(bool needed, bool on, bool forced) {
+  if (!needed) return Decision::kNotInScene;
+  if (forced) return on ? Decision::kForcedOn : Decision::kForcedOff;
+  return on ? Decision::kDrawn : Decision::kDropped;
+}
+
 const char* spelled(Decision decision) {
-  switch (decision) {
-    case Decision::kNotInScene:
-      return "not in the scene";
-    case Decision::kDrawn:
-      return "drawn";
-    case Decision::kDropped:
-      return "dropped";
-    case Decision::kForcedOn:
-      return "forced on";
-    case Decision::kForcedOff:
-      return "forced off";
-    case Decision::kFirstPass:
-      break;
-  }
-  return "first pass alone";
+  static constexpr const char* kWords[] = {"not in the scene", "drawn",      "dropped",
+                                           "forced on",        "forced off", "first pass alone"};
+  return kWords[static_cast<std::size_t>(decision)];
+}
+
+PlanItem unmeasured(const std::string& effect, const std::string& reason, bool needed) {
+  return {effect, needed, reason, std::numeric_limits<double>::quiet_NaN(), false, decision_of(needed, false, false), {}};
 }
 
 }  // namespace goniochrome::render

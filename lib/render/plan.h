@@ -11,17 +11,22 @@
 #include "math/statistics.h"
 #include "render/effect_words.h"
 #include "render/effects.h"
+#include "render/gbuffer.h"
 
 namespace goniochrome::render {
 
-// The changes that rays can add to a picture.
-struct RayContext {
-  std::string absent = "no rays are traced";  // why none are traced; "" where they are
-  bool refused = false;                       // whether that is because --effects says so
-  bool floor = false;                         // whether there is a floor to draw
-  bool floor_forced = false;                  // whether it is asked for by name
-  std::string no_floor;                       // why there is none; "" where there is, or where nothing is said of it
-  bool has_environment = false;               // whether the light is at hand of which sums are made
+// The light that rays meet beside the lights of the scene. How many bounces it takes, and which random numbers, is told
+// by Effort.
+struct RaySetup {
+  const envmap::Environment* environment = nullptr;  // none: dark
+  std::string absent;                                // why plans cannot trace rays; "" where they can
+  bool refused = false;                              // whether that is because nobody wants them
+  std::optional<Ground> floor;                       // that shows the environment
+  bool floor_forced = false;  // whether it is asked for by name, so that it is drawn whatever it is worth
+  std::string no_floor;       // why there is none
+
+  // True if there is a floor to draw.
+  bool has_floor() const { return floor && environment != nullptr; }
 };
 
 struct PlanRequest {
@@ -32,8 +37,18 @@ struct PlanRequest {
   int samples = 1;
 };
 
+// A pixel that a plan tries effects at.
+struct ProbePixel {
+  const Gbuffer* gbuffer = nullptr;
+  int x = 0, y = 0;
+  color::Rgb shown = {};  // where that is known
+};
+
 // The decision on an effect.
 enum class Decision { kNotInScene, kDrawn, kDropped, kForcedOn, kForcedOff, kFirstPass };
+
+// The decision on an effect that is on or off, by name or not.
+Decision decision_of(bool needed, bool on, bool forced);
 
 // The word for a decision in plans, reports and the headers of pictures. image::read_aov_file() reads it back.
 const char* spelled(Decision decision);
@@ -49,6 +64,9 @@ struct PlanItem {
   Decision decision = Decision::kNotInScene;
   std::optional<double> truth_de00_p95;  // the same as de00_p95, by the reference integrator
 };
+
+// The row of an effect that is off and was not measured.
+PlanItem unmeasured(const std::string& effect, const std::string& reason, bool needed = false);
 
 struct Plan {
   std::vector<PlanItem> items;

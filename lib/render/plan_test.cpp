@@ -232,7 +232,7 @@ TEST(Plan, TruthStandsBesideTheEstimate) {
       envmap::Environment::from_lat_long(std::move(image), envmap::Environment::BadPixels::kError, "constant");
   auto renderer = Renderer::create();
   const auto seen = renderer->look(world.mesh, world.view);
-  add_truth(result.plan, world.scene, probe_points({*seen}, 60), &*env, 1);
+  add_truth(result.plan, world.scene, probe_points(probe_pixels({*seen}, 60), {}, 1), &*env, 1);
   int compared = 0;
   for (const PlanItem& i : result.plan.items) {
     EXPECT_EQ(i.truth_de00_p95.has_value(), i.needed);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
+#include <map>
 
 #include "base/clock.h"
 #include "base/text.h"
@@ -16,7 +16,6 @@
 #include "render/path/ray_correction.h"
 #include "render/plan/effect_list.h"
 #include "render/plan/highlights.h"
-#include "render/plan/prober.h"
 #include "render/plan/ray_plan.h"
 #include "render/plan/sparkle_plan.h"
 #include "render/scene_effects.h"
@@ -31,6 +30,17 @@ constexpr double kSafetyOfMaps = 0.8;
 
 // Visible points that a plan is made from.
 constexpr std::size_t kProbe = 512;
+
+// Turns off what draws nothing without lobes, or without gloss.
+void leave_out_idle(Effects& effects) {
+  const auto used = [](const auto& use) { return use.directional_diffuse || use.gloss; };
+  const bool lobes = std::ranges::any_of(effects.lobes, used);
+  effects.fresnel = effects.fresnel && (effects.mirror || std::ranges::any_of(effects.lobes, &Effects::LobeUse::gloss));
+  effects.horizon = effects.horizon && lobes;
+  if (!effects.horizon) effects.spots = 0;
+  effects.anisotropy = effects.anisotropy && lobes;
+  effects.texture_filter = effects.texture_filter && effects.texture;
+}
 
 // Lobes without any weight are not drawn, nor their maps uploaded.
 void tidy(Effects& effects) {
@@ -62,6 +72,55 @@ Compact compacted(const Scene& scene, const std::vector<VisiblePoint>& points) {
   return compact;
 }
 
+// Shades the probe with any choice of effects.
+struct Prober {
+  std::size_t shown;  // the first points, which are those of the picture; highlight_points() follow
+  const Scene& scene;
+  const Effects& all;
+  const std::vector<EffectSwitch>& switches;
+  const std::vector<VisiblePoint>& points;
+  const std::vector<VisiblePoint>& seen;  // the same, with the parts of the whole scene
+  double white;
+  CpuEngine& engine;
+  CpuEngine* component_wise;  // with the plain product of colors; null where no other product is left out
+  std::map<std::vector<bool>, std::vector<color::Rgb>> known = {};
+
+  Effects effects(const std::vector<bool>& on) const {
+    Effects chosen = all;
+    for (std::size_t i = 0; i < switches.size(); ++i) {
+      if (!on[i]) switches[i].turn_off(chosen);
+    }
+    leave_out_idle(chosen);
+    return chosen;
+  }
+
+  // Kept, since the same choices are tried again and again. The result holds as long as the prober.
+  const std::vector<color::Rgb>& colors(std::vector<bool> on) {
+    for (std::size_t i = 0; i < on.size(); ++i) on[i] = on[i] || !switches[i].needed;
+    const auto [found, is_new] = known.try_emplace(std::move(on));
+    if (!is_new) return found->second;
+    const Effects chosen = effects(found->first);
+    CpuEngine& by = chosen.reflection || component_wise == nullptr ? engine : *component_wise;
+    by.load_paints(scene, chosen);
+    found->second = by.colors(points);
+    if (scene.layer != nullptr) scene.layer->add(seen, chosen, found->second);
+    return found->second;
+  }
+
+  double difference(const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) const {
+    std::vector<double> de00;
+    for (std::size_t i = 0; i < shown; ++i) de00.push_back(seen_difference(a[i], b[i], white));
+    return percentile_95(std::move(de00));
+  }
+
+  // The largest difference at the points of the picture and at highlights, which may lie between them.
+  double most(const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) const {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, seen_difference(a[i], b[i], white));
+    return largest;
+  }
+};
+
 // The effects that are on while the plan is made, and those of them that may be changed.
 struct Choice {
   std::vector<bool> on, forced;
@@ -76,15 +135,12 @@ void settle(const std::vector<EffectSwitch>& switches, std::vector<bool>& on) {
 Choice forced_choice(const EffectWords& words, const std::vector<EffectSwitch>& switches) {
   Choice choice{std::vector<bool>(switches.size()), std::vector<bool>(switches.size(), false)};
   for (std::size_t i = 0; i < switches.size(); ++i) {
-    choice.on[i] = switches[i].needed && words.start != Start::kNone;
-    for (const auto& [name, on] : words.forced) {
-      if (name != switches[i].name && name != switches[i].group) continue;
-      choice.on[i] = switches[i].needed && on;
-      choice.forced[i] = true;
-    }
+    const std::optional<bool> forced = words.forced_on(switches[i].name, switches[i].group);
+    choice.on[i] = switches[i].needed && forced.value_or(words.start != Start::kNone);
+    choice.forced[i] = forced.has_value();
   }
-  for (std::size_t i = switches.size();
-       i-- > 0;) {  // what a forced effect needs is on as well, unless it is forced off
+  // What a forced effect needs is on as well, unless it is forced off.
+  for (std::size_t i = switches.size(); i-- > 0;) {
     if (switches[i].needs < 0 || !choice.forced[i] || !choice.on[i]) continue;
     const auto needed = static_cast<std::size_t>(switches[i].needs);
     if (!choice.forced[needed]) choice.on[needed] = choice.forced[needed] = true;
@@ -130,34 +186,20 @@ void drop_unseen(Prober& prober, const std::vector<EffectSwitch>& switches, cons
 Plan plan_of_everything(const Scene& scene, const Effects& all, const std::vector<VisiblePoint>& probe,
                         const EngineInfo& engine) {
   Plan plan;
-  for (const EffectSwitch& effect : effect_switches(scene, all, probe)) {
-    PlanItem item;
-    item.effect = effect.name, item.needed = effect.needed, item.reason = effect.reason;
-    item.de00_p95 = std::numeric_limits<double>::quiet_NaN();
-    item.on = effect.needed;
-    item.decision = effect.needed ? Decision::kDrawn : Decision::kNotInScene;
-    plan.items.push_back(std::move(item));
-  }
+  const auto add = [&](const std::string& effect, bool needed, const std::string& reason) {
+    plan.items.push_back(unmeasured(effect, reason, needed));
+    plan.items.back().on = needed, plan.items.back().decision = decision_of(needed, needed, false);
+  };
+  for (const EffectSwitch& effect : effect_switches(scene, all, probe)) add(effect.name, effect.needed, effect.reason);
   plan.items.push_back(sparkle_left_out(scene, engine.name));
   for (const std::string& name : ray_effect_names()) {
-    PlanItem item;
     const bool there = name != "floor" || scene.ground.has_value();
-    item.effect = name, item.needed = item.on = there;
-    item.reason = there ? "drawn by every path" : "no floor is asked for";
-    item.de00_p95 = std::numeric_limits<double>::quiet_NaN();
-    item.decision = there ? Decision::kDrawn : Decision::kNotInScene;
-    plan.items.push_back(std::move(item));
+    add(name, there, there ? "drawn by every path" : "no floor is asked for");
   }
   plan.effects = all;
   plan.engine = engine.name;
   plan.engine_reason = "as asked: it draws every effect by rays alone, without prefiltered maps";
   return plan;
-}
-
-Decision decision_of(const EffectSwitch& effect, bool on, bool forced) {
-  if (!effect.needed) return Decision::kNotInScene;
-  if (forced) return on ? Decision::kForcedOn : Decision::kForcedOff;
-  return on ? Decision::kDrawn : Decision::kDropped;
 }
 
 // The engine that is asked for, or the first that draws by prefiltered maps.
@@ -175,17 +217,12 @@ std::vector<PlanItem> measured_items(Prober& prober, const std::vector<EffectSwi
   const std::vector<color::Rgb>& full = prober.colors(on);
   std::vector<PlanItem> items;
   for (std::size_t i = 0; i < switches.size(); ++i) {
-    PlanItem item;
-    item.effect = switches[i].name, item.needed = switches[i].needed, item.reason = switches[i].reason;
-    const bool is_untried = switches[i].group == "operator" && !prober.tries_operator();
-    if (switches[i].beyond_maps || switches[i].group == "panes" || is_untried) {
-      item.de00_p95 = std::numeric_limits<double>::quiet_NaN();
-    } else if (item.needed) {
-      on[i] = false;
-      item.de00_p95 = prober.difference(full, prober.colors(on));
-      on[i] = true;
-    }
-    items.push_back(std::move(item));
+    PlanItem& item = items.emplace_back(unmeasured(switches[i].name, switches[i].reason, switches[i].needed));
+    const bool is_untried = switches[i].group == "operator" && prober.component_wise == nullptr;
+    if (switches[i].beyond_maps || switches[i].group == "panes" || is_untried) continue;
+    on[i] = !item.needed;
+    item.de00_p95 = item.needed ? prober.difference(full, prober.colors(on)) : 0;
+    on[i] = true;
   }
   return items;
 }
@@ -204,27 +241,18 @@ std::vector<ProbePixel> probe_pixels(const std::vector<std::shared_ptr<const Gbu
   for (const auto& g : gbuffers) {
     for (std::size_t i = 0; 4 * i + 3 < g->data.size(); ++i) {
       if (g->data[4 * i + 3] == 0 || ++met % stride != 0) continue;
-      pixels.push_back({g.get(), static_cast<int>(i) % g->width, static_cast<int>(i) / g->width});
+      pixels.push_back({g.get(), static_cast<int>(i) % g->width, static_cast<int>(i) / g->width, {}});
     }
   }
   return pixels;
 }
 
-std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count,
-                                       const mesh::Mesh* mesh) {
+std::vector<VisiblePoint> probe_points(const std::vector<ProbePixel>& pixels, const Scene& scene, int samples) {
   std::vector<VisiblePoint> points;
-  for (const auto& [g, x, y] : probe_pixels(gbuffers, count)) points.push_back(g->point(x, y, {}, mesh));
-  return points;
-}
-
-std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count,
-                                       const Scene& scene, int samples) {
-  std::vector<VisiblePoint> points = probe_points(gbuffers, count, scene.mesh);
-  if (scene.layer == nullptr || !scene.layer->textured()) return points;
-  std::size_t number = 0;
-  for (const ProbePixel& pixel : probe_pixels(gbuffers, count)) {
-    VisiblePoint& point = points[number++];
-    scene.layer->put_places(*pixel.gbuffer, pixel.x, pixel.y, 1 / std::sqrt(samples), point);
+  for (const auto& [gbuffer, x, y, shown] : pixels) {
+    points.push_back(gbuffer->point(x, y, {}, scene.mesh));
+    if (scene.layer != nullptr && scene.layer->textured())
+      scene.layer->put_places(*gbuffer, x, y, 1 / std::sqrt(samples), points.back());
   }
   return points;
 }
@@ -247,12 +275,13 @@ Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbu
 }
 
 Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
-                       const PlanRequest& request, const std::vector<const Engine*>& engines, const RayContext& rays,
+                       const PlanRequest& request, const std::vector<const Engine*>& engines, const RaySetup& rays,
                        CpuEngine& tried) {
   const EffectWords& words = request.effects;
   Effects all = effects_of(scene);
   all.tolerance_de00 = request.tolerance_de00;
-  const std::vector<VisiblePoint> probe = probe_points(gbuffers, kProbe, scene, request.samples);
+  std::vector<ProbePixel> pixels = probe_pixels(gbuffers, kProbe);
+  const std::vector<VisiblePoint> probe = probe_points(pixels, scene, request.samples);
   const EngineInfo& engine = chosen_engine(engines, request.engine);
   if (engine.traces_rays) return plan_of_everything(scene, all, probe, engine);
   Effects on_mesh = all;
@@ -270,8 +299,9 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   const std::vector<VisiblePoint> highlights = highlight_points(scene, all, probe);
   points.insert(points.end(), highlights.begin(), highlights.end());
   const Compact compact = compacted(scene, points);
-  Prober prober(compact.scene, all, switches, compact.points, points, probe.size(), request.white_luminance, tried,
-                tries_plain ? &plain : nullptr);
+  const double white = request.white_luminance > 0 ? request.white_luminance : 1;
+  Prober prober{probe.size(), compact.scene, all,   switches,
+                compact.points, points, white, tried, tries_plain ? &plain : nullptr};
   Plan plan;
   plan.items = measured_items(prober, switches);
   for (std::size_t i = 0; i < switches.size() && engine.is_planned; ++i)
@@ -290,15 +320,13 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   for (std::size_t i = 0; i < switches.size(); ++i) {
     PlanItem& item = plan.items[i];
     item.on = choice.on[i];
-    item.decision = decision_of(switches[i], item.on, choice.forced[i]);
+    item.decision = decision_of(item.needed, item.on, choice.forced[i]);
     if (!switches[i].needed || !switches[i].beyond_maps || !engine.is_planned) continue;
     item.decision = Decision::kDropped;
     item.reason += "; prefiltered maps cannot show it, the engines integral and path do";
   }
-  std::vector<SparklePixel> pixels;
   const std::vector<color::Rgb>& shown = prober.colors(choice.on);
-  for (const auto& [gbuffer, x, y] : probe_pixels(gbuffers, kProbe))
-    pixels.push_back({gbuffer, x, y, shown[pixels.size()]});
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].shown = shown[i];
   plan.items.push_back(engine.is_planned ? sparkle_item(scene, pixels, request, plan.effects)
                                          : sparkle_left_out(scene, engine.name));
   plan.items.push_back(sums_item(words, rays, engine.is_planned, plan.effects));
@@ -317,7 +345,7 @@ PlanItem* row_of(Plan& plan, const std::string& effect) {
 }  // namespace
 
 void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& points, const envmap::Environment* env,
-               double white_luminance, const std::vector<ProbePixel>& pixels) {
+               double white_luminance, std::vector<ProbePixel> pixels) {
   const Effects all = effects_of(scene);
   const std::vector<EffectSwitch> switches = effect_switches(scene, all, points);
   // Facets take the place of gloss lobes: what one of these is worth shows where lobes are drawn.
@@ -338,9 +366,8 @@ void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& 
   }
   PlanItem* flakes = row_of(plan, kSparkleName);
   if (flakes == nullptr || std::isnan(flakes->de00_p95) || pixels.empty()) return;
-  std::vector<SparklePixel> seen;
-  for (const auto& [gbuffer, x, y] : pixels) seen.push_back({gbuffer, x, y, full[seen.size()]});
-  flakes->truth_de00_p95 = sparkle_truth(scene, all, seen, white);
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].shown = full[i];
+  flakes->truth_de00_p95 = sparkle_truth(scene, all, pixels, white);
 }
 
 namespace {

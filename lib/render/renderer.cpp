@@ -19,7 +19,6 @@
 #include "render/plan/ray_plan.h"
 #include "render/planning.h"
 #include "render/scene_effects.h"
-#include "render/spots.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -30,23 +29,20 @@ constexpr std::size_t kMostKept = std::size_t{320} << 20;  // bytes of all G-buf
 constexpr std::size_t kMostSeen = std::size_t{128} << 20;  // bytes of what they show of textures
 constexpr std::size_t kPixelBytes = 4 * sizeof(float) + sizeof(std::uint32_t);
 
-std::optional<rays::Floor> floor_of(const std::optional<Ground>& ground) {
-  return ground ? std::optional(rays::Floor{ground->height}) : std::nullopt;
+using Rayed = std::shared_ptr<const rays::RayScene>;
+
+Result<Rayed> rayed(const mesh::Mesh& mesh, const std::optional<Ground>& ground, const std::vector<bool>& passed = {}) {
+  const auto floor = ground ? std::optional(rays::Floor{ground->height}) : std::nullopt;
+  GONIO_ASSIGN(rays::RayScene made, rays::RayScene::create(mesh, floor, passed));
+  return Rayed(std::make_shared<const rays::RayScene>(std::move(made)));
 }
 
 }  // namespace
 
-struct OpenGl {
-  explicit OpenGl(GlContext made) : context(std::move(made)) {}
-
-  GlContext context;
-  std::optional<Rasterizer> rasterizer;
-};
-
 struct Renderer::State : Sight {
-  std::unique_ptr<OpenGl> open_gl;  // none: rays find what is visible, or `given` is all there is to see
-  std::optional<Ground> ground;     // with rays
-  std::shared_ptr<const rays::RayScene> traced;
+  std::optional<GlContext> open_gl;
+  std::optional<Ground> ground;  // that hides what lies below it
+  Rayed traced;                  // the mesh, by which rays find what is visible; null where `given` is all there is to see
   Effort effort_asked;
   std::shared_ptr<const Gbuffer> given;       // of the pixel centers, whatever the view
   std::vector<std::unique_ptr<Engine>> made;  // beside engines(); null: not yet
@@ -55,10 +51,9 @@ struct Renderer::State : Sight {
   Effects effects;
   std::optional<RaySetup> ray_setup;
   Scene ray_scene;  // all of it, seen or not: rays meet parts that the camera does not see
-  std::shared_ptr<const rays::RayScene> ray_mesh;  // of that scene; none: not yet
-  std::vector<bool> ray_panes;                     // which it passes; empty: the scene has none
-  std::shared_ptr<const rays::RayScene> whole;     // the same with its panes, where there are any
-  std::optional<envmap::SunlitSky> ray_sun;        // of the environment of ray_setup, where it has a sun
+  Rayed ray_mesh;                            // of that scene, whose panes rays pass; none: not yet
+  std::vector<bool> ray_panes;               // empty: the scene has none
+  std::optional<envmap::SunlitSky> ray_sun;  // of the environment of ray_setup, where it has a sun
   std::shared_ptr<const EnvironmentTable> ray_table;
   std::optional<Transport> transport;
   std::optional<envmap::BlockTree> ray_texels;  // of the environment of ray_setup; none: not yet
@@ -69,22 +64,25 @@ struct Renderer::State : Sight {
   std::optional<Error> ray_failure;  // of load_paints(), which cannot tell it
   double white_luminance = 1, tolerance_de00 = 0.5;
   std::optional<Deadline> deadline;  // of the picture that is loaded or drawn
-  const mesh::Mesh* uploaded = nullptr;
-  std::size_t uploaded_triangles = 0;
+  const mesh::Mesh* met = nullptr;
+  std::size_t met_triangles = 0;
 
-  // The view drawn last: its G-buffers by sample (the first is that of the centers), and which one is in the texture.
+  // A sample of the view drawn last, and its places on textures.
+  struct Kept {
+    int sample = -1;
+    std::shared_ptr<const Gbuffer> gbuffer;
+    std::vector<TexturePlace> places;  // empty: not yet
+    SeenPixels seen;
+  };
   std::optional<View> view;
   Rays rays;
-  std::vector<std::shared_ptr<Gbuffer>> kept;
-  std::vector<std::vector<TexturePlace>> placed;  // on textures, of the same; empty: not yet
-  std::vector<SeenPixels> seen;                   // of the textures, of the same
-  std::uint64_t placed_for = 0;                   // the layer
+  std::vector<Kept> kept;
+  std::uint64_t placed_for = 0;  // the layer
   bool placed_footprints = false;
-  int in_texture = -1;
-  double rasterization_ms = 0;  // the last one of this view, which a plan may have made
+  double gbuffer_ms = 0;  // of the last one of this view, which a plan may have made
 
   void begin() const {
-    if (open_gl) open_gl->context.make_current();
+    if (open_gl) open_gl->make_current();
   }
   Engine& engine_of(const EngineInfo& info);
   Result<void> can_shade(const Scene& wanted, const Engine& by) const;
@@ -95,21 +93,23 @@ struct Renderer::State : Sight {
   Result<void> meet(const Scene& whole_scene);
   Result<void> add_seen_through(int sample, float gain, image::Image& picture);
   CorrectionNoise correct(int first, int count, image::Image& picture);
-  Result<RayContext> ray_context(const Scene& whole_scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers);
+  Result<RaySetup> ray_context(const Scene& whole_scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers);
   Result<void> trace(const Scene& whole_scene, bool rough_coats);
   Scene completed(const Scene& scene) const;
   // The light of which rays are drawn; a sun is asked for by itself.
   const envmap::Environment* ray_environment() const { return ray_sun ? &ray_sun->sky : ray_setup->environment; }
 
-  const GlContext* gl() const override { return open_gl ? &open_gl->context : nullptr; }
-  std::shared_ptr<const rays::RayScene> traced_mesh() const override { return traced; }
+  const GlContext* gl() const override { return open_gl ? &*open_gl : nullptr; }
+  Rayed traced_mesh() const override {
+    if (traced == nullptr || !scene.ground || traced->has_floor()) return traced;
+    return std::make_shared<const rays::RayScene>(traced->over({scene.ground->height}));
+  }
   bool shows_mesh() const override { return given == nullptr; }
   Effort effort() const override { return effort_asked; }
-  const Rasterizer* rasterized(int sample) override;
   std::shared_ptr<const Gbuffer> gbuffer(int sample) override;
   const std::vector<TexturePlace>& places(int sample) override;
   SeenPixels* seen_pixels(int sample) override;
-  std::size_t number_kept(int sample);
+  Kept& keep(int sample);
   // By which the picture is corrected; null where it is not.
   OpenResidual* summed() const {
     const bool stopped = maps_found && maps_found->sums_stopped;
@@ -144,34 +144,20 @@ Result<void> Renderer::State::can_shade(const Scene& wanted, const Engine& by) c
 }
 
 Result<void> Renderer::State::show(const mesh::Mesh& mesh) {
-  if (given || (uploaded == &mesh && uploaded_triangles == mesh.triangles.size())) return {};
-  if (open_gl) {
-    open_gl->rasterizer->upload(mesh);
-  } else {
-    GONIO_ASSIGN(rays::RayScene scene_of_rays, rays::RayScene::create(mesh, floor_of(ground)));
-    traced = std::make_shared<const rays::RayScene>(std::move(scene_of_rays));
-  }
-  uploaded = &mesh, uploaded_triangles = mesh.triangles.size();
-  ray_mesh.reset(), whole.reset();
-  view.reset();
+  if (given || (met == &mesh && met_triangles == mesh.triangles.size())) return {};
+  GONIO_ASSIGN(traced, rayed(mesh, ground));
+  met = &mesh, met_triangles = mesh.triangles.size();
+  ray_mesh.reset(), view.reset();
   return {};
 }
 
-// The mesh of a scene as rays meet it, and as it is seen where that is another.
+// The mesh of a scene as rays of light meet it, which pass panes.
 Result<void> Renderer::State::meet(const Scene& whole_scene) {
-  const std::vector<bool> panes = has_panes(whole_scene) ? whole_scene.panes : std::vector<bool>();
+  GONIO_TRY(show(*whole_scene.mesh));
+  std::vector<bool> panes = has_panes(whole_scene) ? whole_scene.panes : std::vector<bool>();
   if (ray_mesh != nullptr && ray_panes == panes) return {};
-  const auto tree = [&](const std::vector<bool>& passed) -> Result<std::shared_ptr<const rays::RayScene>> {
-    if (passed.empty() && traced != nullptr) return traced;
-    GONIO_ASSIGN(rays::RayScene scene_of_rays, rays::RayScene::create(*whole_scene.mesh, floor_of(ground), passed));
-    return std::shared_ptr<const rays::RayScene>(std::make_shared<const rays::RayScene>(std::move(scene_of_rays)));
-  };
-  GONIO_ASSIGN(ray_mesh, tree(panes));
-  whole.reset();
-  if (!panes.empty()) {
-    GONIO_ASSIGN(whole, tree({}));
-  }
-  ray_panes = panes;
+  GONIO_ASSIGN(ray_mesh, panes.empty() ? Result<Rayed>(traced) : rayed(*whole_scene.mesh, ground, panes));
+  ray_panes = std::move(panes);
   return {};
 }
 
@@ -182,60 +168,35 @@ Result<void> Renderer::State::look_at(const View& wanted) {
     view = wanted;
     return {};
   }
-  if (open_gl) GONIO_TRY(open_gl->rasterizer->resize(wanted.width, wanted.height));
   if (!view || view->camera != wanted.camera || view->width != wanted.width || view->height != wanted.height ||
       view->samples != wanted.samples) {
     GONIO_ASSIGN(rays, goniochrome::render::rays(wanted.camera, wanted.width, wanted.height));
-    in_texture = -1;
-    for (std::shared_ptr<Gbuffer>& old : kept) {
-      if (old.use_count() > 1) old.reset();  // a frame still has it
-      if (old) old->width = 0;
-    }
+    kept.clear();
   }
   view = wanted;
   return {};
 }
 
-const Rasterizer* Renderer::State::rasterized(int sample) {
-  if (!open_gl) return nullptr;
-  if (in_texture != sample) {
-    const auto [x, y] = shift_of(sample, view->samples);
-    open_gl->rasterizer->draw(view->camera, rays, x, y);
-    in_texture = sample;
-  }
-  return &*open_gl->rasterizer;
-}
-
-// A sample's G-buffer, kept or drawn anew. Where not all can be kept, those after the first share a place.
-std::shared_ptr<const Gbuffer> Renderer::State::gbuffer(int sample) {
-  if (given) return given;
+// A sample, kept or found anew. Where not all can be kept, those after the first share a place.
+Renderer::State::Kept& Renderer::State::keep(int sample) {
   const std::size_t bytes =
       static_cast<std::size_t>(view->width) * static_cast<std::size_t>(view->height) * kPixelBytes;
   const bool room = bytes * (static_cast<std::size_t>(view->samples) + 1) <= kMostKept;
   const std::size_t place = room || sample == 0 ? static_cast<std::size_t>(sample) : 1;
   if (kept.size() <= place) kept.resize(place + 1);
-  std::shared_ptr<Gbuffer>& g = kept[place];
-  if (!g) g = std::make_shared<Gbuffer>();
-  // Triangles of samples are memory that only textures, and engines that need the mesh, make use of.
-  const bool with_triangles = sample == 0 || effects.rays.any() || effects.panes || effects.placed ||
-                              (engine != nullptr && engine->info().needs_mesh) ||
-                              (scene.layer != nullptr && scene.layer->textured());
-  const bool complete = g->width != 0 && (!with_triangles || !g->triangles.empty());
-  if (complete && (room || sample == 0)) return g;
+  Kept& one = kept[place];
+  if (one.sample == sample) return one;
   const Stopwatch clock;
-  placed.resize(kept.size()), seen.resize(kept.size());
-  placed[place].clear(), seen[place].forget();
-  if (open_gl) {
-    const Rasterizer& drawn = *rasterized(sample);
-    open_gl->context.Finish();
-    rasterization_ms = 1000 * clock.elapsed_s();
-    drawn.read(*g, with_triangles);
-  } else {
-    const auto [x, y] = shift_of(sample, view->samples);
-    *g = mesh_gbuffer(*traced, rays.shifted(x, y), view->width, view->height);
-    rasterization_ms = 1000 * clock.elapsed_s();
-  }
-  return g;
+  const auto [x, y] = shift_of(sample, view->samples);
+  one.sample = sample, one.places.clear(), one.seen.forget();
+  one.gbuffer =
+      std::make_shared<const Gbuffer>(mesh_gbuffer(*traced, rays.shifted(x, y), view->width, view->height));
+  gbuffer_ms = 1000 * clock.elapsed_s();
+  return one;
+}
+
+std::shared_ptr<const Gbuffer> Renderer::State::gbuffer(int sample) {
+  return given ? given : keep(sample).gbuffer;
 }
 
 const std::vector<TexturePlace>& Renderer::State::places(int sample) {
@@ -243,33 +204,22 @@ const std::vector<TexturePlace>& Renderer::State::places(int sample) {
   if (scene.layer == nullptr || !scene.layer->textured()) return nowhere;
   const SurfaceLayer& layer = *scene.layer;
   if (placed_for != layer.id() || placed_footprints != effects.texture_filter) {
-    for (std::vector<TexturePlace>& old : placed) old.clear();
+    for (Kept& old : kept) old.places.clear();
     placed_for = layer.id(), placed_footprints = effects.texture_filter;
   }
-  const std::size_t place = number_kept(sample);
-  placed.resize(kept.size());
-  if (placed[place].empty()) {
-    if (effects.texture_filter) {
-      placed[place] = layer.filtered_places(*kept[place], to_middle_of_part(sample, view->samples));
-    } else {
-      placed[place] = layer.places(*kept[place]);
-    }
-  }
-  return placed[place];
+  Kept& one = keep(sample);
+  if (!one.places.empty()) return one.places;
+  one.places = effects.texture_filter
+                   ? layer.filtered_places(*one.gbuffer, to_middle_of_part(sample, view->samples))
+                   : layer.places(*one.gbuffer);
+  return one.places;
 }
 
 SeenPixels* Renderer::State::seen_pixels(int sample) {
   if (given) return nullptr;
-  const std::size_t place = number_kept(sample);
-  seen.resize(kept.size());
-  seen[place].set_most_bytes(kMostSeen / kept.size());
-  return &seen[place];
-}
-
-// The number of a sample's G-buffer among those that are kept.
-std::size_t Renderer::State::number_kept(int sample) {
-  const std::shared_ptr<const Gbuffer> of = gbuffer(sample);
-  return static_cast<std::size_t>(std::find(kept.begin(), kept.end(), of) - kept.begin());
+  SeenPixels& seen = keep(sample).seen;
+  seen.set_most_bytes(kMostSeen / kept.size());
+  return &seen;
 }
 
 // Makes the picture the mean of `count` samples from `first` on.
@@ -296,7 +246,7 @@ FoundMaps Renderer::State::audit(int sample) {
 
 // Surfaces behind the panes of a sample are shaded as those that are seen without panes.
 Result<void> Renderer::State::add_seen_through(int sample, float gain, image::Image& picture) {
-  for (const BehindPanes& behind : behind_panes(*whole, scene, *gbuffer(sample))) {
+  for (const BehindPanes& behind : behind_panes(*traced, scene, *gbuffer(sample))) {
     BehindSight sight(behind, scene.layer);
     image::Image shown;
     GONIO_TRY(engine->shade(sight, sample, 1, false, shown));
@@ -355,16 +305,14 @@ Result<void> Renderer::State::trace(const Scene& whole_scene, bool rough_coats) 
   if (!ray_setup || !ray_setup->absent.empty()) return {};
   ray_scene = whole_scene;
   if (ray_sun) ray_scene.lights.push_back(light_of(ray_sun->sun));
-  if (whole_scene.mesh != nullptr) {
-    GONIO_TRY(show(*whole_scene.mesh));
-    GONIO_TRY(meet(whole_scene));
-  }
+  if (whole_scene.mesh != nullptr) GONIO_TRY(meet(whole_scene));
   if (ray_setup->environment != nullptr && ray_table == nullptr)
     ray_table = std::make_shared<const EnvironmentTable>(*ray_environment());
   PathScene paths;
   paths.scene = &ray_scene;
   paths.environment = ray_environment(), paths.mirrored = ray_setup->environment, paths.table = ray_table;
-  paths.rays = ray_mesh, paths.eye = whole, paths.rough_coats = rough_coats;
+  paths.rays = ray_mesh, paths.rough_coats = rough_coats;
+  if (!ray_panes.empty()) paths.eye = traced;
   const bool over_floor = effects.rays.floor && ray_setup->floor;
   if (over_floor) {
     paths.ground = ray_setup->floor;
@@ -381,19 +329,14 @@ Result<void> Renderer::State::trace(const Scene& whole_scene, bool rough_coats) 
 }
 
 // Nothing is in the way of light on a convex mesh that is seen from outside.
-Result<RayContext> Renderer::State::ray_context(const Scene& whole_scene,
-                                                const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers) {
-  RayContext context;
-  context.absent = ray_setup->absent, context.refused = ray_setup->refused, context.no_floor = ray_setup->no_floor;
-  context.floor = ray_setup->floor && ray_setup->environment != nullptr;
-  context.floor_forced = context.floor && ray_setup->floor_forced;
-  if (ray_setup->environment != nullptr) {
-    if (!ray_texels) ray_texels.emplace(*ray_setup->environment);
+Result<RaySetup> Renderer::State::ray_context(const Scene& whole_scene,
+                                              const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers) {
+  RaySetup context = *ray_setup;
+  if (context.environment != nullptr) {
+    if (!ray_texels) ray_texels.emplace(*context.environment);
     if (!residual) residual = std::make_unique<OpenResidual>(*ray_texels);
-    context.has_environment = true;
   }
-  if (!context.absent.empty() || context.floor || whole_scene.mesh == nullptr) return context;
-  GONIO_TRY(show(*whole_scene.mesh));
+  if (!context.absent.empty() || context.has_floor() || whole_scene.mesh == nullptr) return context;
   GONIO_TRY(meet(whole_scene));
   const auto shows_inside = [](const auto& gbuffer) { return gbuffer->shows_inside(); };
   if (ray_mesh->is_convex() && std::ranges::none_of(gbuffers, shows_inside))
@@ -417,8 +360,7 @@ Renderer::~Renderer() = default;
 Result<Renderer> Renderer::create(OpenGlBy by) {
   GONIO_ASSIGN(GlContext context, GlContext::create(by));
   auto state = std::make_unique<State>();
-  state->open_gl = std::make_unique<OpenGl>(std::move(context));
-  GONIO_ASSIGN(state->open_gl->rasterizer, Rasterizer::create(state->open_gl->context));
+  state->open_gl.emplace(std::move(context));
   return Renderer(std::move(state));
 }
 
@@ -444,11 +386,11 @@ void Renderer::set_effort(Effort effort) {
 
 std::string Renderer::opengl() const {
   state_->begin();
-  return state_->open_gl ? state_->open_gl->context.engine() : "";
+  return state_->open_gl ? state_->open_gl->engine() : "";
 }
 
 std::string Renderer::opengl_library() const {
-  return state_->open_gl ? state_->open_gl->context.library() : "";
+  return state_->open_gl ? state_->open_gl->library() : "";
 }
 
 std::string Renderer::shader() const {
@@ -488,14 +430,12 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
   }
   const bool by_rays = asked != nullptr && asked->traces_rays;
   const Scene seen = by_rays ? scene : seen_scene(scene, gbuffers);  // rays meet parts that the camera does not see
-  RayContext rays;
+  RaySetup rays;
+  rays.absent = "no rays are traced";
   if (s.ray_setup && !by_rays) {
     GONIO_ASSIGN(rays, s.ray_context(scene, gbuffers));
   }
-  if (has_panes(scene) && !s.given) {
-    GONIO_TRY(s.show(*scene.mesh));
-    GONIO_TRY(s.meet(scene));
-  }
+  if (has_panes(scene) && !s.given) GONIO_TRY(s.meet(scene));
   std::vector<const Engine*> able;
   std::optional<Error> refusal;  // of the engine that was asked for, or of the first
   for (const EngineInfo* info : engines()) {
@@ -566,7 +506,7 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   frame.gbuffer.reset();
   GONIO_TRY(s.look_at(view));
   frame.gbuffer = s.gbuffer(0);
-  frame.gbuffer_ms = s.rasterization_ms;
+  frame.gbuffer_ms = s.gbuffer_ms;
   frame.open_centers = {};
   if (view.with_centers || view.samples == 1) {
     GONIO_TRY(s.take(0, 1, frame.picture));
@@ -585,7 +525,7 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   if (s.engine->noise() != nullptr) frame.noise = *s.engine->noise();
   frame.frame_ms = 1000 * whole.elapsed_s();
   s.deadline.reset();
-  return s.open_gl ? s.open_gl->context.status("drawing") : Result<void>();
+  return s.open_gl ? s.open_gl->status("drawing") : Result<void>();
 }
 
 Result<Frame> Renderer::draw(const Camera& camera, int width, int height, int samples, bool with_centers) {

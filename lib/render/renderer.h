@@ -1,6 +1,6 @@
-// The renderer draws scenes into pictures of scene-linear radiance. Rays find what a view shows, or OpenGL rasterizes
-// it for the engine gl; then one of the engines shades it. The renderer keeps what the next picture can use again: the
-// mesh in OpenGL, the G-buffers of the last view, and the engines. goniochrome-rendering(7), "RENDERING".
+// The renderer draws scenes into pictures of scene-linear radiance. Rays find what a view shows; then one of the
+// engines shades it. The renderer keeps what the next picture can use again: the tree of the mesh, the G-buffers of the
+// last view, and the engines. goniochrome-rendering(7), "RENDERING".
 #pragma once
 
 #include <memory>
@@ -33,23 +33,12 @@ struct Frame {
   image::Image picture;                    // R G B A, scene-linear radiance, premultiplied
   image::Image centers;                    // the same, of the pixel centers alone; empty unless asked for
   std::shared_ptr<const Gbuffer> gbuffer;  // of the pixel centers
-  double gbuffer_ms = 0;       // one rasterization of the view, perhaps made for a plan; 0 where the G-buffer is given
-  double frame_ms = 0;         // everything but uploads
+  double gbuffer_ms = 0;       // to find what one sample shows, perhaps for a plan; 0 where the G-buffer is given
+  double frame_ms = 0;         // everything but uploads of the scene
   std::optional<Noise> noise;  // of the picture; none of engines that do not draw by random samples
   image::Image open_centers;   // of the pixel centers without the effects of rays; empty unless centers are asked for
   CorrectionNoise rays;        // of the effects of rays in `picture`; 0 where none are drawn
   FoundMaps maps;              // what the maps miss; of engines without maps nothing
-};
-
-// The light that rays meet beside the lights of the scene. How many bounces it takes, and which random numbers, is told
-// by Effort.
-struct RaySetup {
-  const envmap::Environment* environment = nullptr;  // none: dark
-  std::string absent;                                // why plans cannot trace rays; "" where they can
-  bool refused = false;                              // whether that is because nobody wants them
-  std::optional<Ground> floor;                       // that shows the environment
-  bool floor_forced = false;  // whether it is asked for by name, so that it is drawn whatever it is worth
-  std::string no_floor;       // why there is none
 };
 
 class Renderer {
@@ -60,8 +49,7 @@ class Renderer {
   // G-buffer, and the camera of the view is ignored; of the mesh of the scene only the parts are used. Its other
   // functions fail for engines that need the mesh, for textures, and for more than one sample.
   static Renderer shading(std::shared_ptr<const Gbuffer> gbuffer);
-  // Without OpenGL, for all engines but gl: rays find what a view shows, and the floor of the scenes that it draws is
-  // known to them.
+  // Without OpenGL, for all engines but gl. Rays that find what a view shows know the floor of the scenes that it draws.
   static Renderer tracing(std::optional<Ground> ground = {});
   Renderer(Renderer&&) noexcept;
   ~Renderer();

@@ -38,6 +38,11 @@ struct Light {
 constexpr double kNearestPoint = 1e-6;
 Light light_at(const Light& light, const Vec3& position);
 
+// A bright spot of an environment as a lamp. Mirrors do not show it, because they show the environment itself.
+inline Light light_of(const envmap::Spot& spot) {
+  return {spot.direction, spot.white, spot.radius_rad, {}, false};
+}
+
 // Directions to parts of a disc that are alike and small enough to be a point each, for what changes slowly: the middle
 // of a narrow disc alone. The weights are solid angles relative to pi sin^2(radius).
 struct DiscDirection {

@@ -18,7 +18,6 @@
 #include "render/internal/wear.h"
 #include "render/internal/worn_lobes.h"
 #include "render/panes.h"
-#include "render/spots.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {

@@ -1,5 +1,4 @@
 // Bright spots against exact sums over the texels, and against the same pictures without them.
-#include "render/spots.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -81,7 +81,7 @@ def study(run):
     figures = [Figure(f"edges-{paint}", f"{paint}: mean dE00 of the pixels on its outline against time", readings,
                       "time of a frame, all samples (s)", "dE00 on the outline, mean",
                       note="From left to right: 1, 4 and 16 samples. A single sample is drawn from the buffers that the planning "
-                      "has already made; each further one takes a rasterization, so the step from 1 to 4 is the steepest.")
+                      "has already made; each further one looks at the mesh again, so the step from 1 to 4 is the steepest.")
                for paint, readings in by_paint.items()]
     rows = [(paint, r.setting, 1e3 * r.time_s, r.error, r.numbers["p95"], r.numbers["inside"])
             for paint, readings in by_paint.items() for r in readings]

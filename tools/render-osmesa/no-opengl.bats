@@ -26,7 +26,6 @@ far() { oiiotool "$1" --ch R,G,B "$2" --ch R,G,B --absdiff --printstats | awk '/
   [ "$(jq .results.opengl_library r.json)" = null ]
   render-osmesa -q $view -o with.exr
   [ -z "$(far with.exr without.exr)" ]
-  # Where a rasterizer rounds the corners of triangles to parts of a pixel, single pixels at edges differ.
   run render-osmesa -q $view --engine gl -o gl.exr
   [[ "$output" == *"cannot be loaded"* ]] && skip "OpenGL: not installed"
   oiiotool gl.exr --ch R,G,B without.exr --ch R,G,B --absdiff --printstats |

@@ -1,6 +1,6 @@
 #include "color/spectrum.h"
 #include "render/engine.h"
-#include "settled.h"
+#include "setup.h"
 #include "tool.h"
 
 namespace goniochrome::tool {
@@ -267,7 +267,7 @@ void add_report(cli::ToolSpec& spec) {
       {"pictures[]: name, status, message, file, sheet, cell, time_ms, bounced_de00_p95",
        "of several paints each, done or failed; places are counted from 1"},
       {"failed, files, pictures_per_s, picture_ms", "of several paints; picture_ms has p50, p99 and max"},
-      {"gbuffer_ms, frame_ms", "time to rasterize the mesh once, and to draw all samples"},
+      {"gbuffer_ms, frame_ms", "time to find what one sample shows, and to draw all samples"},
       {"triangles, mesh: longest_side, unit_m", "of the mesh; unit_m are the meters that its unit is taken for"},
       {"parts[]: name, material, paint", "parts of the mesh and what they wear"},
       {"textures[]: part, file, projection, width", "what --texture laid where"},

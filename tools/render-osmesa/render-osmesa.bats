@@ -253,7 +253,7 @@ refused() {
   [[ "$output" =~ "engine cpu: prefiltered maps, and rays where" ]]
   [[ "$output" =~ "#version 330 core" ]]
   [[ ! "$output" =~ "what this program lacks" ]]
-  # The plan has rasterized the view, and the report tells how long that took.
+  # The plan has found what the view shows, and the report tells how long that took.
   render-osmesa -q --mesh panels.obj --light 0,0 $front -p paints.xml#red --report r.json -o out.exr
   jq -e '.results.gbuffer_ms > 0' r.json
 }

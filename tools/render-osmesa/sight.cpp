@@ -22,7 +22,6 @@ Result<render::Renderer> make_renderer(const Options& options, const Request& re
   if (stage.gbuffer) return ready(render::Renderer::shading(stage.gbuffer));
   if (request.engine != nullptr && request.engine->traces_rays)
     return ready(render::Renderer::tracing(stage.scene.ground));
-  // Rays find what is visible, as fast as OSMesa does: 1280x720 of 58,000 triangles in 105 ms of a frame beside 94.
   if (request.engine == nullptr || !request.engine->needs_opengl) return ready(render::Renderer::tracing());
   GONIO_ASSIGN(render::Renderer renderer,
                render::Renderer::create(options.gpu ? render::OpenGlBy::kGpu : render::OpenGlBy::kSoftware));

@@ -11,8 +11,7 @@ namespace goniochrome::tool {
 // A picture of which nothing is asked ends after these seconds.
 constexpr double kQuick_s = 5;
 
-// Rays find what is visible for the engine that traces them, for meshes of many triangles, and where there is no
-// OpenGL. Error: no OpenGL for an engine that needs it.
+// The renderer, with OpenGL for engines that need it. Error: there is none.
 Result<render::Renderer> make_renderer(const Options& options, const Request& request, const Stage& stage,
                                        cli::Session& session);
 
@@ -29,7 +28,7 @@ constexpr double kMiddleGray = 0.18;
 // The paints of the parts, for --explain.
 std::string explanation(const Options& options, const mesh::Mesh& mesh, const DressedMesh& dress);
 
-// Tells by --explain and the report which OpenGL draws, or that rays find what is visible.
+// Tells by --explain and the report which OpenGL draws, if any does.
 void tell_opengl(const render::Renderer& renderer, cli::Session& session);
 
 }  // namespace goniochrome::tool

@@ -71,7 +71,6 @@ class Batch {
 const EngineInfo CpuEngine::kInfo = {
     .name = "cpu",
     .sentence = "shades by prefiltered maps on the processor, and reads all lobes of a texel at once",
-    .where = "on the processor",
     .is_planned = true,
     .needs_texels = false,
     .traces_rays = false,

@@ -37,25 +37,22 @@ vec3 bands(vec3 d) {
 
 }  // namespace
 
-std::string gbuffer_vertex_shader(bool on_page) {
+std::string gbuffer_vertex_shader() {
   return std::string(kHead) + R"(layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 vertex_normal;
 uniform mat4 clip;
 out vec3 normal;
-)" + (on_page ? kMoments : "") +
+)" + kMoments +
          R"(void main() {
   normal = vertex_normal;
-)" + (on_page ? "  occlude();\n" : "") +
-         R"(  gl_Position = clip * vec4(position, 1.0);
+  occlude();
+  gl_Position = clip * vec4(position, 1.0);
 }
 )";
 }
 
-std::string gbuffer_fragment_shader(bool on_page) {
-  const char* second = on_page ? kBands : R"(uniform int first;  // the number of the part's first triangle
-layout(location = 1) out uint triangle;
-)";
-  return std::string(kHead) + kPixel + kRays + second + R"(uniform int part;
+std::string gbuffer_fragment_shader() {
+  return std::string(kHead) + kPixel + kRays + kBands + R"(uniform int part;
 in vec3 normal;
 layout(location = 0) out vec4 gbuffer;
 void main() {
@@ -64,13 +61,12 @@ void main() {
   // Near an outline the smooth normal can look away from the viewer: the nearest that does not.
   float cos_o = dot(n, wo);
   if (cos_o < 1e-3) n = normalize(n + (1e-3 - cos_o) * wo);
-  gbuffer = vec4(n, side * )" +
-         (on_page ? "(float(part + 1 + 8 * int(15.0 * clamp(third.z, 0.0, 1.0) + 0.5)) + reach / gl_FragCoord.w)"
-                  : "float(part + 1)") +
-         ");\n" +
-         (on_page ? "  occlusion = vec4(dot(bands(n), vec3(1.0, 2.0 / 3.0, 0.25)), bands(2.0 * dot(n, wo) * n - wo));\n"
-                    "  if (!gl_FrontFacing) occlusion = vec4(third.yy, 0.0, 0.0);\n}\n"
-                  : "  triangle = uint(first + gl_PrimitiveID);\n}\n");
+  float hidden = float(part + 1 + 8 * int(15.0 * clamp(third.z, 0.0, 1.0) + 0.5));
+  gbuffer = vec4(n, side * (hidden + reach / gl_FragCoord.w));
+  occlusion = vec4(dot(bands(n), vec3(1.0, 2.0 / 3.0, 0.25)), bands(2.0 * dot(n, wo) * n - wo));
+  if (!gl_FrontFacing) occlusion = vec4(third.yy, 0.0, 0.0);
+}
+)";
 }
 
 }  // namespace goniochrome::render

@@ -1,4 +1,4 @@
-// The program that draws the G-buffer, and how all programs begin. goniochrome-rendering(7), "RENDERING".
+// The program that draws the G-buffer of a page, and how all programs begin. goniochrome-rendering(7), "RENDERING".
 #pragma once
 
 #include <string>
@@ -16,10 +16,10 @@ inline constexpr const char* kRays =
 vec3 ray() { return normalize(corner + pixel().x * right + pixel().y * down); }
 )";
 
-// Draws the G-buffer: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from inside).
-// On a page 8 for each fifteenth of the lamps' light that is hidden is added to it, and depth times `reach`. A second
-// picture is the number of the triangle; on a page it is the occlusion of each pixel, as kOcclusion reads it.
-std::string gbuffer_vertex_shader(bool on_page = false);
-std::string gbuffer_fragment_shader(bool on_page = false);
+// Draws the G-buffer of a page: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from
+// inside), to which 8 for each fifteenth of the lamps' light that is hidden is added, and depth times `reach`. A second
+// picture is the occlusion of each pixel, as kOcclusion reads it.
+std::string gbuffer_vertex_shader();
+std::string gbuffer_fragment_shader();
 
 }  // namespace goniochrome::render

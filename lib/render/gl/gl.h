@@ -14,38 +14,22 @@
 #define GONIO_GL_FUNCTIONS(X)                                  \
   X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                     \
   X(PFNGLATTACHSHADERPROC, AttachShader)                       \
-  X(PFNGLBINDBUFFERPROC, BindBuffer)                           \
   X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                 \
-  X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)               \
   X(PFNGLBINDTEXTUREPROC, BindTexture)                         \
   X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
   X(PFNGLBLENDFUNCPROC, BlendFunc)                             \
-  X(PFNGLBUFFERDATAPROC, BufferData)                           \
-  X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
-  X(PFNGLCLEARPROC, Clear)                                     \
-  X(PFNGLCLEARBUFFERFVPROC, ClearBufferfv)                     \
-  X(PFNGLCLEARBUFFERUIVPROC, ClearBufferuiv)                   \
   X(PFNGLCOMPILESHADERPROC, CompileShader)                     \
   X(PFNGLCREATEPROGRAMPROC, CreateProgram)                     \
   X(PFNGLCREATESHADERPROC, CreateShader)                       \
   X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)           \
   X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                     \
-  X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)         \
   X(PFNGLDELETESHADERPROC, DeleteShader)                       \
   X(PFNGLDELETETEXTURESPROC, DeleteTextures)                   \
   X(PFNGLDISABLEPROC, Disable)                                 \
   X(PFNGLDRAWARRAYSPROC, DrawArrays)                           \
-  X(PFNGLDRAWBUFFERSPROC, DrawBuffers)                         \
-  X(PFNGLDRAWELEMENTSPROC, DrawElements)                       \
   X(PFNGLENABLEPROC, Enable)                                   \
-  X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
-  X(PFNGLFINISHPROC, Finish)                                   \
-  X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer) \
   X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)       \
-  X(PFNGLFRONTFACEPROC, FrontFace)                             \
-  X(PFNGLGENBUFFERSPROC, GenBuffers)                           \
   X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                 \
-  X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)               \
   X(PFNGLGENTEXTURESPROC, GenTextures)                         \
   X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                 \
   X(PFNGLGETERRORPROC, GetError)                               \
@@ -57,20 +41,15 @@
   X(PFNGLGETSTRINGPROC, GetString)                             \
   X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
   X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
-  X(PFNGLREADBUFFERPROC, ReadBuffer)                           \
   X(PFNGLREADPIXELSPROC, ReadPixels)                           \
-  X(PFNGLRENDERBUFFERSTORAGEPROC, RenderbufferStorage)         \
   X(PFNGLSHADERSOURCEPROC, ShaderSource)                       \
   X(PFNGLTEXIMAGE2DPROC, TexImage2D)                           \
   X(PFNGLTEXPARAMETERIPROC, TexParameteri)                     \
-  X(PFNGLUNIFORM1FPROC, Uniform1f)                             \
   X(PFNGLUNIFORM1IPROC, Uniform1i)                             \
   X(PFNGLUNIFORM2FPROC, Uniform2f)                             \
   X(PFNGLUNIFORM3FPROC, Uniform3f)                             \
   X(PFNGLUNIFORM4FPROC, Uniform4f)                             \
-  X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)               \
   X(PFNGLUSEPROGRAMPROC, UseProgram)                           \
-  X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)         \
   X(PFNGLVIEWPORTPROC, Viewport)
 
 namespace goniochrome::render {

@@ -1,9 +1,7 @@
-// Pictures are equal whatever draws them: OSMesa, EGL's software, a GPU, and the processor on the surfaces that rays
-// find.
+// Pictures are equal whatever draws them: OSMesa, EGL's software, a GPU, and the processor.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "base/testdata_for_test.h"
 #include "render/renderer.h"
@@ -32,22 +30,6 @@ struct World {
     scene.lights = {{normalized({1, 2, 3}), {1, 0.9, 0.7}}, {normalized({-3, 1, 2.5}), {0.4, 0.1, 0.6}}};
     scene.background = Background::kEnvironment;
   }
-
-  // Gives each triangle corners of its own, which have its own normal.
-  void make_faceted() {
-    const std::vector<Vec3> corners = std::move(mesh.positions);
-    mesh.positions.clear(), mesh.normals.clear();
-    for (auto& triangle : mesh.triangles) {
-      const Vec3 &a = corners[triangle[0]], &b = corners[triangle[1]], &c = corners[triangle[2]];
-      const Vec3 normal = normalized(cross(b - a, c - a));
-      for (std::uint32_t& corner : triangle) {
-        mesh.positions.push_back(corners[corner]);
-        mesh.normals.push_back(normal);
-        corner = static_cast<std::uint32_t>(mesh.positions.size() - 1);
-      }
-    }
-    mesh.texture.clear();
-  }
 };
 
 Frame drawn(Renderer& renderer, const World& world, const std::string& engine) {
@@ -63,26 +45,16 @@ struct Difference {
   double units = 0;            // of half a unit of a half float, the largest
   std::size_t beyond = 0;      // channels of pixels that differ by more than that
   std::size_t other_face = 0;  // pixels that show another triangle, or nothing
-  std::size_t turned = 0;      // pixels that show the same triangle in another normal
   std::size_t pixels = 0;      // that show the same
-  double turn = 0;             // the largest difference of the normals of a triangle
 };
 
-// The difference of pixels whose normals are no farther apart than `same_normal`.
-Difference difference(const Frame& a, const Frame& b, double same_normal = std::numeric_limits<double>::infinity()) {
+Difference difference(const Frame& a, const Frame& b) {
   Difference of;
   const Gbuffer &seen = *a.gbuffer, &other = *b.gbuffer;
   for (int y = 0; y < seen.height; ++y) {
     for (int x = 0; x < seen.width; ++x) {
       if (seen.triangles[seen.index(x, y)] != other.triangles[other.index(x, y)]) {
         ++of.other_face;
-        continue;
-      }
-      const float *n = seen.at(x, y), *m = other.at(x, y);
-      const double turn = std::hypot(n[0] - m[0], n[1] - m[1], n[2] - m[2]);
-      of.turn = std::max(of.turn, turn);
-      if (turn > same_normal) {
-        ++of.turned;
         continue;
       }
       ++of.pixels;
@@ -127,38 +99,6 @@ TEST_P(Drivers, ShadeAsTheProcessor) {
   World turned;
   turned.view.camera = Camera::orbit(turned.mesh, 35.01, 12, 1, 30, 1.5);
   EXPECT_GT(difference(gl, drawn(*renderer_, turned, "gl")).units, 10);
-}
-
-// Surfaces that rays find, shaded on the processor, are those that OpenGL rasterizes and shades, but for pixels at
-// edges: rasterizers round the corners of triangles to 1/256 of a pixel, so that a pixel in 200 may show the neighbor
-// of its triangle. A triangle that is flat has one normal, whatever its corners are rounded to.
-TEST_P(Drivers, DrawWhatRaysFind) {
-  World world;
-  world.make_faceted();
-  Renderer by_rays = Renderer::tracing();
-  const Frame traced = drawn(by_rays, world, "cpu"), gl = drawn(*renderer_, world, "gl");
-  const Difference of = difference(gl, traced);
-  EXPECT_LT(of.other_face, of.pixels / 200);
-  EXPECT_LT(of.turn, 1e-6);
-  EXPECT_GT(of.pixels, 30000U);
-  EXPECT_LE(of.units, 1) << of.beyond << " values of " << of.pixels << " pixels";
-}
-
-// Pictures with interpolated normals agree as well. Rounded corners move the point of a triangle that a pixel shows,
-// and its normal by as much as the surface bends there: at a pixel in 100 it is another one, by some 1/10 of a degree
-// at most. Where the normal is the same, so is the picture.
-TEST_P(Drivers, DrawWhatRaysFindOnBentSurfaces) {
-  const World world;
-  Renderer by_rays = Renderer::tracing();
-  const Frame traced = drawn(by_rays, world, "cpu"), gl = drawn(*renderer_, world, "gl");
-  const Difference of = difference(gl, traced, 1e-5);
-  EXPECT_LT(of.other_face, of.pixels / 200);
-  EXPECT_LT(of.turned, of.pixels / 100);
-  EXPECT_LT(of.turn, 0.003);
-  EXPECT_GT(of.pixels, 30000U);
-  EXPECT_LE(of.units, 1) << of.beyond << " values of " << of.pixels << " pixels";
-  // The control: with every normal of a triangle it is not.
-  EXPECT_GT(difference(gl, traced).units, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, Drivers, testing::ValuesIn(kAll), [](const auto& of) { return of.param.second; });

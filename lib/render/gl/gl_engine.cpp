@@ -17,7 +17,6 @@ namespace goniochrome::render {
 const EngineInfo GlEngine::kInfo = {
     .name = "gl",
     .sentence = "shades by prefiltered maps in OpenGL, where each map is a cube texture",
-    .where = "in OpenGL",
     .is_planned = true,
     .needs_texels = false,
     .traces_rays = false,
@@ -161,23 +160,24 @@ Result<void> GlEngine::resize(int width, int height) {
 }
 
 Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, image::Image&) {
-  const Rasterizer& seen = *sight.rasterized(sample);
-  GONIO_TRY(resize(seen.width(), seen.height()));
-  if (mesh_ != nullptr) upload_positions(*sight.gbuffer(sample));
+  const std::shared_ptr<const Gbuffer> seen = sight.gbuffer(sample);
+  GONIO_TRY(resize(seen->width, seen->height));
+  gl_->DeleteTextures(1, &gbuffer_);
+  gbuffer_ = gl_->float_texture(seen->width, seen->height, seen->data.data());
+  if (mesh_ != nullptr) upload_positions(*seen);
   gain_ = gain;
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_);
   gl_->Viewport(0, 0, width_, height_);
-  gl_->Disable(GL_DEPTH_TEST);
   if (add) gl_->Enable(GL_BLEND);
   gl_->UseProgram(program_);
-  gl_->set_rays(program_, seen.drawn_rays());
+  gl_->set_rays(program_, seen->rays);
   GLint unit = 0;
   const auto bind = [&](const std::string& sampler, GLenum kind, GLuint texture) {
     gl_->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     gl_->BindTexture(kind, texture);
     gl_->Uniform1i(gl_->GetUniformLocation(program_, sampler.c_str()), unit++);
   };
-  bind("gbuffer", GL_TEXTURE_2D, seen.texture());
+  bind("gbuffer", GL_TEXTURE_2D, gbuffer_);
   bind("weights", GL_TEXTURE_2D, weights_);
   if (effects_.anisotropy) bind("tilts", GL_TEXTURE_2D, tilts_);
   if (tilted_ != 0) {

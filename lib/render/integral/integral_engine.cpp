@@ -22,7 +22,6 @@ std::vector<color::Rgb> integrals(const std::vector<VisiblePoint>& points, const
 const EngineInfo IntegralEngine::kInfo = {
     .name = "integral",
     .sentence = "sums the image that the environment was made from at every visible point, without prefiltered maps",
-    .where = "by the integral",
     .is_planned = false,
     .needs_texels = true,
     .traces_rays = false,

@@ -16,8 +16,6 @@ class BehindSight : public Sight {
   std::shared_ptr<const Gbuffer> gbuffer(int) override { return gbuffer_; }
   const std::vector<TexturePlace>& places(int) override { return places_; }
   const GlContext* gl() const override { return nullptr; }
-  bool shows_mesh() const override { return true; }
-  const Rasterizer* rasterized(int) override { return nullptr; }
 
  private:
   std::shared_ptr<const Gbuffer> gbuffer_;  // which another owns

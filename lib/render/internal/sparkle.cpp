@@ -19,7 +19,6 @@
 #include "render/path/sequence.h"
 #include "render/path/visible_surface.h"
 #include "render/scene_effects.h"
-#include "render/spots.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {

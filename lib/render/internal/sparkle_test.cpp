@@ -324,7 +324,7 @@ PlanItem planned(const Panel& panel, const std::string& effects, double toleranc
   PlanRequest request;
   request.effects = *words_of(effects), request.tolerance_de00 = tolerance;
   const image::Image mean = panel.mean();
-  std::vector<SparklePixel> pixels;
+  std::vector<ProbePixel> pixels;
   for (int i = 0; i < panel.gbuffer.width; ++i) {
     const float* rgb = mean.pixel(i, i);
     pixels.push_back({&panel.gbuffer, i, i, {rgb[0], rgb[1], rgb[2]}});
@@ -363,7 +363,7 @@ TEST(Sparkle, ThePredictionIsTheTrueChange) {
     Panel panel(distance_m, 1000 * distance_m, 30);
     panel.lit_by_sun(10);
     const image::Image mean = panel.mean();
-    std::vector<SparklePixel> pixels;
+    std::vector<ProbePixel> pixels;
     for (int i = 0; i < 900; i += 7) {
       const float* rgb = mean.pixel(i % 30, i / 30);
       pixels.push_back({&panel.gbuffer, i % 30, i / 30, {rgb[0], rgb[1], rgb[2]}});

@@ -93,7 +93,7 @@ struct Errors {
 };
 Errors errors_of(const World& world, double tolerance_de00 = 0.5) {
   const Effects effects = world.effects(tolerance_de00);
-  const std::vector<VisiblePoint> points = probe_points({world.seen()}, 200);
+  const std::vector<VisiblePoint> points = probe_points(probe_pixels({world.seen()}, 200), {}, 1);
   CpuEngine engine;
   EXPECT_TRUE(engine.load(world.scene, effects).ok());
   const std::vector<color::Rgb> drawn = engine.colors(points);
@@ -148,7 +148,7 @@ TEST(OpenResidual, TellsSurfacesOfEveryKind) {
 // Their tilted normals are dear to sum. The control: the same paint that is not brushed.
 TEST(OpenResidual, LeavesBrushedPartsAsMapsHaveThem) {
   World world(flakes());
-  const std::vector<VisiblePoint> points = probe_points({world.seen()}, 50);
+  const std::vector<VisiblePoint> points = probe_points(probe_pixels({world.seen()}, 50), {}, 1);
   const std::vector<color::Rgb> nothing(points.size());
   for (const bool brushed : {false, true}) {
     if (brushed) world.scene.anisotropy = {{0.1, 0.3}};
@@ -173,7 +173,7 @@ TEST(OpenResidual, IsTheSameByAnyNumberOfThreadsAndOfOtherPicturesBefore) {
     set_threads(count);
     OpenResidual residual(world.tree);
     EXPECT_TRUE(residual.load(world.scene, world.effects()).ok());
-    if (after_another) residual.at(probe_points({seen}, 40));
+    if (after_another) residual.at(probe_points(probe_pixels({seen}, 40), {}, 1));
     image::Image picture{seen->width, seen->height, 4, std::vector<float>(seen->data.size(), 0.0F), {}};
     residual.add(*seen, 1, picture);
     set_threads(0);
@@ -187,7 +187,7 @@ TEST(OpenResidual, IsTheSameByAnyNumberOfThreadsAndOfOtherPicturesBefore) {
 
 TEST(OpenResidual, KeepsSumsForOtherPaintsOfTheSameSurface) {
   World world(flakes());
-  const std::vector<VisiblePoint> points = probe_points({world.seen()}, 100);
+  const std::vector<VisiblePoint> points = probe_points(probe_pixels({world.seen()}, 100), {}, 1);
   OpenResidual residual(world.tree);
   ASSERT_TRUE(residual.load(world.scene, world.effects()).ok());
   const std::vector<color::Rgb> first = residual.at(points);

@@ -25,7 +25,6 @@ constexpr double kLeastTime_s = 1e-3;
 const EngineInfo PathEngine::kInfo = {
     .name = "path",
     .sentence = "follows light along rays, from surface to surface: shadows, floors and light that the mesh passes on",
-    .where = "along rays",
     .is_planned = false,
     .needs_texels = true,
     .traces_rays = true,

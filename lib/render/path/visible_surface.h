@@ -12,14 +12,14 @@
 namespace goniochrome::render {
 
 struct VisibleSurface {
-  Gbuffer gbuffer;              // as Rasterizer draws it; the floor is the part after the mesh's
+  Gbuffer gbuffer;              // the floor is the part after the mesh's
   std::vector<rays::Hit> hits;  // pixel by pixel
 };
 
 // The points of all pixels that `rays` names. Bit-identical for any number of threads.
 VisibleSurface visible_surface(const rays::RayScene& scene, const Rays& rays, int width, int height);
 
-// The G-buffer of the mesh alone, with triangles, as Rasterizer has it: the floor is no part of the mesh.
+// The G-buffer of the mesh alone, with triangles: the floor is no part of the mesh.
 Gbuffer mesh_gbuffer(const rays::RayScene& scene, const Rays& rays, int width, int height);
 
 // Which of the samples of each pixel meet the scene, or its floor: bit i stands for the sample that is shifted by

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/angles.h"
-#include "render/spots.h"
 
 namespace goniochrome::render {
 

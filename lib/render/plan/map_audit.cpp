@@ -24,7 +24,7 @@ constexpr double kOfBlocks = 0.2;
 }  // namespace
 
 FoundMaps MapAudit::found(const std::shared_ptr<const Gbuffer>& seen, int samples) const {
-  std::vector<VisiblePoint> points = probe_points({seen}, kAudited, scene, samples);
+  std::vector<VisiblePoint> points = probe_points(probe_pixels({seen}, kAudited), scene, samples);
   std::erase_if(points,
                 [&](const VisiblePoint& point) { return is_pane(scene, static_cast<std::size_t>(point.part)); });
   const double white = white_luminance > 0 ? white_luminance : 1;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/text.h"
 #include "math/statistics.h"
@@ -17,21 +16,16 @@ namespace {
 // The truth is measured at so many pixels to each side.
 constexpr int kAround = 3;
 
+constexpr const char* kNoFlakes = "no visible paint has flakes";
+
 bool has_flakes(const Scene& scene) {
   return std::ranges::any_of(scene.flakes, [](const auto& flakes) { return flakes.has_value(); });
 }
 
-PlanItem sparkle_unmeasured(const std::string& reason) {
-  PlanItem item;
-  item.effect = kSparkleName, item.reason = reason;
-  item.de00_p95 = std::numeric_limits<double>::quiet_NaN();
-  return item;
-}
-
 // The distance at which the deviation, which is as one part in the distance, has the size of the tolerance.
-std::string seen_from(const Scene& scene, const std::vector<SparklePixel>& pixels, double part) {
+std::string seen_from(const Scene& scene, const std::vector<ProbePixel>& pixels, double part) {
   std::vector<double> distances;
-  for (const SparklePixel& pixel : pixels)
+  for (const ProbePixel& pixel : pixels)
     distances.push_back(
         length(mesh_point(*scene.mesh, *pixel.gbuffer, pixel.x, pixel.y).position - pixel.gbuffer->rays.eye));
   const double distance_m = mesh::length_unit(*scene.mesh).meters * math::median(std::move(distances));
@@ -41,57 +35,50 @@ std::string seen_from(const Scene& scene, const std::vector<SparklePixel>& pixel
 }  // namespace
 
 PlanItem sparkle_left_out(const Scene& scene, const char* engine) {
-  PlanItem item = sparkle_unmeasured("no visible paint has flakes");
-  if (!has_flakes(scene)) return item;
-  item.needed = true, item.decision = Decision::kDropped;
-  item.reason =
-      fmt::format("the engine {} draws the mean of all flakes; engines with prefiltered maps draw them", engine);
-  return item;
+  if (!has_flakes(scene)) return unmeasured(kSparkleName, kNoFlakes);
+  return unmeasured(
+      kSparkleName,
+      fmt::format("the engine {} draws the mean of all flakes; engines with prefiltered maps draw them", engine), true);
 }
 
-PlanItem sparkle_item(const Scene& scene, const std::vector<SparklePixel>& pixels, const PlanRequest& request,
+PlanItem sparkle_item(const Scene& scene, const std::vector<ProbePixel>& pixels, const PlanRequest& request,
                       Effects& effects) {
-  if (!has_flakes(scene)) return sparkle_unmeasured("no visible paint has flakes");
+  if (!has_flakes(scene)) return unmeasured(kSparkleName, kNoFlakes);
   const std::optional<bool> forced = request.effects.forced_on(kSparkleName);
   // Flakes that nobody stated change no picture unasked, and cost nothing.
-  if (!forced && std::ranges::none_of(scene.flakes, [](const auto& one) { return one && !one->assumed; })) {
-    PlanItem item =
-        sparkle_unmeasured("flakes (assumed by class): no paint states its own, and +sparkle draws those assumed");
-    item.needed = true, item.decision = Decision::kDropped;
-    return item;
-  }
-  const bool places = !pixels.empty() && std::ranges::none_of(pixels, [](const SparklePixel& pixel) {
+  if (!forced && std::ranges::none_of(scene.flakes, [](const auto& one) { return one && !one->assumed; }))
+    return unmeasured(kSparkleName,
+                      "flakes (assumed by class): no paint states its own, and +sparkle draws those assumed", true);
+  const bool places = !pixels.empty() && std::ranges::none_of(pixels, [](const ProbePixel& pixel) {
     return pixel.gbuffer->triangles.empty();
   });
   if (scene.mesh == nullptr || scene.mesh->positions.empty() || !places)
-    return sparkle_unmeasured("buffers without their mesh: flakes have no places");
+    return unmeasured(kSparkleName, "buffers without their mesh: flakes have no places");
   const Sparkle sparkle(scene, effects);
-  if (!sparkle.absent().empty()) return sparkle_unmeasured(sparkle.absent());
+  if (!sparkle.absent().empty()) return unmeasured(kSparkleName, sparkle.absent());
   const double white = request.white_luminance > 0 ? request.white_luminance : 1;
   std::vector<double> de00;
-  for (const SparklePixel& pixel : pixels)
+  for (const ProbePixel& pixel : pixels)
     de00.push_back(seen_difference(
         pixel.shown, pixel.shown + sparkle.deviation(*pixel.gbuffer, pixel.x, pixel.y, pixel.shown), white));
-  PlanItem item;
-  item.effect = kSparkleName, item.needed = true;
-  item.de00_p95 = percentile_95(std::move(de00));
-  item.reason =
-      fmt::format("{}; {}", sparkle.reason(), seen_from(scene, pixels, item.de00_p95 / request.tolerance_de00));
+  const double change = percentile_95(std::move(de00));
+  PlanItem item = unmeasured(
+      kSparkleName, fmt::format("{}; {}", sparkle.reason(), seen_from(scene, pixels, change / request.tolerance_de00)),
+      true);
+  item.de00_p95 = change;
   const bool wanted = request.effects.start == Start::kAll ||
                       (request.effects.start == Start::kAuto && item.de00_p95 > request.tolerance_de00);
   item.on = effects.sparkle = forced.value_or(wanted);
-  item.decision = forced    ? (item.on ? Decision::kForcedOn : Decision::kForcedOff)
-                  : item.on ? Decision::kDrawn
-                            : Decision::kDropped;
+  item.decision = decision_of(true, item.on, forced.has_value());
   return item;
 }
 
-double sparkle_truth(const Scene& scene, const Effects& effects, const std::vector<SparklePixel>& pixels,
+double sparkle_truth(const Scene& scene, const Effects& effects, const std::vector<ProbePixel>& pixels,
                      double white_luminance) {
   const Sparkle sparkle(scene, effects);
   if (!sparkle.absent().empty()) return 0;
   std::vector<double> de00;
-  for (const SparklePixel& pixel : pixels) {
+  for (const ProbePixel& pixel : pixels) {
     const Gbuffer& seen = *pixel.gbuffer;
     const int left = std::max(0, pixel.x - kAround), right = std::min(seen.width - 1, pixel.x + kAround),
               top = std::max(0, pixel.y - kAround), bottom = std::min(seen.height - 1, pixel.y + kAround);
