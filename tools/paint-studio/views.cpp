@@ -127,7 +127,7 @@ Result<PackedTracedView> packed_traced_view(const std::string& path, const std::
   GONIO_TRY(check_basis(path, light.columns, basis));
   GONIO_TRY(check_mesh(file, light, seen, mesh));
   const bool with_mirrors = !file.environment.empty();  // as render-osmesa dresses parts that nobody paints
-  const std::vector<float> angles = render::view_angles_deg(light, seen);
+  const std::vector<float> angles = render::view_angles_deg(light, {&seen});
   const auto packed = render::packed_view(light, angles, beside_of(file));
   if (!packed.ok()) return input_error("{}: {}", path, packed.error().message);
   GONIO_ASSIGN(const render::UnpackedView unpacked, render::unpacked_view(*packed));

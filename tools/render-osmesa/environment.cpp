@@ -1,5 +1,3 @@
-#include "environment.h"
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -18,6 +16,7 @@
 #include "prefilter/filtered_image.h"
 #include "prefilter/lobe_tree.h"
 #include "prefilter/prefilter.h"
+#include "stage.h"
 #include "stream.h"
 
 namespace goniochrome::tool {

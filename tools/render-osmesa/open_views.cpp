@@ -1,14 +1,12 @@
-#include "open_views.h"
-
 #include <algorithm>
 #include <cmath>
 #include <list>
 
-#include "base/angles.h"
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "brdf/coat_facets.h"
 #include "brdf/lobe_model.h"
+#include "paint_views.h"
 #include "rays/ray_scene.h"
 #include "render/light_transport.h"
 #include "render/panes.h"
@@ -126,23 +124,10 @@ class OpenViews : public PaintViews {
     view.classes = worn.groups.classes();
     GONIO_ASSIGN(const render::OpenLight light, render::OpenLight::create(scene, view.columns, view.coats));
     const render::LobeTransport open = render::open_transport(light, view.columns, worn, samples_);
-    view.shader = std::make_unique<render::TransportShader>(open, view_angles(open));
+    std::vector<const render::Gbuffer*> seen;
+    for (const auto& sample : samples_) seen.push_back(sample.get());
+    view.shader = std::make_unique<render::TransportShader>(open, render::view_angles_deg(open, seen));
     return view;
-  }
-
-  // The angle of the viewer from the normal at each point.
-  std::vector<float> view_angles(const render::LobeTransport& open) const {
-    const std::size_t of_sample =
-        static_cast<std::size_t>(samples_.front()->width) * static_cast<std::size_t>(samples_.front()->height);
-    std::vector<float> angles;
-    for (const std::uint32_t place : open.places) {
-      const render::Gbuffer& seen = *samples_[place / of_sample];
-      const auto pixel = static_cast<int>(place % of_sample);
-      const Vec3 n = seen.normal(pixel % seen.width, pixel / seen.width),
-                 v = seen.to_viewer(pixel % seen.width, pixel / seen.width);
-      angles.push_back(static_cast<float>(std::atan2(length(cross(n, v)), dot(n, v)) / kDegree));
-    }
-    return angles;
   }
 
   // The samples below each other, with what is seen beside the mesh. Shading changes the others alone.
@@ -169,8 +154,6 @@ class OpenViews : public PaintViews {
   image::Image stacked_;
 };
 
-}  // namespace
-
 bool has_open_views(const Options& options, const Request& request, const Stage& stage) {
   const std::size_t samples = static_cast<std::size_t>(request.size.width) *
                               static_cast<std::size_t>(request.size.height) * static_cast<std::size_t>(request.samples);
@@ -183,8 +166,14 @@ bool has_open_views(const Options& options, const Request& request, const Stage&
          options.effects == stream_effects() && (options.engine == "auto" || options.engine == "cpu");
 }
 
+}  // namespace
+
 std::unique_ptr<PaintViews> open_views(const Options& options, const Request& request, Stage& stage,
-                                       std::unique_ptr<PaintViews> others) {
+                                       cli::Session& session, std::unique_ptr<PaintViews> others) {
+  if (!has_open_views(options, request, stage)) return others;
+  session.explain(
+      "the light of each lobe is looked up once, for every sample of the pixels, and serves all paints: no effect is "
+      "left out, and no rays are traced\n");
   return std::make_unique<OpenViews>(options, request, stage, std::move(others));
 }
 

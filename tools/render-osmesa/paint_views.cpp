@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "image/shrink.h"
-#include "open_views.h"
 #include "plan_text.h"
 #include "render/aov.h"
 #include "render/effect_union.h"
@@ -38,9 +37,9 @@ class TransportViews : public PaintViews {
         points_across_(request.points_across()),
         wardrobe_(stage.dresses.front()),
         shader_(*stage.transport, *stage.gbuffer, stage.scene) {
-    automatic_stops = stage.transport->automatic_stops;
+    automatic_stops = stage.transport->file.automatic_stops;
     stops = request.stops.value_or(request.png ? automatic_stops : 0);
-    white_luminance = stage.transport->white_luminance;
+    white_luminance = stage.transport->file.white_luminance;
     render::Plan kept;
     kept.engine = "transport", kept.engine_reason = options.gbuffer + " holds the light by lobes";
     plan = std::make_shared<render::Plan>(std::move(kept));
@@ -168,13 +167,7 @@ Result<std::unique_ptr<PaintViews>> paint_views(const Options& options, const Re
   GONIO_ASSIGN(render::Renderer renderer, make_renderer(options, request, stage, session));
   auto views = std::make_unique<EngineViews>(options, request, stage, session, std::move(renderer));
   GONIO_TRY(views->begin());
-  if (has_open_views(options, request, stage)) {
-    session.explain(
-        "the light of each lobe is looked up once, for every sample of the pixels, and serves all paints: no effect is "
-        "left out, and no rays are traced\n");
-    return open_views(options, request, stage, std::move(views));
-  }
-  return std::unique_ptr<PaintViews>(std::move(views));
+  return open_views(options, request, stage, session, std::move(views));
 }
 
 }  // namespace goniochrome::tool

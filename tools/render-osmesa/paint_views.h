@@ -55,4 +55,12 @@ class PaintViews {
 Result<std::unique_ptr<PaintViews>> paint_views(const Options& options, const Request& request, Stage& stage,
                                                 cli::Session& session);
 
+// Draws the paints of a stream from that light, in a few milliseconds. Paints that it cannot show (brushed ones, color
+// maps, lobes that the environment lacks) are left to `others`. Coats are taken with an index that is rounded to 1/50,
+// and the base under them is scaled to look the same at 45 degrees.
+// Returns `others` where the view cannot be kept as light by lobes, which takes an environment alone, nothing on the
+// mesh that is no sum of lobes, no engine asked for but cpu, and samples whose light takes less than 100 MB.
+std::unique_ptr<PaintViews> open_views(const Options& options, const Request& request, Stage& stage,
+                                       cli::Session& session, std::unique_ptr<PaintViews> others);
+
 }  // namespace goniochrome::tool

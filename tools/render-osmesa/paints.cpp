@@ -14,7 +14,6 @@
 #include "render/panes.h"
 #include "render/trim.h"
 #include "setup.h"
-#include "textures.h"
 
 namespace goniochrome::tool {
 

@@ -46,6 +46,10 @@ struct DressedMesh {
 // or a paint without lobes, with what there is.
 Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool with_mirrors);
 
+// Lays the maps of --texture on the mesh. A part without texture coordinates gets its map by a box unless the option
+// says how. Error: an unknown part or word, a map that cannot be read, or `project=uv` where there are no coordinates.
+Result<void> lay_textures(const mesh::Mesh& mesh, const Options& options, DressedMesh& dress);
+
 // Fits paints as fit-paint(1) does without further options, to --basis or the default basis.
 class Fitting {
  public:

@@ -17,7 +17,7 @@
 #include "render/left_out.h"
 #include "render/picture_error.h"
 #include "render/planning.h"
-#include "settled.h"
+#include "setup.h"
 #include "sight.h"
 #include "stage.h"
 #include "stream.h"
@@ -198,7 +198,7 @@ Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool f
         const auto sample = render::sampled_pixels(*looks_.front(), stage_.scene, std::min(options_.check, kMostTruth),
                                                    session_.common().seed);
         std::vector<render::ProbePixel> pixels;
-        for (const auto& [x, y] : sample.places) pixels.push_back({looks_.front().get(), x, y});
+        for (const auto& [x, y] : sample.places) pixels.push_back({looks_.front().get(), x, y, {}});
         render::add_truth(plan, render::seen_scene(stage_.scene, looks_), sample.points, stage_.source.image(),
                           white_.luminance, pixels);
       }
@@ -258,25 +258,27 @@ Result<void> Shooting::write_frame(const std::string& content) {
 // Other paints in the light that was traced; nothing is planned, since all is there.
 Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Display>& display) {
   const KeptTransport& kept = *stage_.transport;
-  GONIO_ASSIGN(ShadedView view, shaded_view(kept, *stage_.gbuffer, stage_.dresses.front(), stage_.scene, session_));
-  image::shrink(view.picture, request_.points_across(), frame_.picture);
+  image::Image points;
+  GONIO_ASSIGN(const ShadedPaint shaded,
+               shaded_view(kept, *stage_.gbuffer, stage_.dresses.front(), stage_.scene, points, session_));
+  image::shrink(points, request_.points_across(), frame_.picture);
   frame_.gbuffer = stage_.gbuffer;
-  white_ = {kept.white_luminance, {0, 1, 0}};
+  white_ = {kept.file.white_luminance, {0, 1, 0}};
   plan_.engine = "transport", plan_.engine_reason = options_.gbuffer + " holds the light by lobes";
   stage_.scene.lights.clear();
-  for (const image::AovLight& light : kept.lights) stage_.scene.lights.push_back(render::light_of(light));
-  automatic_stops_ = kept.automatic_stops;
+  for (const image::AovLight& light : kept.file.lights) stage_.scene.lights.push_back(render::light_of(light));
+  automatic_stops_ = kept.file.automatic_stops;
   const double stops = request_.stops.value_or(request_.png ? automatic_stops_ : 0);
   GONIO_TRY(write({{}, {}, options_.output}, display, stops));
   Json& results = session_.results();
   results["engine"] = plan_.engine, results["engine_reason"] = plan_.engine_reason;
-  results["gbuffer_ms"] = 0, results["frame_ms"] = view.frame_ms, results["frames"] = 1;
+  results["gbuffer_ms"] = 0, results["frame_ms"] = shaded.frame_ms, results["frames"] = 1;
   results["exposure_stops"] = stops, results["white_luminance"] = json_number(white_.luminance);
   session_.say(fmt::format("{}: {} x {}, shaded in {:.1f} ms from the light of {}, exposure {:+.2f}{}",
                            options_.output == "-" ? "standard output" : options_.output, request_.size.width,
-                           request_.size.height, view.frame_ms, options_.gbuffer, stops,
+                           request_.size.height, shaded.frame_ms, options_.gbuffer, stops,
                            display ? ", " + display->name() : ""));
-  return view.trace_again ? cli::Verdict::kNegative : cli::Verdict::kDone;
+  return shaded.bounced_de00_p95 > session_.common().tolerance ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }
 
 // Says a line, which --quiet keeps where it explains an exit status.
@@ -387,7 +389,7 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
   results["white_luminance"] = json_number(white_.luminance);
   const std::string name = options_.output == "-" ? "standard output" : shots_.front().output;
   session_.say(fmt::format(
-      "{}{}: {} x {}, {} samples a pixel, drawn in {:.0f} ms by {} (one rasterization {:.0f} ms), exposure {:+.2f}{}",
+      "{}{}: {} x {}, {} samples a pixel, drawn in {:.0f} ms by {} (one look at the mesh {:.0f} ms), exposure {:+.2f}{}",
       name, shots_.size() > 1 ? fmt::format(" and {} more", shots_.size() - 1) : "", request_.size.width,
       request_.size.height, request_.samples, frame_ms, plan_.engine, frame_.gbuffer_ms, stops,
       display ? ", " + display->name() : ""));

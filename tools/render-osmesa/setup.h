@@ -14,6 +14,12 @@
 
 namespace goniochrome::tool {
 
+constexpr const char* kGpu = "gpu";  // the engine gl on a GPU
+
+// The options with what --camera, --check, --effects, --tilts and --engine gpu say, each of which says several things.
+// Error (usage): a value that cannot be.
+Result<Options> settled(const Options& asked);
+
 // Checks that there are surfaces to draw: --mesh, or --gbuffer with nothing that would need the mesh. Error (usage):
 // what is missing, or what excludes each other.
 Result<void> check_surfaces(const Options& options);

@@ -195,8 +195,7 @@ Result<void> set_spectra(const Options& options, const Request& request, Stage& 
   }
   Gathering gathering(options, request, stage);
   GONIO_TRY(gathering.gather());
-  std::string lacks;
-  for (const std::string& lack : gathering.lacks) lacks += (lacks.empty() ? "" : "; ") + lack;
+  const std::string lacks = joined(gathering.lacks, "; ");
   if (!lacks.empty() && options.needs_bands())
     return input_error("--spectral {} needs spectra of all: {}", options.spectral, lacks);
   Json& told = session.results()["spectral"];
@@ -211,12 +210,10 @@ Result<void> set_spectra(const Options& options, const Request& request, Stage& 
     session.say("drawn in three channels, not in bands: " + lacks);
     return {};
   }
-  std::string guessed;
-  for (const std::string& what : gathering.guessed) guessed += (guessed.empty() ? "" : "; ") + what;
-  if (!guessed.empty())
-    session.say("drawn in bands, with the smoothest spectrum of the color where none is stated: " + guessed);
-  std::string even;
-  for (const std::string& name : gathering.even) even += (even.empty() ? "" : ", ") + name;
+  if (!gathering.guessed.empty())
+    session.say("drawn in bands, with the smoothest spectrum of the color where none is stated: " +
+                joined(gathering.guessed, "; "));
+  const std::string even = joined(gathering.even, ", ");
   session.explain(
       fmt::format("light: {} bands from {} to {} nm, for the observer of {} deg; --operator has no part in it\n"
                   "  spectra of lobes: within dE00 {:.2f} of their three channels, within {:.2f} of the paints' "

@@ -5,7 +5,6 @@
 
 #include "base/paths.h"
 #include "base/text.h"
-#include "environment.h"
 #include "image/aov_file.h"
 #include "image/image.h"
 #include "mesh/unit.h"
@@ -100,7 +99,7 @@ void tell_parts(const mesh::Mesh& mesh, const DressedMesh& dress, bool streamed,
 Result<void> dress_stage(const Options& options, Stage& stage) {
   if (options.split.empty()) {
     // A transport has the light that mirrors show of its own environment.
-    const bool with_mirrors = !options.env.empty() || (stage.transport && !stage.transport->environment.empty());
+    const bool with_mirrors = !options.env.empty() || (stage.transport && !stage.transport->file.environment.empty());
     GONIO_ASSIGN(DressedMesh dress, dressed(stage.mesh, options, with_mirrors));
     stage.dresses.push_back(std::move(dress));
     return {};
@@ -134,15 +133,15 @@ Result<void> check_samples(const Options& options, const Request& request, const
 
 // The buffers of --gbuffer, and a mesh that has their parts.
 Result<void> set_gbuffer(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
-  GONIO_ASSIGN(const image::AovFile buffers,
+  GONIO_ASSIGN(image::AovFile buffers,
                image::read_aov_file(options.gbuffer, {"normal.X", "normal.Y", "normal.Z", "part"}));
   GONIO_ASSIGN(render::Gbuffer gbuffer, render::gbuffer_of(buffers));
   stage.gbuffer = std::make_shared<const render::Gbuffer>(std::move(gbuffer));
-  GONIO_ASSIGN(stage.transport, kept_transport(buffers, options, request.lights, session));
-  // A floor keeps the paint that it wore.
-  const std::size_t floors = stage.transport && stage.transport->light.worn.has_floor ? 1 : 0;
-  for (std::size_t i = 0; i + floors < buffers.parts.size(); ++i)
+  for (std::size_t i = 0; i < buffers.parts.size(); ++i)
     stage.mesh.parts.push_back({buffers.parts[i], buffers.materials[i], 0, 0});
+  GONIO_ASSIGN(stage.transport, kept_transport(std::move(buffers), options, request.lights, session));
+  // A floor keeps the paint that it wore.
+  if (stage.transport && stage.transport->light.worn.has_floor) stage.mesh.parts.pop_back();
   if (!stage.transport && options.env.empty() && request.lights.empty())
     return usage_error("there is no light: give --env, --light or both");
   if (stage.transport && options.check > 0)

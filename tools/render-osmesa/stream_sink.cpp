@@ -63,6 +63,22 @@ class FileSink : public StreamSink {
   std::size_t files_ = 0;
 };
 
+struct SheetSize {
+  int columns = 0, rows = 0;
+};
+
+// "COLSxROWS" of --sheet.
+Result<SheetSize> parse_sheet(const std::string& text) {
+  constexpr std::int64_t kMost = 64;
+  const auto pieces = split(text, 'x');
+  if (pieces.size() == 2) {
+    const auto columns = parse_integer(pieces[0]), rows = parse_integer(pieces[1]);
+    if (columns && rows && *columns >= 1 && *rows >= 1 && *columns <= kMost && *rows <= kMost)
+      return SheetSize{static_cast<int>(*columns), static_cast<int>(*rows)};
+  }
+  return usage_error("--sheet is \"{}\": write COLSxROWS, 1x1 to {}x{}, as in 3x3", text, kMost, kMost);
+}
+
 // Contact sheets, one of them in memory at a time.
 class SheetSink : public StreamSink {
  public:
@@ -148,17 +164,6 @@ class FrameSink : public StreamSink {
 };
 
 }  // namespace
-
-Result<SheetSize> parse_sheet(const std::string& text) {
-  constexpr std::int64_t kMost = 64;
-  const auto pieces = split(text, 'x');
-  if (pieces.size() == 2) {
-    const auto columns = parse_integer(pieces[0]), rows = parse_integer(pieces[1]);
-    if (columns && rows && *columns >= 1 && *rows >= 1 && *columns <= kMost && *rows <= kMost)
-      return SheetSize{static_cast<int>(*columns), static_cast<int>(*rows)};
-  }
-  return usage_error("--sheet is \"{}\": write COLSxROWS, 1x1 to {}x{}, as in 3x3", text, kMost, kMost);
-}
 
 Result<std::unique_ptr<StreamSink>> stream_sink(const SinkSetup& setup) {
   const Options& options = setup.options;

@@ -58,10 +58,4 @@ struct SinkSetup {
 // Error (usage): words in braces that the option does not take.
 Result<std::unique_ptr<StreamSink>> stream_sink(const SinkSetup& setup);
 
-// "COLSxROWS" of --sheet. Error (usage): it is not that.
-struct SheetSize {
-  int columns = 0, rows = 0;
-};
-Result<SheetSize> parse_sheet(const std::string& text);
-
 }  // namespace goniochrome::tool

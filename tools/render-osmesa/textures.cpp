@@ -1,5 +1,3 @@
-#include "textures.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "base/angles.h"
 #include "base/text.h"
 #include "image/surface_file.h"
+#include "paints.h"
 
 namespace goniochrome::tool {
 

@@ -89,13 +89,11 @@ void report_traced(const render::TracedLobes& traced, const render::TransportPar
                                  : "some points have as many samples as one can have: give a larger --tolerance"));
 }
 
-bool same_light(const KeptTransport& kept, const std::vector<render::Light>& lights) {
-  return std::equal(lights.begin(), lights.end(), kept.lights.begin(), kept.lights.end(),
-                    [](const render::Light& a, const image::AovLight& b) {
-                      return length(a.direction - b.direction) < 1e-9 && a.white == b.white &&
-                             std::abs(a.radius_rad - render::light_of(b).radius_rad) < 1e-9 &&
-                             a.place.has_value() == b.is_placed;
-                    });
+bool same_light(const std::vector<image::AovLight>& kept, const std::vector<render::Light>& lights) {
+  return std::ranges::equal(lights, kept, [](const render::Light& a, const image::AovLight& b) {
+    return length(a.direction - b.direction) < 1e-9 && a.white == b.white &&
+           std::abs(a.radius_rad - render::light_of(b).radius_rad) < 1e-9 && a.place.has_value() == b.is_placed;
+  });
 }
 
 // The background around the mesh.
@@ -176,84 +174,73 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
   return view;
 }
 
-Result<std::optional<KeptTransport>> kept_transport(const image::AovFile& file, const Options& options,
+Result<std::optional<KeptTransport>> kept_transport(image::AovFile file, const Options& options,
                                                     const std::vector<render::Light>& lights, cli::Session& session) {
   GONIO_ASSIGN(auto light, render::transport_of(file));
   if (!light) return std::optional<KeptTransport>();
-  KeptTransport kept{*std::move(light), file.white_luminance, file.automatic_stops,
-                     file.environment,  file.lights,          file.reflection};
-  const bool other_env = !options.env.empty() && options.env != file.environment;
-  const bool other_lights = !lights.empty() && !same_light(kept, lights);
-  if (other_env || other_lights) {
+  if ((!options.env.empty() && options.env != file.environment) ||
+      (!lights.empty() && !same_light(file.lights, lights))) {
     session.warn(
         fmt::format("{} holds the light of {} and {} lights, and the command line has other light: the "
                     "picture has no shadows: leave out --env and --light, or trace the transport again",
                     file.path, file.environment.empty() ? "no environment" : file.environment, file.lights.size()));
     return std::optional<KeptTransport>();
   }
-  return std::optional<KeptTransport>(std::move(kept));
+  file.image = {}, file.layers.clear();
+  return std::optional(KeptTransport{*std::move(light), std::move(file)});
 }
 
-struct ViewShader::State {
-  const KeptTransport& kept;
-  const render::Gbuffer& gbuffer;
-  const render::Scene& scene;
-  render::BounceScaler scaler;
-  std::unique_ptr<render::TransportShader> shader;  // none: not yet
-  bool with_views = false;                          // of the shader
-  double load_ms = 0;
-
-  // Lays the light out, once, and once more where a paint comes that changes with the view.
-  void lay_out(bool views) {
-    if (shader && (with_views || !views)) return;
-    const Stopwatch laying;
-    with_views = views;
-    shader = std::make_unique<render::TransportShader>(
-        kept.light, views ? render::view_angles_deg(kept.light, gbuffer) : std::vector<float>());
-    load_ms = 1000 * laying.elapsed_s();
-  }
-};
-
 ViewShader::ViewShader(const KeptTransport& kept, const render::Gbuffer& gbuffer, const render::Scene& scene)
-    : state_(new State{kept, gbuffer, scene, {kept.light, render::operator_or_null(scene.reflection)}, nullptr}) {}
-ViewShader::~ViewShader() = default;
+    : kept_(kept),
+      gbuffer_(gbuffer),
+      scene_(scene),
+      scaler_(kept.light, render::operator_or_null(scene.reflection)) {}
+
+// Lays the light out, once, and once more where a paint comes that changes with the view.
+void ViewShader::lay_out(bool with_views) {
+  if (shader_ && (with_views_ || !with_views)) return;
+  const Stopwatch laying;
+  with_views_ = with_views;
+  shader_ = std::make_unique<render::TransportShader>(
+      kept_.light, with_views ? render::view_angles_deg(kept_.light, {&gbuffer_}) : std::vector<float>());
+  load_ms_ = 1000 * laying.elapsed_s();
+}
 
 Result<ShadedPaint> ViewShader::shade(const DressedMesh& dress, image::Image& picture) {
-  State& s = *state_;
-  const render::LobeTransport& light = s.kept.light;
+  const render::LobeTransport& light = kept_.light;
   std::vector<render::PartPaint> parts;
   for (std::size_t part = 0; part < dress.paints.size(); ++part)
     parts.push_back({&dress.paints[part], dress.anisotropy[part], dress.gloss_deg[part], dress.names[part],
-                     s.scene.mesh->parts[part].name});
+                     scene_.mesh->parts[part].name});
   GONIO_ASSIGN(const render::ShownPaints shown, render::shown_paints(light.columns, light.worn, parts));
   ShadedPaint result;
   result.coat_changed = shown.coat_changed;
-  if (s.kept.reflection.k != s.scene.reflection.k && light.bounces > 0)
+  if (kept_.file.reflection.k != scene_.reflection.k && light.bounces > 0)
     return usage_error("--operator is another than that of --gbuffer: bounced light was traced with that one");
-  const color::ReflectionOperator* reflection = render::operator_or_null(s.scene.reflection);
-  s.lay_out(shown.with_views);
+  const color::ReflectionOperator* reflection = render::operator_or_null(scene_.reflection);
+  lay_out(shown.with_views);
   const Stopwatch judging;
-  const render::BounceScale scale = s.scaler.scale(shown.weights);
+  const render::BounceScale scale = scaler_.scale(shown.weights);
   result.scale_ms = 1000 * judging.elapsed_s();
   result.scaled = scale.changed, result.bounced_de00_p95 = scale.error_p95_de00;
-  const std::size_t floats = 4 * static_cast<std::size_t>(s.gbuffer.width) * static_cast<std::size_t>(s.gbuffer.height);
+  const std::size_t floats = 4 * static_cast<std::size_t>(gbuffer_.width) * static_cast<std::size_t>(gbuffer_.height);
   if (picture.data.size() != floats) {  // else it has the background, and shading changes all other pixels
-    picture = {s.gbuffer.width, s.gbuffer.height, 4, {}, {"R", "G", "B", "A"}};
+    picture = {gbuffer_.width, gbuffer_.height, 4, {}, {"R", "G", "B", "A"}};
     picture.data.assign(floats, 0);
-    put_background(s.gbuffer, s.scene, picture);
+    put_background(gbuffer_, scene_, picture);
   }
   const Stopwatch shading;
-  s.shader->shade(shown.paints, reflection, scale, 1, picture);
+  shader_->shade(shown.paints, reflection, scale, 1, picture);
   result.frame_ms = 1000 * shading.elapsed_s();
   return result;
 }
 
 Json ViewShader::figures(const ShadedPaint& shaded, double tolerance) const {
-  const double points = static_cast<double>(state_->kept.light.places.size());
-  return {{"points", state_->kept.light.places.size()},
-          {"columns", state_->kept.light.columns.count()},
-          {"bytes_per_point", static_cast<double>(state_->shader->bytes()) / std::max<double>(1, points)},
-          {"load_ms", state_->load_ms},
+  const double points = static_cast<double>(kept_.light.places.size());
+  return {{"points", kept_.light.places.size()},
+          {"columns", kept_.light.columns.count()},
+          {"bytes_per_point", static_cast<double>(shader_->bytes()) / std::max<double>(1, points)},
+          {"load_ms", load_ms_},
           {"scale_ms", shaded.scale_ms},
           {"bounced_de00_p95", json_number(shaded.bounced_de00_p95)},
           {"trace_again", shaded.bounced_de00_p95 > tolerance}};
@@ -265,19 +252,16 @@ void tell_coat(cli::Session& session) {
       "is that of the paint whose light was traced");
 }
 
-Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer& gbuffer, const DressedMesh& dress,
-                               const render::Scene& scene, cli::Session& session) {
+Result<ShadedPaint> shaded_view(const KeptTransport& kept, const render::Gbuffer& gbuffer, const DressedMesh& dress,
+                                const render::Scene& scene, image::Image& picture, cli::Session& session) {
   ViewShader shader(kept, gbuffer, scene);
-  ShadedView view;
-  GONIO_ASSIGN(const ShadedPaint shaded, shader.shade(dress, view.picture));
-  view.frame_ms = shaded.frame_ms;
+  GONIO_ASSIGN(const ShadedPaint shaded, shader.shade(dress, picture));
   if (shaded.coat_changed) tell_coat(session);
   const double tolerance = session.common().tolerance;
-  view.trace_again = shaded.bounced_de00_p95 > tolerance;
   session.results()["transport"] = shader.figures(shaded, tolerance);
   if (!shaded.scaled) {
     session.say("bounced light is that of these paints");
-  } else if (!view.trace_again) {
+  } else if (shaded.bounced_de00_p95 <= tolerance) {
     session.say(fmt::format("bounced light was traced in other paints and scaled to these: off by {:.2f} dE00 (p95)",
                             shaded.bounced_de00_p95));
   } else {
@@ -286,7 +270,7 @@ Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer&
         "{}: trace again with --aov transport in these paints",
         shaded.bounced_de00_p95, tolerance));
   }
-  return view;
+  return shaded;
 }
 
 }  // namespace goniochrome::tool

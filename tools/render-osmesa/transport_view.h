@@ -36,13 +36,10 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
 // The transport of --gbuffer and what its file says of the light.
 struct KeptTransport {
   render::LobeTransport light;
-  double white_luminance = 1, automatic_stops = 0;
-  std::string environment;
-  std::vector<image::AovLight> lights;
-  color::ReflectionOperator reflection;
+  image::AovFile file;  // without its pictures
 };
 // Nothing where the file has none, or where the command line has other light, which is told.
-Result<std::optional<KeptTransport>> kept_transport(const image::AovFile& file, const Options& options,
+Result<std::optional<KeptTransport>> kept_transport(image::AovFile file, const Options& options,
                                                     const std::vector<render::Light>& lights, cli::Session& session);
 
 // The results of shading a view in some paints.
@@ -58,7 +55,6 @@ struct ShadedPaint {
 class ViewShader {
  public:
   ViewShader(const KeptTransport& kept, const render::Gbuffer& gbuffer, const render::Scene& scene);
-  ~ViewShader();
 
   // Makes `picture` that of these paints, R G B A, with the scene's background. A picture that shade() made before is
   // drawn over. Error: a paint that the transport cannot show.
@@ -68,21 +64,22 @@ class ViewShader {
   Json figures(const ShadedPaint& shaded, double tolerance) const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  void lay_out(bool with_views);
+
+  const KeptTransport& kept_;
+  const render::Gbuffer& gbuffer_;
+  const render::Scene& scene_;
+  render::BounceScaler scaler_;
+  std::unique_ptr<render::TransportShader> shader_;  // none: not yet
+  bool with_views_ = false;                          // of the shader
+  double load_ms_ = 0;
 };
 
 // Warns of ShadedPaint::coat_changed.
 void tell_coat(cli::Session& session);
 
-// The picture of these paints, R G B A, with the scene's background, and how long its shading took. Tells what scaling
-// the bounced light errs by. Error: a paint that the transport cannot show.
-struct ShadedView {
-  image::Image picture;
-  double frame_ms = 0;
-  bool trace_again = false;  // the error of scaling is beyond the tolerance
-};
-Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer& gbuffer, const DressedMesh& dress,
-                               const render::Scene& scene, cli::Session& session);
+// Shades one view, as ViewShader does, and tells what scaling the bounced light errs by.
+Result<ShadedPaint> shaded_view(const KeptTransport& kept, const render::Gbuffer& gbuffer, const DressedMesh& dress,
+                                const render::Scene& scene, image::Image& picture, cli::Session& session);
 
 }  // namespace goniochrome::tool

@@ -123,11 +123,14 @@ Result<TransportPaint> transport_paint(const LobeColumns& columns, const paint::
   return result;
 }
 
-std::vector<float> view_angles_deg(const LobeTransport& t, const Gbuffer& gbuffer) {
+std::vector<float> view_angles_deg(const LobeTransport& t, const std::vector<const Gbuffer*>& samples) {
+  const auto wide = static_cast<std::uint32_t>(samples.front()->width),
+             of_sample = wide * static_cast<std::uint32_t>(samples.front()->height);
   std::vector<float> angles(t.places.size());
   for (std::size_t i = 0; i < angles.size(); ++i) {
-    const int x = static_cast<int>(t.places[i]) % t.width, y = static_cast<int>(t.places[i]) / t.width;
-    const Vec3 n = gbuffer.normal(x, y), v = gbuffer.to_viewer(x, y);
+    const Gbuffer& seen = *samples[t.places[i] / of_sample];
+    const auto x = static_cast<int>(t.places[i] % wide), y = static_cast<int>(t.places[i] % of_sample / wide);
+    const Vec3 n = seen.normal(x, y), v = seen.to_viewer(x, y);
     angles[i] = static_cast<float>(math::atan2(length(cross(n, v)), dot(n, v)) / kDegree);
   }
   return angles;

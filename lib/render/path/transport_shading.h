@@ -22,8 +22,9 @@ struct TransportPaint {
 // Error: as column_weights().
 Result<TransportPaint> transport_paint(const LobeColumns& columns, const paint::LobeFit& paint, double gloss_deg);
 
-// The angle of the viewer from the normal at each point, by the buffer that the points were seen in.
-std::vector<float> view_angles_deg(const LobeTransport& transport, const Gbuffer& gbuffer);
+// The angle of the viewer from the normal at each point, by the buffers that the points were seen in, one for each
+// sample of the pixels.
+std::vector<float> view_angles_deg(const LobeTransport& transport, const std::vector<const Gbuffer*>& samples);
 
 // A transport laid out for shading: points of one part side by side, their light in halves where halves hold it.
 class TransportShader {
