@@ -67,12 +67,11 @@ bool is_like_glass(const std::string& file) {
   return edit_distance(lower(file), kGlass) <= 2 && !is_there(file);
 }
 
-// Glass in the place of a paint.
-void put_glass_on(std::size_t part, DressedMesh& dress) {
-  dress.paints[part] = render::pane_finish(), dress.gloss_deg[part] = kUnreadGlossDeg;
-  dress.anisotropy[part] = {}, dress.surfaces[part] = {}, dress.names[part] = kGlass;
+// A finish in the place of a paint.
+void put_finish(std::size_t part, const paint::LobeFit& finish, const char* name, DressedMesh& dress) {
+  dress.paints[part] = finish, dress.gloss_deg[part] = kUnreadGlossDeg;
+  dress.anisotropy[part] = {}, dress.surfaces[part] = {}, dress.names[part] = name;
   dress.worn[part].reset();
-  dress.panes[part] = true;
 }
 
 // The paints of all files named, each file read once.
@@ -268,9 +267,7 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool
     const auto trim = render::trim_of(mesh.parts[part], with_mirrors);
     if (!trim) continue;
     result.trim.push_back(part);
-    result.paints[part] = *trim, result.gloss_deg[part] = kUnreadGlossDeg;
-    result.anisotropy[part] = {}, result.surfaces[part] = {}, result.names[part] = kTrimName;
-    result.worn[part].reset();
+    put_finish(part, *trim, kTrimName, result);
   }
   // A part's own name is meant before its material, wherever it stands on the command line.
   GONIO_ASSIGN(const std::vector<Assignment> all, assignments(options.parts));
@@ -278,11 +275,12 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool
     for (const Assignment& assignment : all) {
       GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_of(mesh, assignment.part));
       if ((mesh.parts[parts.front()].name == assignment.part) != by_name) continue;
-      for (const std::size_t part : parts) result.panes[part] = false;
-      if (assignment.reference == kGlass) {
-        for (const std::size_t part : parts) put_glass_on(part, result);
-        continue;
+      const bool is_glass = assignment.reference == kGlass;
+      for (const std::size_t part : parts) {
+        result.panes[part] = is_glass;
+        if (is_glass) put_finish(part, render::pane_finish(), kGlass, result);
       }
+      if (is_glass) continue;
       GONIO_ASSIGN(const paint::Paint paint, shelf.paint(assignment.reference));
       GONIO_ASSIGN(const brdf::ColorMap* map, shelf.color_map(assignment.reference, paint));
       for (const std::size_t part : parts) wear(part, paint, map);

@@ -42,13 +42,6 @@ cli::Verdict check(const Options& options, const render::Frame& frame, const ren
   return tell_verdict(error, session.common().tolerance, session);
 }
 
-// The frame as it is without the effects of rays, which the model does not know.
-render::Frame open_frame(const render::Frame& frame) {
-  render::Frame open = frame;
-  if (!open.open_centers.data.empty()) open.centers = open.open_centers;
-  return open;
-}
-
 // Beside the plan's estimates, what they are worth here: how far the picture is from that of all effects, and its time.
 Result<void> measure_plan(render::Renderer& renderer, const render::Scene& scene, const render::Plan& plan,
                           const render::View& view, double white, cli::Session& session) {
@@ -409,8 +402,11 @@ Result<cli::Verdict> Shooting::check_picture() {
   const bool traced =
       frame_.rays.samples > 0 || plan_.effects.rays.any() || (stage_.rays && stage_.rays->absent.empty());
   const bool truth = options_.check_against == "truth" || (options_.check_against == "auto" && traced);
-  if (!truth || stage_.gbuffer)
-    return check(options_, open_frame(frame_), stage_.scene, stage_.source, white_.luminance, session_);
+  if (!truth || stage_.gbuffer) {
+    // The model does not know the effects of rays.
+    if (!frame_.open_centers.data.empty()) frame_.centers = frame_.open_centers;
+    return check(options_, frame_, stage_.scene, stage_.source, white_.luminance, session_);
+  }
   session_.progress(fmt::format("checking {} pixels", options_.check));
   render::TruthRequest request;
   request.environment = stage_.source.image();
