@@ -17,7 +17,8 @@ const char* spelled(Decision decision) {
 }
 
 PlanItem unmeasured(const std::string& effect, const std::string& reason, bool needed) {
-  return {effect, needed, reason, std::numeric_limits<double>::quiet_NaN(), false, decision_of(needed, false, false), {}};
+  constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+  return {effect, needed, reason, kNoValue, false, decision_of(needed, false, false), {}};
 }
 
 }  // namespace goniochrome::render

@@ -42,7 +42,7 @@ Result<Rayed> rayed(const mesh::Mesh& mesh, const std::optional<Ground>& ground,
 struct Renderer::State : Sight {
   std::optional<GlContext> open_gl;
   std::optional<Ground> ground;  // that hides what lies below it
-  Rayed traced;                  // the mesh, by which rays find what is visible; null where `given` is all there is to see
+  Rayed traced;                  // by which rays find what is visible; null where `given` is all there is to see
   Effort effort_asked;
   std::shared_ptr<const Gbuffer> given;       // of the pixel centers, whatever the view
   std::vector<std::unique_ptr<Engine>> made;  // beside engines(); null: not yet

@@ -49,7 +49,7 @@ class Renderer {
   // G-buffer, and the camera of the view is ignored; of the mesh of the scene only the parts are used. Its other
   // functions fail for engines that need the mesh, for textures, and for more than one sample.
   static Renderer shading(std::shared_ptr<const Gbuffer> gbuffer);
-  // Without OpenGL, for all engines but gl. Rays that find what a view shows know the floor of the scenes that it draws.
+  // Without OpenGL, for all engines but gl. Rays that find what a view shows meet this floor, too.
   static Renderer tracing(std::optional<Ground> ground = {});
   Renderer(Renderer&&) noexcept;
   ~Renderer();
