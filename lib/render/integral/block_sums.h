@@ -20,13 +20,10 @@ inline Patch piece(const envmap::Environment& env, int column, int row, int i, i
 template <class AnyGatherer>
 void gather_texel(const envmap::Environment& env, int column, int row, const Patch& whole, const color::Rgb& radiance,
                   AnyGatherer& point) {
-  const std::vector<int>& cuts = point.grain().cuts(whole.direction);
-  if (cuts.size() == 1) return point.add(whole, radiance);
-  for (const int k : cuts) {
-    for (int j = 0; j < k; ++j) {
-      for (int i = 0; i < k; ++i) point.add(piece(env, column, row, i, j, k), radiance, PatchPart{k, k == cuts.back()});
-    }
-  }
+  const int k = point.grain().pieces(whole.direction);
+  if (k == 1) return point.add(whole, radiance);
+  for (int j = 0; j < k; ++j)
+    for (int i = 0; i < k; ++i) point.add(piece(env, column, row, i, j, k), radiance);
 }
 
 // The variance along one axis of even light that fills the cap of a block.

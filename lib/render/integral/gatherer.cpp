@@ -54,10 +54,6 @@ double bend_beyond(double q) {
 Grain::Grain(double texel_rad, double most_spread)
     : texel_rad_(texel_rad), most_spread_(most_spread), piece_(std::max(kPiece, kPieceOfBlock * most_spread)) {}
 
-int Grain::pieces(double exponent) const {
-  return std::max(1, static_cast<int>(std::ceil(texel_rad_ * std::sqrt(exponent) / piece_)));
-}
-
 void Grain::add(std::vector<Vec3> middles, const std::vector<double>& exponents) {
   Bundle bundle{std::move(middles), {}, 0, {}};
   for (const Vec3& middle : bundle.middles) bundle.axis += middle;
@@ -72,24 +68,22 @@ void Grain::add(std::vector<Vec3> middles, const std::vector<double>& exponents)
     // cos^E = exp(-kTail) at this angle; a texel whose center is that far and its own extent has nothing to give.
     const double reach_rad = std::acos(std::exp(-kTail / exponent)) + texel_rad_;
     const double chord = 2 * std::sin(0.5 * std::min(reach_rad, kPi));
-    bundle.reaches.push_back({1 / (1 / exponent + apart2_), pieces(exponent), chord * chord});
+    const int pieces = std::max(1, static_cast<int>(std::ceil(texel_rad_ * std::sqrt(exponent) / piece_)));
+    bundle.reaches.push_back({1 / (1 / exponent + apart2_), pieces, chord * chord});
   }
   bundles_.push_back(std::move(bundle));
 }
 
-const std::vector<int>& Grain::cuts(const Vec3& direction) const {
-  thread_local std::vector<int> cuts;
-  cuts = {1};
+int Grain::pieces(const Vec3& direction) const {
+  int most = 1;
   for (const Bundle& bundle : bundles_) {
     if (bundle.reaches.empty() || bundle.reaches.front().pieces == 1) continue;
     double chord2 = 4;
     for (const Vec3& middle : bundle.middles) chord2 = std::min(chord2, dot(middle - direction, middle - direction));
     for (const Reach& reach : bundle.reaches)
-      if (reach.pieces > 1 && chord2 < reach.chord2) cuts.push_back(reach.pieces);
+      if (chord2 < reach.chord2) most = std::max(most, reach.pieces);
   }
-  std::ranges::sort(cuts);
-  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
-  return cuts;
+  return most;
 }
 
 bool Grain::opens(const envmap::BlockTree::Block& block, double variance) const {
@@ -144,7 +138,6 @@ Gatherer::Gatherer(const SurfacePoint& point, double texel_rad, double most_spre
   if (model_.coat) exponents.push_back(model_.coat->sharpest_exponent(cos_o_));
   std::sort(exponents.begin(), exponents.end(), std::greater<>());
   grain_.add(std::move(middles), exponents);
-  for (const paint::Lobe& lobe : lobes_) pieces_.push_back(grain_.pieces(lobe.exponent));
   if (most_spread == 0 && tilts_.size() > 1) make_bells();
 }
 
@@ -206,7 +199,7 @@ void Gatherer::set_mirror_directions() {
 
 // The integral over the disc. Looked up, the lobes are as the kernels have them; summed, it is exact.
 void Gatherer::add_light(const Light& light) {
-  if (!(light.radius_rad > 0)) return add({light.direction, kPi}, light.white, true, model_.map_under_lights, {});
+  if (!(light.radius_rad > 0)) return add({light.direction, kPi}, light.white, true, model_.map_under_lights);
   const double cosine = dot(point_.normal, light.direction);
   if (cosine <= -std::sin(light.radius_rad)) return;
   const bool mapped = model_.map_under_lights;
@@ -344,24 +337,22 @@ color::Rgb Gatherer::lobe_over_disc(const paint::Lobe& lobe, const Vec3& r, cons
   return scale * ((mapped ? 0 : flake) * lobe.directional_diffuse + gloss * lobe.gloss);
 }
 
-void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped, PatchPart part) {
+void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped) {
   const double above = (1 - patch.variance) * dot(point_.normal, patch.direction);
   const BaseLight base(patch, point_.normal, paint_.coat_index);
   color::Rgb f;
-  if (above > 0 && mapped && part.is_finest) f = above * mapped_toward(patch.direction);
-  if (above > 0 && !mapped && part.has_base()) f = base.mean() * paint_.diffuse;
+  if (above > 0 && mapped) f = above * mapped_toward(patch.direction);
+  if (above > 0 && !mapped) f = base.mean() * paint_.diffuse;
   if (!horizon) {
-    f += lobes_toward(patch, {std::clamp(cos_o_, 0.0, 1.0), paint_.coat_index}, mapped, part);
+    f += lobes_toward(patch, {std::clamp(cos_o_, 0.0, 1.0), paint_.coat_index}, mapped);
   } else if (above > 0) {
-    f += lobes_toward(patch, base, mapped, part);
+    f += lobes_toward(patch, base, mapped);
   }
-  if (above > 0 && model_.coat && part.is_finest) {
+  if (above > 0 && model_.coat) {
     const double coat = model_.coat->sent(local(patch.direction), local_viewer_).f_cos;
     f += {coat, coat, coat};
   }
-  const color::Rgb product =
-      model_.reflection != nullptr ? goniochrome::color::reflected(*model_.reflection, f, radiance) : f * radiance;
-  sum_ += patch.solid_angle_sr * product;
+  add_reflected(f, patch.solid_angle_sr * radiance);
 }
 
 void Gatherer::add_mirror(const color::Rgb& radiance) {
@@ -371,7 +362,7 @@ void Gatherer::add_mirror(const color::Rgb& radiance) {
   const color::Rgb k =
       brdf::fresnel_dielectric(fresnel ? cos_o_ : std::numbers::sqrt2 / 2, brdf::mirror_index(paint_.coat_index)) *
       mirror->gloss;
-  sum_ += model_.reflection != nullptr ? goniochrome::color::reflected(*model_.reflection, k, radiance) : k * radiance;
+  add_reflected(k, radiance);
 }
 
 // A map holds reflectance factors, pi f. Isolines do not change when both directions turn about the normal.
@@ -383,12 +374,11 @@ Vec3 Gatherer::local(const Vec3& direction) const {
   return {dot(direction, frame_x_), dot(direction, frame_y_), dot(direction, point_.normal)};
 }
 
-color::Rgb Gatherer::lobes_toward(const Patch& patch, const BaseLight& base, bool mapped, PatchPart part) const {
+color::Rgb Gatherer::lobes_toward(const Patch& patch, const BaseLight& base, bool mapped) const {
   color::Rgb f;
   const double cos_half = 0.5 * length(patch.direction + point_.to_viewer);
   const double fresnel = model_.fresnel ? brdf::fresnel_dielectric(std::min(1.0, cos_half), brdf::kCoatIndex) : 1;
   for (std::size_t j = 0; j < bells_.size(); ++j) {
-    if (!part.has_lobe(pieces_[j])) continue;
     const double power = bells_[j].toward(patch.direction);
     if (power > 0) f += power * (fresnel * lobes_[j].gloss);
     if (power > 0 && !mapped) f += power * base.mean() * lobes_[j].directional_diffuse;
@@ -397,7 +387,6 @@ color::Rgb Gatherer::lobes_toward(const Patch& patch, const BaseLight& base, boo
   for (const Mirrored& m : mirrored_) {
     const LobeLight light(patch, m.direction, point_.normal);
     for (std::size_t j = 0; j < lobes_.size(); ++j) {
-      if (!part.has_lobe(pieces_[j])) continue;
       const paint::Lobe& lobe = lobes_[j];
       const BlurredLobe blurred = grain_.blurred(lobe.exponent, patch.variance);
       const color::Rgb power = m.share * light.mean(blurred);
@@ -440,13 +429,11 @@ void TextureGatherer::add_lobe(const Vec3& axis, double exponent, const color::R
   lobes_.push_back(lobe);
 }
 
-void TextureGatherer::add(const Patch& patch, const color::Rgb& radiance, PatchPart part) {
+void TextureGatherer::add(const Patch& patch, const color::Rgb& radiance) {
   const BaseLight base(patch, point_.normal, paint::kNoCoat);
   if (!(base.cosine() > 0)) return;
-  color::Rgb f;
-  if (part.has_base()) f = base.mean() * diffuse_;
+  color::Rgb f = base.mean() * diffuse_;
   for (const TexelLobe& lobe : lobes_) {
-    if (!part.has_lobe(grain_.pieces(lobe.exponent))) continue;
     if (dot(lobe.middle, patch.direction) < lobe.least_cosine - std::sqrt(3 * patch.variance)) continue;
     const LobeLight light(patch, lobe.middle, point_.normal);
     const BlurredLobe blurred = grain_.blurred(lobe.exponent, patch.variance);

@@ -25,11 +25,9 @@ class Grain {
   // soften each other: blocks need not be much narrower than the directions stand apart.
   void add(std::vector<Vec3> middles, const std::vector<double>& exponents);
 
-  // Lobes of this exponent ask for a texel to be cut into so many pieces, across and down.
-  int pieces(double exponent) const;
-  // The numbers of pieces that lobes ask for of the texel about this direction, ascending: 1, and those of lobes that
-  // reach it.
-  const std::vector<int>& cuts(const Vec3& direction) const;
+  // The texel about this direction is to be cut into so many pieces, across and down, for the sharpest lobe that
+  // reaches it.
+  int pieces(const Vec3& direction) const;
   // True if the light of a block is too wide to come from one direction. `variance` of its directions, along each axis.
   bool opens(const envmap::BlockTree::Block& block, double variance) const;
   // The lobe of this exponent, blurred by a patch of this variance; far from the lobe wide patches were let through.
@@ -57,16 +55,6 @@ class Grain {
   std::vector<Bundle> bundles_;
 };
 
-// The part of a point that takes the light of a patch: all, or the lobes that ask for a texel to be cut into so many
-// pieces. The whole texel, which is one piece, also lights the base, and the finest pieces light everything but lobes.
-struct PatchPart {
-  int pieces = 0;  // 0: all
-  bool is_finest = true;
-
-  bool has_base() const { return pieces <= 1; }
-  bool has_lobe(int asked) const { return pieces == 0 || pieces == asked; }
-};
-
 // The reflected radiance of one point in a paint.
 class Gatherer {
  public:
@@ -79,8 +67,8 @@ class Gatherer {
   const Vec3& normal() const { return point_.normal; }
 
   // Adds f L cos_i dw, with cos_i multiplied into f so that the gloss term needs no division.
-  void add(const Patch& patch, const color::Rgb& radiance, PatchPart part = {}) {
-    add(patch, radiance, model_.horizon, model_.map_in_image, part);
+  void add(const Patch& patch, const color::Rgb& radiance) {
+    add(patch, radiance, model_.horizon, model_.map_in_image);
   }
   void add_light(const Light& light);
   // The mirror lobe, which sees this radiance.
@@ -108,8 +96,8 @@ class Gatherer {
   void make_bells();
   // With `horizon`, the direction's own cosine, and nothing from below. With `mapped`, the color map in the place of
   // the diffuse part and the flakes.
-  void add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped, PatchPart part);
-  color::Rgb lobes_toward(const Patch& patch, const BaseLight& base, bool mapped, PatchPart part) const;
+  void add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped);
+  color::Rgb lobes_toward(const Patch& patch, const BaseLight& base, bool mapped) const;
   color::Rgb mapped_toward(const Vec3& direction) const;
   Vec3 local(const Vec3& direction) const;
   color::Rgb lobes_toward_disc(const Light& light, bool mapped) const;
@@ -132,7 +120,6 @@ class Gatherer {
   std::vector<Mirrored> mirrored_;
   std::vector<math::QuadraturePoint> tilts_;  // of each: the angle of its normal (rad) and its share
   std::vector<paint::Lobe> lobes_;            // finite exponents, ascending
-  std::vector<int> pieces_;                   // that each of lobes_ asks for
   std::vector<Bell> bells_;                   // of each of lobes_; none: all of them stand about mirrored_
   Grain grain_;
   bool summed_ = false;  // whether lamps are integrated over their discs, and not looked up
@@ -148,7 +135,7 @@ class TextureGatherer {
   const Grain& grain() const { return grain_; }
   bool ends_at_horizon() const { return true; }
   const Vec3& normal() const { return point_.normal; }
-  void add(const Patch& patch, const color::Rgb& radiance, PatchPart part = {});
+  void add(const Patch& patch, const color::Rgb& radiance);
   void add_light(const Light& light);
 
   const color::Rgb& sum() const { return sum_; }

@@ -30,17 +30,16 @@ class ColumnGatherer {
   bool ends_at_horizon() const { return true; }
   const Vec3& normal() const { return normal_; }
 
-  void add(const Patch& patch, const color::Rgb& radiance, PatchPart part = {}) {
+  void add(const Patch& patch, const color::Rgb& radiance) {
     const BaseLight base(patch, normal_, coat_index_);
     if (!(base.cosine() > 0)) return;
     const color::Rgb light = patch.solid_angle_sr * radiance;
-    if (part.has_base()) columns_[LobeColumns::diffuse()] += let_out_ * base.mean() * light;
+    columns_[LobeColumns::diffuse()] += let_out_ * base.mean() * light;
     const double cos_half = std::min(1.0, 0.5 * length(patch.direction + to_viewer_));
     const double fresnel = brdf::fresnel_dielectric(cos_half, brdf::kCoatIndex);
     for (const LobeAxis& axis : axes_) {
       const LobeLight lobe_light(patch, axis.direction, normal_);
       for (std::size_t j = 0; j < exponents_.size(); ++j) {
-        if (!part.has_lobe(grain_.pieces(exponents_[j]))) continue;
         const BlurredLobe blurred = grain_.blurred(exponents_[j], patch.variance);
         const color::Rgb power = axis.share * lobe_light.mean(blurred) * light;
         if (power == color::Rgb{}) continue;
