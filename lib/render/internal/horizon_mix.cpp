@@ -68,34 +68,6 @@ Spectrum spectrum_of(double exponent, double coat_index) {
   return sums;
 }
 
-// The directions of a lobe above the horizon, in the plane of r and n and with what they are worth.
-struct Sample {
-  double along, across;  // r.w, and the component across r toward the normal
-  double cosine, plain, fresnel;
-};
-
-std::vector<Sample> samples_of(double exponent, double cos_o, double coat_index) {
-  constexpr int kPolar = 24, kAround = 16;
-  static const std::vector<math::QuadraturePoint> points = math::gauss_legendre(kPolar);
-  const double sin_o = std::sqrt(std::max(0.0, 1 - cos_o * cos_o));
-  const double cos_2o = 2 * cos_o * cos_o - 1, sin_2o = 2 * sin_o * cos_o;
-  std::vector<Sample> samples;
-  for (const math::QuadraturePoint& point : points) {
-    const double cos_t = math::pow(0.5 * (1 + point.position), 1 / (exponent + 1));
-    const double sin_t = std::sqrt(std::max(0.0, 1 - cos_t * cos_t));
-    const double a = cos_t * cos_o, b = sin_t * sin_o, arc = half_arc(a, b);
-    const double weight = point.weight * arc / kAround / (exponent + 1);
-    for (int i = 0; i < kAround && arc > 0; ++i) {
-      const double cos_p = math::cos(arc * (i + 0.5) / kAround), c = std::clamp(a + b * cos_p, 0.0, 1.0);
-      const double cos_between = cos_t * cos_2o + sin_t * sin_2o * cos_p;
-      const double cos_half = std::sqrt(std::clamp(0.5 * (1 + cos_between), 0.0, 1.0));
-      samples.push_back({cos_t, sin_t * cos_p, weight * c * brdf::coat_transmission(c, coat_index), weight,
-                         weight * brdf::fresnel_dielectric(cos_half, brdf::kCoatIndex)});
-    }
-  }
-  return samples;
-}
-
 // A direction in the plane of r and n: its components along r and across it, of r + s n.
 struct Toward {
   double along, across;
@@ -191,7 +163,7 @@ std::shared_ptr<const HorizonMix::Curve> HorizonMix::curve(double exponent, std:
       }
       Curve::Node& sums = result.nodes.emplace_back();
       LobeIntegrals whole;
-      for (const Sample& sample : samples_of(exponent, cos_o, coat_index_)) {
+      for (const LobeSample& sample : lobe_samples(exponent, cos_o, coat_index_)) {
         whole.cosine += sample.cosine, whole.plain += sample.plain, whole.fresnel += sample.fresnel;
         for (std::size_t k = 0; k < 2; ++k) {
           const double here = seen.at(toward[k].cosine_to({sample.along, sample.across}));

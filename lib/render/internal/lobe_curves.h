@@ -9,9 +9,13 @@
 
 namespace goniochrome::render {
 
-// The part of the ring at angle t from the mirror direction that is above the horizon, as half its azimuth: n.w = a + b
-// cos p with a = cos t cos_o, b = sin t sin_o.
-double half_arc(double a, double b);
+// One of the directions w of a lobe above the horizon: its components along the mirror direction r and across it toward
+// the normal, and what it adds to the integrals of LobeIntegrals.
+struct LobeSample {
+  double along, across;
+  double cosine, plain, fresnel;
+};
+std::vector<LobeSample> lobe_samples(double exponent, double cos_o, double coat_index);
 
 // Integrals over the directions w of a lobe cos^E of the angle to the mirror direction of the view, for the viewer at
 // cos_o = n.wo. `cosine` is under a coat of that index: each direction counts with what the coat lets in from there;
