@@ -7,58 +7,23 @@
 
 namespace goniochrome::render {
 
-namespace {
-
-class Samples {
- public:
-  Samples(Sight& sight, Engine& engine, const Scene& scene, const Effects& effects, int count)
-      : sight_(sight), engine_(engine), scene_(scene), effects_(effects), gain_(1.0F / static_cast<float>(count)) {}
-
-  Result<void> shade(int first, int count, image::Image& picture) {
-    for (int i = first; i < first + count; ++i) GONIO_TRY(engine_.shade(sight_, i, gain_, i > first, picture));
-    engine_.finish(picture);
-    return {};
-  }
-  void add_glints_of(int sample, image::Image& picture) {
-    if (!engine_.info().traces_rays && effects_.extent && effects_.mirror)
-      add_glints(scene_, effects_, *sight_.gbuffer(sample), gain_, picture);
-  }
-  void add_layer(int sample, image::Image& picture) {
-    if (scene_.layer != nullptr && !engine_.shades_layer())
-      scene_.layer->add(*sight_.gbuffer(sample), sight_.places(sample), effects_, gain_, picture,
-                        sight_.seen_pixels(sample));
-  }
-
- private:
-  Sight& sight_;
-  Engine& engine_;
-  const Scene& scene_;
-  const Effects& effects_;
-  float gain_;
-};
-
-}  // namespace
-
 // Textures dim what lies beneath them in one sample, before it is added to the others.
 Result<void> take_samples(Sight& sight, Engine& engine, const Scene& scene, const Effects& effects, int first,
                           int count, image::Image& picture) {
-  Samples samples(sight, engine, scene, effects, count);
-  const bool dims = scene.layer != nullptr && scene.layer->dims() && !engine.shades_layer();
-  if (!dims) {
-    GONIO_TRY(samples.shade(first, count, picture));
-    for (int i = first; i < first + count; ++i) samples.add_glints_of(i, picture);
-    for (int i = first; i < first + count; ++i) samples.add_layer(i, picture);
-  }
+  const float gain = 1.0F / static_cast<float>(count);
+  const bool has_layer = scene.layer != nullptr && !engine.shades_layer();
+  const bool has_glints = !engine.info().traces_rays && effects.extent && effects.mirror;
+  const int together = has_layer && scene.layer->dims() ? 1 : count;
   image::Image one;
-  for (int i = first; dims && i < first + count; ++i) {
-    GONIO_TRY(samples.shade(i, 1, one));
-    samples.add_glints_of(i, one);
-    samples.add_layer(i, one);
-    if (i == first) {
-      picture = one;
-      continue;
-    }
-    for (std::size_t k = 0; k < one.data.size(); ++k) picture.data[k] += one.data[k];
+  for (int begin = first; begin < first + count; begin += together) {
+    image::Image& into = begin == first ? picture : one;
+    const int end = begin + together;
+    for (int i = begin; i < end; ++i) GONIO_TRY(engine.shade(sight, i, gain, i > begin, into));
+    engine.finish(into);
+    for (int i = begin; has_glints && i < end; ++i) add_glints(scene, effects, *sight.gbuffer(i), gain, into);
+    for (int i = begin; has_layer && i < end; ++i)
+      scene.layer->add(*sight.gbuffer(i), sight.places(i), effects, gain, into, sight.seen_pixels(i));
+    for (std::size_t k = 0; begin > first && k < one.data.size(); ++k) picture.data[k] += one.data[k];
   }
   picture.channel_names = {"R", "G", "B", "A"};
   return {};
