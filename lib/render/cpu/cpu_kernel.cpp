@@ -317,7 +317,7 @@ HWY_INLINE void add_light(const CpuShading& s, int number, const PointArrays& po
       if (which == 0 && s.lit_diffuse) lit.add(0, i, by_cosine, light + 4);
       const Direction r = s.tilts != nullptr ? tilted.r(i) : frame.r(i), l = lamp.toward(i);
       const Direction apart = minus(r, l);
-      const V versine = hn::Mul(hn::Set(f, 0.5F), dot(apart, apart)), log_cos = log_cos_of(versine);
+      const V versine = hn::Mul(hn::Set(f, 0.5F), dot(apart, apart)), log_cos = log_beside_one(hn::Neg(versine));
       const auto reached = hn::And(hn::Lt(versine, hn::Set(f, 1.0F)), hn::Gt(hn::Load(f, base + i), hn::Zero(f)));
       const V share = s.tilts != nullptr ? hn::Load(f, tilted.share + i) : hn::Set(f, 1.0F);
       for (std::uint64_t left = lit.lobes(); left != 0; left &= left - 1) {

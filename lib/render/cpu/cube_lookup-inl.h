@@ -195,16 +195,16 @@ struct Products {
   }
 };
 
-// log cos from 1 - cos, which is exact where cos is 1 but for the last digits.
-HWY_INLINE V log_cos_of(V versine) {
+// log(1 + x), from x itself near 0.
+HWY_INLINE V log_beside_one(V x) {
   const D f;
-  const V s = versine;
-  const V series =
-      hn::Mul(hn::Neg(s),
-              hn::MulAdd(s, hn::MulAdd(s, hn::MulAdd(s, hn::Set(f, 0.25F), hn::Set(f, 0.33333333F)), hn::Set(f, 0.5F)),
-                         hn::Set(f, 1.0F)));
-  const V direct = hn::Log(f, hn::Max(hn::Sub(hn::Set(f, 1.0F), s), hn::Set(f, 1e-30F)));
-  return hn::IfThenElse(hn::Lt(s, hn::Set(f, 0.02F)), series, direct);
+  const V one = hn::Set(f, 1.0F);
+  const V series = hn::Mul(
+      x,
+      hn::NegMulAdd(x, hn::NegMulAdd(x, hn::NegMulAdd(x, hn::Set(f, 0.25F), hn::Set(f, 0.33333333F)), hn::Set(f, 0.5F)),
+                    one));
+  const V direct = hn::Log(f, hn::Max(hn::Add(one, x), hn::Set(f, 1e-30F)));
+  return hn::IfThenElse(hn::Lt(hn::Abs(x), hn::Set(f, 0.02F)), series, direct);
 }
 
 }  // namespace HWY_NAMESPACE

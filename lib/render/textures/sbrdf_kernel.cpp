@@ -124,16 +124,6 @@ struct LobeMiddles {
   bool any[kPointsAtOnce];  // whether a lobe of the points from there on is lit and seen; else the others are not set
 };
 
-// log(1 + x), from x itself near 0.
-HWY_INLINE V log_beside_one(V x, V one_and_x) {
-  const D f;
-  const V series = hn::Mul(
-      x,
-      hn::NegMulAdd(x, hn::NegMulAdd(x, hn::NegMulAdd(x, hn::Set(f, 0.25F), hn::Set(f, 0.33333333F)), hn::Set(f, 0.5F)),
-                    hn::Set(f, 1.0F)));
-  return hn::IfThenElse(hn::Lt(hn::Abs(x), hn::Set(f, 0.02F)), series, hn::Log(f, one_and_x));
-}
-
 // |p|^2 - 1 is taken from the axes, (C^2 - 1) wo^2 summed, which is exact where a lobe mirrors.
 HWY_INLINE void find_middles(const SurfaceFrames& frames, const float* lit, const LobeValues& l, LobeMiddles& middles) {
   const D f;
@@ -153,7 +143,7 @@ HWY_INLINE void find_middles(const SurfaceFrames& frames, const float* lit, cons
     };
     const V excess = hn::Add(beyond_one(axes.x, v.x), hn::Add(beyond_one(axes.y, v.y), beyond_one(axes.z, v.z)));
     const V size2 = hn::Max(dot(p, p), hn::Set(f, 1e-30F)), half = hn::Set(f, 0.5F);
-    const V log_size2 = log_beside_one(excess, size2);
+    const V log_size2 = log_beside_one(excess);
     store(scaled(hn::Div(one, hn::Sqrt(size2)), p), middles.x, middles.y, middles.z, i);
     hn::Store(hn::Mul(hn::Mul(half, hn::Load(f, l.exponent + i)), log_size2), f, middles.log_power + i);
   }
@@ -260,7 +250,7 @@ HWY_INLINE void add_lit(const float* light, const LampInFrames& lamp, const Surf
     if (hn::AllFalse(f, seen)) continue;
     const V exponent = hn::Load(f, l.exponent + i);
     const V lowered = hn::Div(one, hn::MulAdd(exponent, hn::Load(f, lamp.variance + i), one));
-    const V log_lobe = hn::MulAdd(hn::Mul(lowered, exponent), log_cos_of(versine), hn::Load(f, middles.log_power + i));
+    const V log_lobe = hn::MulAdd(hn::Mul(lowered, exponent), log_beside_one(hn::Neg(versine)), hn::Load(f, middles.log_power + i));
     const V power = hn::Mul(lowered, bounded_exp(hn::Add(log_lobe, hn::Load(f, l.albedo + i))));
     hn::Store(hn::IfThenElseZero(seen, hn::Mul(power, hn::Mul(cos_i, hn::Load(f, lamp.strength + i)))), f, weight + i);
   }
