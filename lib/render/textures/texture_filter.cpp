@@ -108,23 +108,12 @@ int fine_probes(double texels, int more) {
 
 }  // namespace
 
-namespace {
-
-// std::floor() without a call of the library, which most processors that this is built for would need.
-double floor_of(double x) {
-  if (!(std::abs(x) < 1e9)) return std::floor(x);
-  const auto whole = static_cast<double>(static_cast<std::int64_t>(x));
-  return x < whole ? whole - 1 : whole;
-}
-
-}  // namespace
-
 bool is_between_texels(const TexturePlace& place, double scale, int width, int height) {
   const auto has_no_middle = [&](float at, float across, float down, int count) {
     const double middle = static_cast<double>(at) * count - 0.5;
     const double reach =
         0.5 * scale * (std::abs(static_cast<double>(across)) + std::abs(static_cast<double>(down))) * count;
-    return count == 1 || floor_of(middle - reach) == floor_of(middle + reach);
+    return count == 1 || std::floor(middle - reach) == std::floor(middle + reach);
   };
   return has_no_middle(place.u, place.across[0], place.down[0], width) &&
          has_no_middle(place.v, place.across[1], place.down[1], height);
@@ -174,12 +163,12 @@ class Side {
   // A place that is too far away for a number is taken for the corner, as texture_taps() does.
   Side(double at, double step_across, double step_down, const FilterProbes& probes, int texels)
       : texels_(texels), across_(step_across), down_(step_down) {
-    const double place = (std::isfinite(at) ? at - texels * floor_of(at / texels) : 0) - 0.5;
+    const double place = (std::isfinite(at) ? at - texels * std::floor(at / texels) : 0) - 0.5;
     const double wide = 0.5 * (probes.across - 1) * across_, high = 0.5 * (probes.down - 1) * down_;
     const double reach = std::abs(wide) + std::abs(high);
-    first_ = static_cast<int>(floor_of(place - reach));
+    first_ = static_cast<int>(std::floor(place - reach));
     from_ = place - wide - high - first_;
-    window_ = std::min(static_cast<int>(floor_of(place + reach)) + 2 - first_, texels);
+    window_ = std::min(static_cast<int>(std::floor(place + reach)) + 2 - first_, texels);
     first_ = ((first_ % texels) + texels) % texels;
   }
   int window() const { return window_; }
@@ -196,10 +185,6 @@ class Side {
   int texels_, first_ = 0, window_ = 1;
   double across_, down_, from_ = 0;
 };
-
-}  // namespace
-
-namespace {
 
 void merge_same(std::vector<TexelShare>& texels) {
   std::ranges::sort(texels, {}, &TexelShare::texel);
@@ -228,17 +213,6 @@ std::span<TexelShare> SeenTexels::of(const TexturePlace& place, double scale, co
   const Side y((1 - static_cast<double>(place.v)) * height, -step(probes.wide, place.across[1], probes.across, height),
                -step(probes.high, place.down[1], probes.down, height), probes, height);
   seen_.clear();
-  // A single probe meets each of the texels around it once.
-  if (probes.count() == 1 && width > 1 && height > 1) {
-    const auto [column, s] = x.before(0, 0);
-    const auto [row, t] = y.before(0, 0);
-    const std::uint32_t upper = y.texel(row) * static_cast<std::uint32_t>(width),
-                        lower = y.texel(row + 1) * static_cast<std::uint32_t>(width), left = x.texel(column),
-                        right = x.texel(column + 1);
-    seen_.push_back({upper + left, (1 - s) * (1 - t)}), seen_.push_back({upper + right, s * (1 - t)});
-    seen_.push_back({lower + left, (1 - s) * t}), seen_.push_back({lower + right, s * t});
-    return seen_;
-  }
   constexpr std::size_t kMostSlots = 1 << 16;
   const std::size_t window = static_cast<std::size_t>(x.window()) * static_cast<std::size_t>(y.window());
   const bool sorts = window > kMostSlots;
