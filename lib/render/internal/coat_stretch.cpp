@@ -57,7 +57,7 @@ std::shared_ptr<const paint::TiltedLobes> drawn_stretch(const Scene& scene, cons
   static KeptValues<std::vector<double>, Set> kept;
   if (!effects.stretch || !effects.environment || effects.lights > 0 || !wears_rough_coat(scene, part)) return nullptr;
   const paint::LobeFit& paint = scene.paints[part];
-  const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : 45;
+  const double gloss_deg = gloss_deg_of(scene, part);
   return *kept.get(gloss_of(paint, gloss_deg), [&] { return made(paint, gloss_deg); });
 }
 

@@ -16,6 +16,7 @@
 #include "math/elementary.h"
 #include "mesh/unit.h"
 #include "render/internal/lobe_curves.h"
+#include "render/internal/wear.h"
 #include "render/path/sequence.h"
 #include "render/path/visible_surface.h"
 #include "render/scene_effects.h"
@@ -132,8 +133,7 @@ namespace {
 
 // Why a part has no sparkle although its paint has flakes; "" where it has.
 std::string hindrance(const Scene& scene, std::size_t part) {
-  const auto is_on = [&](const auto& list) { return part < list.size(); };
-  if (is_on(scene.anisotropy) && scene.anisotropy[part].alpha_x != scene.anisotropy[part].alpha_y) return "brushed";
+  if (is_anisotropic(anisotropy_of(scene, part))) return "brushed";
   if (!scene.paints[part].tilts.empty()) return "mapped";
   if (scene.layer == nullptr) return "";
   const PartSurface& surface = scene.layer->surface(static_cast<int>(part));
