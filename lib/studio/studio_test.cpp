@@ -126,12 +126,29 @@ TEST(Studio, BrushesAPaintAndTellsItsTilts) {
   EXPECT_TRUE(studio.list(Studio::List::kTilts).empty());
 }
 
+TEST(Studio, StatesFlakesOrAssumesThoseOfTheClass) {
+  Studio studio = loaded();
+  const auto described = [&](const Json& paint) { return studio.answer({{"do", "describe"}, {"paint", paint}}); };
+  const Json assumed = {{"values", {30, 0.5, 0.5}}, {"assumed", true}};
+  EXPECT_EQ(described(paint_json(metallic())).at("flakes"), assumed);
+  const auto edited = [&](const Json& paint, const Json& flakes) {
+    return studio.answer({{"do", "edit"}, {"paint", paint}, {"edit", {{"flakes", flakes}}}}).at("paint");
+  };
+  const Json stated = edited(paint_json(metallic()), {40, 0.2, 0.7});
+  EXPECT_EQ(described(stated).at("flakes"), (Json{{"values", {40, 0.2, 0.7}}, {"assumed", false}}));
+  EXPECT_EQ(edited(stated, {0, 0, 0.5}), paint_json(metallic()));
+  paint::Paint solid = metallic();
+  solid.paint_class = paint::PaintClass::kSolid;
+  EXPECT_FALSE(described(paint_json(solid)).contains("flakes"));
+}
+
 TEST(Studio, RefusesEditsThatPaintEditRefuses) {
   Studio studio = loaded();
   for (const char* text :
        {R"({"hew": 5})", R"({"travel": 15})", R"({"gloss": 101})", R"({"face": [1, 2]})", R"({"face": [-1, 2, 3]})",
         R"({"hue": "5"})", R"({"set": [{"geometry": "x", "lab": [1, 2, 3]}]})", R"({"anisotropy": [0.1]})",
-        R"({"anisotropy": [0.1, 0]})", R"({"anisotropy": [0.1, 11]})"})
+        R"({"anisotropy": [0.1, 0]})", R"({"anisotropy": [0.1, 11]})", R"({"flakes": [30, 0.5]})",
+        R"({"flakes": [30, 0, 0.5]})", R"({"flakes": [30, 1.1, 0.5]})", R"({"flakes": [30, 0.5, 31]})"})
     EXPECT_TRUE(studio.answer({{"do", "edit"}, {"paint", paint_json(metallic())}, {"edit", Json::parse(text)}})
                     .contains("error"))
         << text;

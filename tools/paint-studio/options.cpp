@@ -7,9 +7,9 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.description = {
       "paint-studio packs a mesh, prefiltered environments, a basis and a library of paints into one HTML page. The "
       "page opens from a file in any browser that has WebGL 2, and needs no network. A designer starts from a paint "
-      "of the library, changes its face, flop, travel and gloss, and sees it on the mesh at once, beside its "
+      "of the library, changes its face, flop, travel, gloss and flakes, and sees it on the mesh at once, beside its "
       "curves, its nine variations and the paints of the library that are nearest to it. All of it works by mouse, "
-      "by touch and by keyboard. The picture stays in the window, and the panels scroll beside it or below it.",
+      "touch and keyboard. The picture stays in the window, and the panels scroll beside it or below it.",
       "On the picture, dragging goes around the mesh, turns the light, moves a lamp by its highlight, ends the "
       "travel, or sets the gloss by the width of the highlight. The page tells the aspecular angle under the pointer "
       "and the color that the paint has at this angle, and marks both in the curves. A cross has buttons that change "

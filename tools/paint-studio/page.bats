@@ -180,6 +180,19 @@ needs_browser() {
   diff <(grep '<lab ' gradient.fitted.paints.xml) <(grep '<lab ' from-cxf.xml)
 }
 
+@test "flakes are read, edited, taken back and written as paint-edit has them" {
+  needs_browser
+  paint-edit -q "$TESTDATA/paints.paints.xml#silver_fine" --flakes 40,0.2,0.7 --rename stated -o stated.paints.xml
+  paint-studio -q --mesh "$TESTDATA/speed-shape.obj" --env studio.env.exr --basis "$TESTDATA/b5.basis.xml" \
+    "$TESTDATA/paints.paints.xml" stated.paints.xml -o flakes.html
+  run node "$code/flakes.js" flakes.html .
+  echo "$output"
+  [ "$status" -eq 0 ]
+  bash -euo pipefail flakes-command.txt
+  grep -q '<flakes diameter_um="40" coverage="0.31" spread_deg="0.7"/>' flakes-saved.xml
+  diff <(grep -E '<(paint|flakes|lab) ' flakes-saved.xml) <(grep -E '<(paint|flakes|lab) ' design.paints.xml)
+}
+
 # Tilted normals stand for a brushed surface, in the page as in the engine.
 @test "brushed paints look as render-osmesa draws them, under the lamp too" {
   needs_browser

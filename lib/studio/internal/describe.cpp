@@ -109,6 +109,10 @@ Result<Json> description(const paint::Paint& paint) {
     json["gloss"].push_back({{"angle", reading.angle_deg}, {"units", reading.gloss_units}});
   const paint::Anisotropy brushed = paint.anisotropy.value_or(paint::Anisotropy{});
   json["anisotropy"] = {brushed.alpha_x, brushed.alpha_y};
+  if (const auto known = paint::known_flakes(paint)) {
+    const auto& [diameter_um, coverage, spread_deg] = known->flakes;
+    json["flakes"] = {{"values", {diameter_um, coverage, spread_deg}}, {"assumed", known->assumed}};
+  }
   json["rows"] = rows_json(paint, condition);
   json["measured"] = curve.kind() == paint::TargetCurve::Kind::kMeasured;
   json["curve"] = Json::array();

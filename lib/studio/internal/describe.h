@@ -16,8 +16,9 @@ color::Xyz screen_white(const color::ViewingCondition& condition);
 // "#rrggbb": the color as an sRGB display shows it, under the light that the reading is relative to.
 std::string css_color(const color::Lab& lab, const color::ViewingCondition& condition);
 
-// Members: name, code, class, appearance{face, flop, travel, fitted}, average{L, chroma, hue}, gloss[], rows[] of
-// geometry, angle, lab and css, curve[] of angle, lab and css, metrics{}, and screen{}: for face and flop the
+// Members: name, code, class, appearance{face, flop, travel, fitted}, average{L, chroma, hue}, gloss[], flakes{}
+// (values[] of diameter, coverage and spread, and `assumed`, by class) where there are some, rows[] of geometry, angle,
+// lab and css, curve[] of angle, lab and css, metrics{}, and screen{}: for face and flop the
 // difference `de00` from what the screen shows and the `nearest` that it shows, and the `border` of that in the plane
 // of a* and b* at the lightness of the face. Error: a paint without color, or of an unknown illuminant.
 Result<Json> description(const paint::Paint& paint);

@@ -71,6 +71,15 @@ const std::map<std::string, Take, std::less<>>& moves() {
          if (!within || (alpha[0] == 0) != (alpha[1] == 0)) return r.fail("two numbers above 0 and up to 10, or 0,0", k);
          e.anisotropy = paint::Anisotropy{alpha[0], alpha[1]};
        }},
+      {"flakes",
+       [](JsonReader& r, const char* k, paint::Edit& e) {
+         const std::vector<double> of = r.numbers(k, 3);
+         const double most[] = {paint::kMostFlake_um, 1, paint::kMostFlakeSpread_deg};
+         const bool within = std::ranges::equal(of, most, [](double x, double limit) { return x >= 0 && x <= limit; });
+         if (!within || (of[0] == 0) != (of[1] == 0))
+           return r.fail("diameter, coverage and spread of flakes, or 0,0 and a spread", k);
+         e.flakes = paint::Flakes{of[0], of[1], of[2]};
+       }},
       {"gloss-angle", [](JsonReader& r, const char* k, paint::Edit& e) { e.gloss_angle_deg = within(r, k, 20, 85); }}};
   return all;
 }

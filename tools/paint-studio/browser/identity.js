@@ -53,7 +53,7 @@ function randomEdits(random) {
     { hue: between(0, 360) }, { chroma: between(0, 80) }, { lightness: between(5, 95) }, { "hue-shift": between(-180, 180) },
     { "chroma-factor": between(0, 2), "lightness-shift": between(-5, 5) },
     { at: between(15, 110), "lightness-shift": between(-6, 6), "hue-shift": between(-20, 20) },
-    { anisotropy: [between(0.01, 1), between(0.01, 1)] }, { face: lab(), "keep-residual": true }, { set: [{ geometry: "45as45", lab: lab() }] },
+    { anisotropy: [between(0.01, 1), between(0.01, 1)] }, { flakes: [between(5, 100), between(0.01, 1), between(0, 2)] }, { face: lab(), "keep-residual": true }, { set: [{ geometry: "45as45", lab: lab() }] },
   ];
 }
 

@@ -43,6 +43,7 @@ function draggable(element, { begin, move, end }, button = 0) {
   });
 }
 
+const flakeNumbers = { "flake size": 0, coverage: 1 }, usualFlakes = [30, 0.5, 0.5];  // micrometers, part of the surface, degrees of spread
 const lowest = { L: 0, a: -128, b: -128 }, highest = { L: 150, a: 128, b: 128 };
 
 // The fields of face and flop, and the sliders of travel and gloss. `app` has preview(), commit() and the description.
@@ -67,7 +68,7 @@ class NumberControls {
     this.fields.keep = keep;
     document.getElementById("numbers").append(
       grid, this.loss, this.slider("travel", 15.5, 180, 0.5, "°"), this.slider("gloss", 0, 100, 0.5, "GU"),
-      made("label", {}, [keep, words("keep what the readings have beside the curve")]), this.brushed());
+      made("label", {}, [keep, words("keep what the readings have beside the curve")]), this.brushed(), this.flakes());
     const averages = document.getElementById("averages");
     averages.append(this.slider("lightness", 0, 120, 0.5, ""), this.slider("chroma", 0, 140, 0.5, ""),
                     this.slider("hue", 0, 360, 1, "°"));
@@ -104,8 +105,21 @@ class NumberControls {
     return this.app.commit({ anisotropy: both });
   }
 
+  // Flakes have a size, a coverage and a spread, or are none. The spread has no slider.
+  flakes() {
+    this.flakesText = made("span", { class: "hint" });
+    this.fields.takeFlakes = made("button", { type: "button", words: "Take away", onclick: () => this.app.commit({ flakes: [0, 0, usualFlakes[2]] }) });
+    return made("div", { role: "group", "aria-label": "Flakes" }, [this.slider("flake size", 1, 200, 1, "µm"), this.slider("coverage", 0.01, 1, 0.01, ""),
+                                                                   made("div", { class: "row" }, [this.flakesText, this.fields.takeFlakes])]);
+  }
+  showFlakes({ flakes, class: kind }) {
+    this.fields.takeFlakes.disabled = !flakes || flakes.assumed;
+    this.flakesText.textContent = !flakes ? words("The paint has no flakes.") : flakes.assumed ? told`Flakes are assumed, as usual in class ${words(kind)}.` : words("The paint states its flakes.");
+  }
+
   // The edit that states one number.
   edit(name, value) {
+    if (name in flakeNumbers) return { flakes: (this.app.description.flakes?.values ?? usualFlakes).map((known, i) => (i === flakeNumbers[name] ? value : known)) };
     const edit = { [name]: value };
     if (name === "travel") Object.assign(edit, this.residual());
     if (name === "gloss" && this.app.glossAngle() !== 60) edit["gloss-angle"] = this.app.glossAngle();
@@ -136,7 +150,7 @@ class NumberControls {
   }
 
   show(description) {
-    const { appearance, average, gloss } = description;
+    const { appearance, average, gloss, flakes } = description;
     const set = (field, value) => {
       if (document.activeElement !== field) field.value = value;
     };
@@ -146,11 +160,12 @@ class NumberControls {
     }
     this.loss.replaceChildren(...["face", "flop"].filter((end) => description.screen[end].de00 > 1).map((end) => this.lossOf(end, description.screen[end])));
     const numbers = { travel: appearance.travel, gloss: gloss.length > 0 ? gloss[0].units : 0,
-                      lightness: average.L, chroma: average.chroma, hue: average.hue };
+                      lightness: average.L, chroma: average.chroma, hue: average.hue, "flake size": flakes?.values[0], coverage: flakes?.values[1] };
     for (const [name, value] of Object.entries(numbers)) {
-      set(this.fields[name], rounded(value));
-      set(this.fields[name + "-range"], value);
+      set(this.fields[name], value === undefined ? "" : rounded(value));
+      set(this.fields[name + "-range"], value ?? 0);
     }
+    this.showFlakes(description);
     ["x", "y"].forEach((axis, i) => set(this.fields["brushed-" + axis], rounded(description.anisotropy[i], 4)));
     const gray = average.chroma < 1e-6;
     for (const name of ["hue", "chroma"]) {

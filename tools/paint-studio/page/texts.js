@@ -35,6 +35,8 @@ const german = {
   "Paints of the library as points in L*a*b*. Drag or use the arrow keys to turn them; click on a point to choose its paint.": "Lacke der Bibliothek als Punkte in L*a*b*. Ziehen oder Pfeiltasten drehen sie; ein Klick auf einen Punkt wählt seinen Lack.",
   "The same by paint-pick": "Dasselbe mit paint-pick", "lightness": "Helligkeit", "chroma": "Buntheit", "hue": "Farbton", "keep what the readings have beside the curve": "behalten, was die Messwerte neben der Kurve haben",
   "brushed": "gebürstet", "sideways": "quer", "upward": "aufwärts", "0 for none": "0 für keine", "Brushed surface": "Gebürstete Oberfläche",
+  "flake size": "Flakegröße", "coverage": "Bedeckung", "Flakes": "Flakes", "Take away": "Wegnehmen", "The paint has no flakes.": "Der Lack hat keine Flakes.", "The paint states its flakes.": "Der Lack nennt seine Flakes.",
+  "Flakes are assumed, as usual in class {}.": "Flakes sind angenommen, wie in der Art {} üblich.",
   "lighter": "heller", "darker": "dunkler", "hue -": "Farbton -", "hue +": "Farbton +", "less chroma": "weniger Buntheit", "more chroma": "mehr Buntheit",
   "flop index": "Flopindex", "chroma index": "Buntheitsindex", "hue shift index": "Farbtonindex", "lightness of the face": "Helligkeit der Aufsicht", "chroma of the face": "Buntheit der Aufsicht",
   "Dragging goes around the mesh; arrow keys do so too. A click on a part lets you choose what it wears.": "Ziehen und Pfeiltasten führen um das Netz. Ein Klick auf einen Teil lässt wählen, was er trägt.",
