@@ -2,10 +2,13 @@
 
 #include <utility>
 
+#include "brdf/flakes.h"
+#include "math/elementary.h"
 #include "render/gl/disc_texture.h"
 #include "render/gl/gbuffer_shader.h"
 #include "render/gl/shader.h"
 #include "render/gl/shader_parts.h"
+#include "render/gl/sparkle_shader.h"
 #include "render/internal/maps.h"
 #include "render/scene_effects.h"
 
@@ -13,7 +16,7 @@ namespace goniochrome::render {
 
 PagePrograms page_programs() {
   return {for_opengl_es(gbuffer_vertex_shader()), for_opengl_es(gbuffer_fragment_shader()),
-          for_opengl_es(shading_vertex_shader())};
+          for_opengl_es(shading_vertex_shader()), for_opengl_es(sparkle_vertex_shader())};
 }
 
 namespace {
@@ -22,6 +25,7 @@ PageShading shading_programs(Effects effects, const color::ReflectionOperator& o
   PageShading programs;
   programs.shading = for_opengl_es(shading_fragment_shader(effects, op, {}, true));
   programs.gathering = for_opengl_es(gathering_fragment_shader(effects, true));
+  if (effects.single_lights() > 0) programs.sparkle = for_opengl_es(sparkle_fragment_shader(effects, op));
   effects.anisotropy = true;
   programs.brushed_shading = for_opengl_es(shading_fragment_shader(effects, op, {}, true));
   programs.brushed_gathering = for_opengl_es(gathering_fragment_shader(effects, true));
@@ -74,6 +78,29 @@ PageMovableLamp page_movable_lamp(Effects effects, const color::ReflectionOperat
   effects.lights = 1;
   effects.extent = true;
   return {shading_programs(effects, op), disc_uniform(lamp), discs.rgba};
+}
+
+PageFlakes page_flakes(const paint::LobeFit& fit, const paint::Flakes& flakes, const std::vector<double>& lamps_rad) {
+  PageFlakes page;
+  const std::vector<double> shares = brdf::flake_shares(fit);
+  std::vector<brdf::FlakeLamp::Lobe> lobes;
+  for (std::size_t j = 0; j < shares.size(); ++j)
+    if (shares[j] > 0) lobes.push_back({fit.lobes[j].exponent, shares[j], nullptr, nullptr});
+  if (lobes.empty()) return page;
+  page.per_m2 = flakes.per_m2();
+  for (const double radius_rad : lamps_rad) {
+    const brdf::FlakeLamp lamp(lobes, radius_rad, flakes.spread_deg);
+    page.most.push_back(lamp.part_that_shows(0));
+    for (int i = 0; i < kFlakeNodes; ++i) {
+      const double chord = kMostFlakeChord * i / (kFlakeNodes - 1), cosine = 1 - 0.5 * chord * chord;
+      double beyond = 0;
+      for (const brdf::FlakeLamp::Lobe& lobe : lobes)
+        if (cosine > 0) beyond += lobe.share * math::pow(cosine, lobe.exponent + 1);
+      for (const double number : {lamp.part_that_shows(chord), beyond, lamp.shown_rad, 0.0})
+        page.texels.push_back(static_cast<float>(number));
+    }
+  }
+  return page;
 }
 
 }  // namespace goniochrome::render

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "paint/paint.h"
 #include "render/effects.h"
 #include "render/gl/layer_shader.h"
 
@@ -14,7 +15,7 @@ namespace goniochrome::render {
 
 // OpenGL ES 3. The G-buffer takes the row of the paint's weights for the number of the part.
 struct PagePrograms {
-  std::string gbuffer_vertex, gbuffer_fragment, shading_vertex;
+  std::string gbuffer_vertex, gbuffer_fragment, shading_vertex, sparkle_vertex;
 };
 PagePrograms page_programs();
 
@@ -44,6 +45,7 @@ struct PageLamp {
 struct PageShading {
   std::string shading, brushed_shading;
   std::string gathering, brushed_gathering;  // its layers
+  std::string sparkle;                       // see sparkle_fragment_shader()
 };
 
 struct PageLight {
@@ -60,6 +62,14 @@ struct PageMovableLamp {
   Vec3 disc;                 // as light_disc has it
   std::vector<float> discs;  // texels that go before those of the others
 };
+
+// The data by which the programs `sparkle` draw the flakes of a paint.
+struct PageFlakes {
+  double per_m2 = 0;          // 0 where none of its light comes from flakes
+  std::vector<double> most;   // the largest part of them that shows each lamp
+  std::vector<float> texels;  // RGBA of the texture "flakes", as sparkle_fragment_shader() reads it
+};
+PageFlakes page_flakes(const paint::LobeFit& fit, const paint::Flakes& flakes, const std::vector<double>& lamps_rad);
 
 // WebGL 2 promises 16 textures. Besides lobes, the program reads seven.
 constexpr std::size_t kMostPageLobes = 9;

@@ -7,6 +7,7 @@
 
 #include "base/angles.h"
 #include "base/text.h"
+#include "mesh/unit.h"
 #include "render/camera.h"
 #include "render/page_stage.h"
 #include "render/scene.h"
@@ -45,7 +46,8 @@ Json programs_json(const render::PageShading& programs) {
   return {{"shading", programs.shading},
           {"brushed_shading", programs.brushed_shading},
           {"gathering", programs.gathering},
-          {"brushed_gathering", programs.brushed_gathering}};
+          {"brushed_gathering", programs.brushed_gathering},
+          {"sparkle", programs.sparkle}};
 }
 
 // Where most of the light comes from: the brightest spot, or, without spots, the brightest side.
@@ -91,6 +93,7 @@ Json packed_mesh(const mesh::Mesh& mesh, PackedNumbers& numbers) {
       {"normals", numbers.add(normals)},
       {"corners", numbers.add(corners)},
       {"parts", std::move(parts)},
+      {"unit_m", mesh::length_unit(mesh).meters},
       {"ground",
        {{"seen_from", vector_json(Vec3{middle.x, box.low.y + eye_height, middle.z} - origin)}, {"drop", eye_height}}},
       {"view",

@@ -12,6 +12,7 @@
 #include "library/search.h"
 #include "library/verdict.h"
 #include "paint/curve.h"
+#include "render/page_stage.h"
 #include "render/scene_effects.h"
 #include "sketch/dropper.h"
 #include "studio/internal/describe.h"
@@ -47,7 +48,7 @@ struct Studio::State {
   std::optional<library::LibraryIndex> index;
   std::optional<library::LibrarySearch> by_de76, by_de00;
   std::optional<LibraryPane> pane;
-  std::vector<float> weights, tilts;
+  std::vector<float> weights, tilts, flakes;
   std::map<int, ViewPane> views;
   const ViewPane* shown_view = nullptr;
   std::string attached;
@@ -57,6 +58,7 @@ struct Studio::State {
   Result<Json> load(JsonReader& request);
   Result<Json> edit(JsonReader& request) const;
   Result<Json> fit(JsonReader& request);
+  Result<Json> flakes_of(JsonReader& request);
   Result<Json> describe(JsonReader& request) const;
   Result<Json> variations(JsonReader& request) const;
   Result<Json> nearest(JsonReader& request) const;
@@ -175,6 +177,19 @@ Result<Json> Studio::State::fit(JsonReader& request) {
   if (const double extent_deg = request.number("extent", 0); extent_deg > 0)
     answer["highlight"] = json_number(brdf::highlight_edge_deg(fit.lobes, extent_deg));
   return answer;
+}
+
+Result<Json> Studio::State::flakes_of(JsonReader& request) {
+  if (!fitter) return input_error("\"load\" must come first");
+  GONIO_ASSIGN(const paint::Paint paint, paint_of_json(request.member("paint")));
+  const std::vector<double> lamps = request.numbers("lamps");
+  GONIO_TRY(request.status());
+  flakes.clear();
+  if (!paint.flakes) return Json{{"per_m2", 0}, {"most", Json::array()}};
+  GONIO_ASSIGN(const fit::PaintFit fit, fitter->fit(paint));
+  render::PageFlakes page = render::page_flakes(fit.lobes, *paint.flakes, lamps);
+  flakes = std::move(page.texels);
+  return Json{{"per_m2", page.per_m2}, {"most", page.most}};
 }
 
 Result<Json> Studio::State::describe(JsonReader& request) const {
@@ -358,6 +373,7 @@ Result<Json> Studio::State::answer(const Json& json) {
   if (wanted == "load") return load(request);
   if (wanted == "edit") return edit(request);
   if (wanted == "fit") return fit(request);
+  if (wanted == "flakes") return flakes_of(request);
   if (wanted == "describe") return describe(request);
   if (wanted == "variations") return variations(request);
   if (wanted == "nearest") return nearest(request);
@@ -413,6 +429,7 @@ std::span<const std::byte> Studio::list(List which) const {
   if (which == List::kWeights) return bytes_of(state_->weights);
   if (which == List::kNumbers) return std::as_bytes(std::span(state_->numbers.bytes()));
   if (which == List::kTilts) return bytes_of(state_->tilts);
+  if (which == List::kFlakes) return bytes_of(state_->flakes);
   if (which == List::kPicture)
     return state_->shown_view != nullptr ? bytes_of(state_->shown_view->picture()) : std::span<const std::byte>{};
   if (!state_->pane) return {};

@@ -193,6 +193,34 @@ needs_browser() {
   diff <(grep -E '<(paint|flakes|lab) ' flakes-saved.xml) <(grep -E '<(paint|flakes|lab) ' design.paints.xml)
 }
 
+# A plate under the lamp, from four distances. The page counts other flakes than render-osmesa, so that shares differ by what
+# 240 x 240 pixels tell: a tenth where many flakes are seen. In the last view the mean has a standard error of .02 dE00.
+@test "single flakes have the contrast that render-osmesa draws, and keep the mean color" {
+  needs_browser
+  printf 'v -2 -2 0\nv 2 -2 0\nv 2 2 0\nv -2 2 0\nf 1 2 3 4\n' >plate.obj
+  paint-edit -q "$TESTDATA/paints.paints.xml#silver_fine" --flakes 40,0.2,0.7 --rename stated -o stated.paints.xml
+  fit-paint -q -b "$TESTDATA/b5.basis.xml" stated.paints.xml -o stated.fitted.xml
+  paint-studio -q --mesh plate.obj --env studio.env.exr --basis "$TESTDATA/b5.basis.xml" stated.paints.xml "$TESTDATA/paints.paints.xml" -o plate.html
+  white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' plate.html | jq '.environments[0].white')
+  run node "$code/sparkle.js" plate.html . 240 1,5.7 3,7.6 10,20
+  echo "$output"
+  [ "$status" -eq 0 ]
+  for view in 1,5.7 3,7.6 10,20; do
+    meters=${view%,*}
+    for effect in + -; do
+      render-osmesa -q --mesh plate.obj --paint stated.fitted.xml --env studio.env.exr --engine gl --effects "all,-rays,${effect}sparkle" --size 240x240 \
+        --samples 1 --camera "0,0,$meters,0,0,0,${view#*,}" --light "12,2,$white,$white,$white@4" -o "$effect$meters.exr"
+    done
+    run /usr/bin/python3 "$code/grain.py" "plain-$meters.f32" "flaky-$meters.f32" "./-$meters.exr" "./+$meters.exr"
+    echo "$meters m: $output"
+    awk -v page="${lines[0]}" -v tool="${lines[1]}" 'BEGIN { split(page, a, " "); split(tool, b, " ")
+      for (i = 1; i <= 5; ++i) if (!(a[1] > 0.02 && (a[i] - b[i])^2 <= (0.1 * b[i] + 0.002)^2)) exit 1 }'
+  done
+  awk -v mean="${lines[2]}" 'BEGIN { split(mean, of, " "); exit !(of[1] <= 0.05) }'
+  # The control: the same flakes seen from farther away have less contrast.
+  [ "$(/usr/bin/python3 "$code/grain.py" plain-3.f32 flaky-3.f32 ./-1.exr ./+1.exr | awk '{ print $1 }' | head -2 | paste -sd' ' | awk '{ print $1 < 0.5 * $2 }')" -eq 1 ]
+}
+
 # Tilted normals stand for a brushed surface, in the page as in the engine.
 @test "brushed paints look as render-osmesa draws them, under the lamp too" {
   needs_browser

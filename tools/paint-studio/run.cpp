@@ -139,6 +139,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
                 {{"gbuffer_vertex", programs.gbuffer_vertex},
                  {"gbuffer_fragment", programs.gbuffer_fragment},
                  {"shading_vertex", programs.shading_vertex},
+                 {"sparkle_vertex", programs.sparkle_vertex},
                  {"display_fragment", studio::display_program()},
                  {"overlay_fragment", studio::overlay_program()}}},
                {"screens", {{"srgb", studio::to_srgb_screen()}, {"display-p3", studio::to_p3_screen()}}},

@@ -6,7 +6,8 @@ namespace {
 
 // The light that a vertex loses, as moments: sums of d and of d d^T over directions, each times its luminance and its
 // part of the sphere. They are those of both sides, as if the surface were a mirror.
-constexpr const char* kMoments = R"(uniform sampler2D moments_0, moments_1, moments_2;
+constexpr const char* kMoments = R"(invariant gl_Position;
+uniform sampler2D moments_0, moments_1, moments_2;
 uniform int moment_columns;  // of these pictures, which have a texel for each vertex; 0: nothing is lost
 out vec4 first;  // x y z, xx
 out vec4 second;  // yy zz xy yz

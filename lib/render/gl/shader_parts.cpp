@@ -138,11 +138,15 @@ std::string over_tilts(const Effects& effects, const std::string& sum, const std
                      sum, function, more);
 }
 
-std::string occlusion_functions() {
+std::string luminance_constant() {
   std::string luminance;
   for (const color::Rgb& rgb : {color::Rgb{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
     luminance += (luminance.empty() ? "" : ", ") + glsl(color::xyz_d65_from_rgb(rgb).Y);
-  return fmt::format("const vec3 luminance = vec3({});\n", luminance) + kOcclusion;
+  return fmt::format("const vec3 luminance = vec3({});\n", luminance);
+}
+
+std::string occlusion_functions() {
+  return luminance_constant() + kOcclusion;
 }
 
 std::string occlusion_start(const Effects& effects) {

@@ -68,6 +68,7 @@ vec3 left(vec3 light, float lost) { return light * clamp(1.0 - lost / max(dot(lu
 vec3 left(vec3 light, vec2 bands) { return left(light, occluded.y + dot(bands, occluded.zw)); }
 )";
 std::string occlusion_functions();
+std::string luminance_constant();
 // Statements that take the occlusion of a point, where r is known.
 std::string occlusion_start(const Effects& effects);
 // A look-up of the light of a lobe cos^E, whose bands are (E+1)/(E+2) and E/(E+3), of the mirror (infinite), or of the

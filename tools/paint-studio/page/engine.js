@@ -24,8 +24,8 @@ function wasiImports(memoryOf) {
   };
 }
 
-const lists = ["weights", "filtered", "cloud", "cloudColors", "cloudPaints", "tilts", "picture", "numbers"];
-const kindOfList = { weights: Float32Array, cloud: Float32Array, tilts: Float32Array, picture: Float32Array, numbers: Uint8Array };  // others: Uint32Array
+const lists = ["weights", "filtered", "cloud", "cloudColors", "cloudPaints", "tilts", "picture", "numbers", "flakes"];
+const kindOfList = { weights: Float32Array, cloud: Float32Array, tilts: Float32Array, picture: Float32Array, numbers: Uint8Array, flakes: Float32Array };  // others: Uint32Array
 
 // The engine of a compiled module. ask() sends a request and returns the answer; it throws what the answer calls an
 // error. `progress` hears the part of a long request that is done.

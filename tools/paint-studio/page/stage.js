@@ -2,6 +2,7 @@
 // goniochrome-rendering(7), "RENDERING".
 
 const mostSampleBytes = 120e6;  // of the G-buffers of samples that are kept while the view stays
+const leastSparkle = 0.004;     // of a pixel's light; deviations of flakes below it are not drawn
 const edgeContrast = 0.1;       // from one pixel to the next, of the brightness of the darker one
 
 // Graphics that are drawn by the processor run both sides of a branch. Pixels that need the long side are therefore drawn in
@@ -60,7 +61,7 @@ void main() {
 
 class Stage {
   // Throws a sentence where the browser cannot draw the page.
-  constructor(canvas, data) {
+  constructor(canvas, data, engine) {
     const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, depth: false, preserveDrawingBuffer: true });
     if (!gl) throw new Error("This browser has no WebGL 2, with which the picture is drawn.");
     if (!gl.getExtension("EXT_color_buffer_float"))
@@ -69,7 +70,7 @@ class Stage {
     this.canvas = canvas;
     this.screen = matchMedia("(color-gamut: p3)").matches && "drawingBufferColorSpace" in gl ? "display-p3" : "srgb";
     if ("drawingBufferColorSpace" in gl) gl.drawingBufferColorSpace = this.screen;
-    this.data = data;
+    Object.assign(this, { data, engine });
     this.floatLinear = gl.getExtension("OES_texture_float_linear") !== null;
     this.sumKind = gl.getExtension("EXT_float_blend") !== null ? gl.RGBA32F : gl.RGBA16F;
     this.mesh = unpackedMesh(data.mesh);
@@ -84,6 +85,7 @@ class Stage {
     this.environments = data.environments.map(() => null);
     this.gbuffers = new Map();
     this.targets = new Map();
+    this.sparkling = false;  // whether single flakes are drawn
     this.ground = true;  // whether the environment lies on the ground
     this.versions = 0;
     this.turn = 0;     // of the environment about +Y, in degrees, as the camera's azimuth counts
@@ -267,20 +269,20 @@ class Stage {
     const made = this.environment(number), packed = this.data.environments[number], lamp = this.data.lamp;
     const discsOf = () => (packed.discs ? numbersOf(packed.discs.texels, Float32Array) : null);
     const name = (brushed ? "brushed_" : "") + work, kind = (this.lamp ? "lamp " : "") + name;
-    if (this.lamp === null) return (made[kind] ??= this.shadingOf(packed.programs[name], packed.lamps, discsOf()));
+    if (this.lamp === null) return (made[kind] ??= this.shadingOf(name, packed.programs[name], packed.lamps, discsOf()));
     if (!made[kind]) {
       const first = numbersOf(lamp.discs, Float32Array), others = discsOf() ?? new Float32Array(0);
       const discs = new Float32Array(first.length + others.length);
       discs.set(first);
       discs.set(others, first.length);
-      made[kind] = this.shadingOf(packed.lamp_programs[name], [{ disc: lamp.disc }, ...packed.lamps], discs);
+      made[kind] = this.shadingOf(name, packed.lamp_programs[name], [{ disc: lamp.disc }, ...packed.lamps], discs);
     }
     const direction = turnedAgainst(this.lamp.direction, this.turn);
     Object.assign(made[kind].lamps[0], { direction, white: this.lamp.white });
     return made[kind];
   }
-  shadingOf(program, lamps, discs) {
-    const made = { ...this.tileProgram(program), lamps: [...lamps] }, columns = this.data.lamp.columns;
+  shadingOf(name, program, lamps, discs) {
+    const { columns } = this.data.lamp, own = name === "sparkle" ? this.program(this.data.programs.sparkle_vertex, program) : this.tileProgram(program), made = { ...own, lamps: [...lamps] };
     if (discs) made.discs = this.floatTexture(columns, discs.length / (4 * columns), discs);
     return made;
   }
@@ -542,37 +544,99 @@ class Stage {
   draw(name, camera, width, height, weights, environment, stops, overlay = null) {
     this.resize(width, height);  // which waits for all that is still to be drawn
     const gbuffer = this.gbuffer(name, camera, width, height, [0, 0], environment);
-    this.showOver(gbuffer, [this.shade(name, gbuffer, weights, environment)], width, environment, stops, overlay);
+    this.showOver(gbuffer, [this.shade(name, gbuffer, weights, environment)], width, weights, environment, stops, overlay);
   }
   // Shows one sum, or two that meet at a column, and the overlay.
-  showOver(gbuffer, sums, border, environment, stops, overlay) {
+  showOver(gbuffer, sums, border, weights, environment, stops, overlay, shown = this.sparkling ? this.sparkled(gbuffer, sums, border, weights, environment) : sums) {
     this.shown = { gbuffer, sums, border };
     this.resize(gbuffer.width, gbuffer.height);
-    this.showSides(sums, border, this.environment(environment).white, stops);
+    this.showSides(shown, border, this.environment(environment).white, stops);
     if (overlay) this.drawOver(gbuffer, overlay);
   }
-  // The steps of a picture of samples. Those of the first are rows of the pixel centers, which take about budget_ms each; a step is told
-  // what the one before took. The time of all rows is returned.
-  *drawSteps(name, camera, width, height, weights, environment, stops, budget_ms, overlay) {
-    const gbuffer = this.gbuffer(name, camera, width, height, [0, 0], environment);
+  // The steps that draw rows, which take about budget_ms each; a step is told what the one before took. The time of all rows is returned.
+  *inRows(height, budget_ms, draw) {
     let took = 0, rows = Math.ceil(height / 8), begin = 0;
     yield;
     while (begin < height) {
       const end = Math.min(height, begin + rows);
-      this.shade(name, gbuffer, weights, environment, begin, end);
+      draw(begin, end);
       const ms = yield;
       took += Math.max(0.5, ms - 4);  // a step is seen to have ended up to 4 ms late
       rows = clamped(Math.floor(((end - begin) * budget_ms) / ms), 8, 4 * rows);
       begin = end;
     }
-    this.showOver(gbuffer, [this.targets.get("sum " + name)], width, environment, stops, overlay);
     return took;
   }
-  // The steps that smooth the picture which was shown last, by the G-buffer of that name, and show it.
-  *smoothSteps(name, camera, weights, environment, stops, samples, overlay) {
+  // The steps of a picture by the pixel centers, and their time.
+  *drawSteps(name, camera, width, height, weights, environment, stops, budget_ms, overlay) {
+    const gbuffer = this.gbuffer(name, camera, width, height, [0, 0], environment);
+    const took = yield* this.inRows(height, budget_ms, (begin, end) => this.shade(name, gbuffer, weights, environment, begin, end));
+    this.showOver(gbuffer, [this.targets.get("sum " + name)], width, weights, environment, stops, overlay);
+    return took;
+  }
+  // The steps that smooth the picture which was shown last, by the G-buffer of that name, and show it; then, with `sparkles`, those of flakes.
+  *smoothSteps(name, camera, weights, environment, stops, samples, overlay, sparkles, budget_ms) {
     const { gbuffer, sums, border } = this.shown;
     for (const [i, sum] of sums.entries()) yield* this.smooth(name, sum, camera, sums.length > 1 ? [weights.left, weights.right][i] : weights, environment, stops, samples);
-    this.showOver(gbuffer, sums, border, environment, stops, overlay);
+    this.showOver(gbuffer, sums, border, weights, environment, stops, overlay);
+    if (!sparkles || this.sparkling || !this.sees(gbuffer, weights, environment)) return;
+    let flaky = sums;
+    yield* this.inRows(gbuffer.height, budget_ms, (begin, end) => { flaky = this.sparkled(gbuffer, sums, border, weights, environment, begin, end); });
+    this.showOver(gbuffer, sums, border, weights, environment, stops, overlay, flaky);
+  }
+
+  // The flakes of a paint under the lamps of an environment: {texture, per_m2, most}; null where single ones are not seen.
+  flakesOf(weights, gbuffer, environment) {
+    const { engine, mesh, data } = this, { eye, right } = gbuffer.view, packed = data.environments[environment];
+    if (weights.tilts || !weights.paint?.flakes || !(this.lamp ? packed.lamp_programs : packed.programs).sparkle) return null;
+    const radii = [...(this.lamp ? [data.lamp] : []), ...packed.lamps].map(({ disc }) => Math.asin(disc[0])), key = `${weights.version} ${radii}`;
+    if (weights.flakes?.key !== key) {
+      const { per_m2, most } = engine.ask({ do: "flakes", paint: weights.paint, lamps: radii }), values = engine.list("flakes");
+      if (weights.flakes) this.gl.deleteTexture(weights.flakes.texture);
+      weights.flakes = { key, per_m2, most, texture: per_m2 > 0 ? this.floatTexture(values.length / (4 * radii.length), radii.length, values) : null };
+    }
+    const { per_m2, most } = weights.flakes, apart = Math.hypot(...eye.map((at, i) => Math.max(mesh.low[i] - at, 0, at - mesh.high[i])));
+    const flakes = per_m2 * (apart * Math.hypot(...right) * data.mesh.unit_m) ** 2;  // of a pixel of the nearest surface
+    return most.some((part) => leastSparkle ** 2 * flakes * part < 1) ? weights.flakes : null;
+  }
+  sees(gbuffer, weights, environment) { return [weights.left ?? weights, weights.right].some((one) => one && this.flakesOf(one, gbuffer, environment)); }
+  // The sums with the light of single flakes in some rows; sums stay where no eye sees those.
+  sparkled(gbuffer, sums, border, weights, environment, begin = 0, end = gbuffer.height) {
+    return sums.map((sum, i) => {
+      const own = weights.left ? [weights.left, weights.right][i] : weights, flakes = sum.width === gbuffer.width ? this.flakesOf(own, gbuffer, environment) : null;
+      return flakes ? this.sparkle(gbuffer, sum, own, flakes, environment, [i * border, begin, i > 0 ? sum.width - border : border, end - begin]) : sum;
+    });
+  }
+  // Draws the mesh once more, so that its program knows the place of each pixel, and adds to a copy of the sum.
+  sparkle(gbuffer, sum, weights, { texture, per_m2 }, environment, [x, y, width, height]) {
+    const gl = this.gl, target = this.target(`sparkle ${x > 0}`, sum.width, sum.height, this.sumKind, false), program = this.shading(environment, false, "sparkle");
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, sum.framebuffer);
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, target.framebuffer);
+    gl.blitFramebuffer(x, y, x + width, y + height, x, y, x + width, y + height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, gbuffer.depth, 0);
+    gl.viewport(0, 0, sum.width, sum.height);
+    const unit = this.useShading(gbuffer, weights, environment, program), kinds = [gl.DEPTH_TEST, gl.BLEND, gl.SCISSOR_TEST];
+    [["flakes", texture], ["picture", sum.texture]].forEach(([sampler, of], k) => {
+      gl.activeTexture(gl.TEXTURE0 + unit + k);
+      gl.bindTexture(gl.TEXTURE_2D, of);
+      gl.uniform1i(program.at(sampler), unit + k);
+    });
+    gl.activeTexture(gl.TEXTURE0);
+    for (const [name, value] of [["per_m2", per_m2], ["unit_m", this.data.mesh.unit_m], ["least", leastSparkle]]) gl.uniform1f(program.at(name), value);
+    gl.uniform2fv(program.at("turn"), this.turnVector);
+    gl.uniformMatrix4fv(program.at("clip"), false, gbuffer.view.clip);
+    for (const kind of kinds) gl.enable(kind);
+    gl.scissor(x, y, width, height);
+    gl.depthMask(false);
+    gl.depthFunc(gl.EQUAL);
+    gl.blendFunc(gl.ONE, gl.ONE);
+    gl.bindVertexArray(this.meshVertices);
+    for (const part of this.shownParts.filter(({ row }) => row === 0)) gl.drawElements(gl.TRIANGLES, 3 * part.count, gl.UNSIGNED_INT, 12 * part.first);
+    for (const kind of kinds) gl.disable(kind);
+    gl.depthMask(true);
+    gl.depthFunc(gl.LESS);
+    return target;
   }
 
   // The picture from gathered light, where that is kept for this view and this light; else it draws nothing. Of `stride` pixels along both
@@ -583,7 +647,7 @@ class Stage {
     if (!gathered.serves(key, own, environment, stride)) return false;
     const gbuffer = this.gbuffer(name, camera, width, height, [0, 0], environment), sums = [gathered.shade("gathered " + stride, gbuffer, own, environment, stride)];
     if (weights.left) sums.push(this.otherSide(key, gbuffer, weights.right, environment));
-    this.showOver(gbuffer, sums, weights.left ? Math.round(weights.at * width) : width, environment, stops, overlay);
+    this.showOver(gbuffer, sums, weights.left ? Math.round(weights.at * width) : width, weights, environment, stops, overlay);
     return true;
   }
   // The paint beside the design, which stays while the design changes.

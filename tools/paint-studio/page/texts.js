@@ -10,6 +10,7 @@ const german = {
   "Average of the whole paint": "Mittel des ganzen Lacks", "Color by aspecular angle": "Farbe nach dem Winkel zum Glanz", "Light": "Licht", "Exposure": "Belichtung", "stops": "Blenden",
   "turned by": "gedreht um", "Ground": "Boden",
   "as the environment shows it, laid below the mesh, with the shadow of the mesh there and on itself.": "wie ihn die Umgebung zeigt, unter das Netz gelegt, mit dem Schatten des Netzes dort und auf sich selbst.",
+  "Sparkle": "Funkeln", "of the flakes that the paint states, in lamps and bright spots, where an eye sees single ones.": "der Flakes, die der Lack nennt, im Licht von Lampen und hellen Stellen, wo ein Auge einzelne sieht.",
   "Lamp": "Lampe", "azimuth": "Azimut", "elevation": "Höhe", "brightness": "Helligkeit", "Rings at": "Ringe bei", ", and the highlight": " und das Glanzlicht",
   "Parts": "Teile", "Second paint:": "Zweiter Lack:", "Make this paint the second": "Diesen Lack zum zweiten machen", "none yet": "noch keiner", "The part that was clicked": "Der angeklickte Teil",
   "paint": "Lack", "second paint": "zweiter Lack", "glass": "Glas", "rubber": "Gummi", "chrome": "Chrom", "hidden": "verborgen", "by its name": "nach dem Namen", "not recognized": "nicht erkannt", "unnamed part": "Teil ohne Namen", "Close": "Schließen",

@@ -15,7 +15,7 @@ class StageView {
     this.app = app;
     this.canvas = document.getElementById("stage");
     this.lost = false;  // whether the graphics are away
-    this.stage = new Stage(this.canvas, app.data);
+    this.stage = new Stage(this.canvas, app.data, app.engine);
     this.view = { ...app.data.mesh.view };
     this.environment = 0;
     this.traced = null;  // the number of the traced view that is shown
@@ -51,7 +51,7 @@ class StageView {
   // Draws by graphics that are new, after they were lost.
   begin() {
     const { turn, lamp, ground, finishes } = this.stage;
-    this.stage = Object.assign(new Stage(this.canvas, this.app.data), { lamp, ground, finishes });
+    this.stage = Object.assign(new Stage(this.canvas, this.app.data, this.app.engine), { lamp, ground, finishes });
     this.stage.turnTo(turn);
     this.lost = false;
     this.cells = [];
@@ -110,6 +110,7 @@ class StageView {
     return { toward: direction, extent };
   }
   get lampDirection() { return orbitDirection(this.lamp.azimuth, this.lamp.elevation); }
+  get sparkles() { return document.getElementById("sparkle").checked; }
   get overlay() {
     if (!document.getElementById("overlay").checked || !this.app.description) return null;
     return { toward: this.light.toward, travel: this.app.description.appearance.travel, edge: this.app.highlight };
@@ -140,7 +141,7 @@ class StageView {
         else this.showLamp();
       });
     }
-    byId("overlay").addEventListener("change", () => this.redraw());
+    for (const id of ["overlay", "sparkle"]) byId(id).addEventListener("change", () => this.redraw());
     byId("ground").addEventListener("change", () => {
       this.stage.ground = byId("ground").checked;
       this.settle();
@@ -348,6 +349,7 @@ class StageView {
   }
   drawFirst(moving, now) {
     this.stage.occlusion.held = moving && this.full_ms > 16;
+    this.stage.sparkling = this.sparkles && this.full_ms > 0 && this.full_ms <= 16;
     if (moving && this.lastFrame !== undefined && now - this.lastFrame < 400) this.pace(now - this.lastFrame);
     this.lastFrame = moving ? now : undefined;
     if (this.traced !== null) {
@@ -451,7 +453,7 @@ class StageView {
       const took_ms = yield* stage.drawSteps("centers", ...this.picture(1), stepBudget_ms, this.overlay);
       this.full_ms = this.full_ms === 0 ? took_ms : 0.5 * (this.full_ms + took_ms);
     }
-    yield* stage.smoothSteps("centers", this.camera, this.weights, this.environment, this.stops, samples, this.overlay);
+    yield* stage.smoothSteps("centers", this.camera, this.weights, this.environment, this.stops, samples, this.overlay, this.sparkles, stepBudget_ms);
   }
   // The steps that gather the light of the view: what the paint needs, or all that there is room for.
   *gathering(others) {
