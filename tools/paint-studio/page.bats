@@ -298,6 +298,13 @@ needs_browser() {
   [ "$status" -eq 0 ]
 }
 
+@test "two tabs and a copy of one keep their sessions" {
+  needs_browser
+  run node "$code/tabs.js" page.html .
+  echo "$output"
+  [ "$status" -eq 0 ]
+}
+
 @test "Firefox shows the picture that Chromium shows" {
   command -v firefox >/dev/null && command -v xvfb-run >/dev/null || skip "Firefox or xvfb-run is not installed"
   [ -s candy_red-studio.f32 ] || skip "the pictures were not drawn"

@@ -31,8 +31,7 @@ class Browser {
     });
     const { targetInfos } = await browser.send("Target.getTargets", {}, null);
     const target = targetInfos.find((info) => info.type === "page");
-    ({ sessionId: browser.session } = await browser.send("Target.attachToTarget", { targetId: target.targetId, flatten: true }, null));
-    for (const domain of ["Page", "Runtime", "Log"]) await browser.send(domain + ".enable");
+    await browser.attach(target.targetId);
     await browser.send("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: false });
     await browser.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: dark ? "dark" : "light" }] });
     await browser.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: browser.folder }, null);
@@ -40,6 +39,20 @@ class Browser {
     await browser.send("Page.navigate", { url });
     await loaded;
     return browser;
+  }
+
+  async attach(targetId) {
+    ({ sessionId: this.session } = await this.send("Target.attachToTarget", { targetId, flatten: true }, null));
+    for (const domain of ["Page", "Runtime", "Log"]) await this.send(domain + ".enable");
+  }
+  // A tab of the same browser that `make` opens, to be driven as this one is.
+  async tab(make) {
+    const pages = async () => (await this.send("Target.getTargets", {}, null)).targetInfos.filter(({ type }) => type === "page").map(({ targetId }) => targetId);
+    const before = await pages(), other = Object.assign(Object.create(Browser.prototype), this);
+    other.send = (method, params = {}, session = other.session) => this.send(method, params, session);
+    await make();
+    for (let made; !made;) if ((made = (await pages()).find((one) => !before.includes(one)))) await other.attach(made);
+    return other;
   }
 
   send(method, params = {}, session = this.session) {

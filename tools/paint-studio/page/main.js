@@ -37,6 +37,7 @@ class App {
     document.getElementById("loading").remove();
     this.follow();
     window.addEventListener("hashchange", () => this.follow());
+    window.addEventListener("storage", ({ key, newValue }) => { if (this.tab && key === this.place) this.keepApart(newValue !== null); });
   }
   // The paint of a small library that shows most: one of interference, else a pearl, else a metallic.
   firstPaint() {
@@ -418,14 +419,21 @@ class App {
     for (const withPictures of small && this.pictures.size > 0 ? [true, false] : [false])
       try {
         if (!this.tab) {
-          sessionStorage.setItem("paint-studio tab", (this.tab = sessionStorage.getItem("paint-studio tab") ?? crypto.randomUUID()));
+          this.takeNumber(sessionStorage.getItem("paint-studio tab") ?? crypto.randomUUID());
           for (const { place } of this.kept().slice(7)) localStorage.removeItem(place);
         }
-        localStorage.setItem(`${this.key} ${this.tab}`, JSON.stringify({ time: Date.now(), session: this.savedSession(withPictures) }));
+        localStorage.setItem(this.place, JSON.stringify({ time: Date.now(), session: this.savedSession(withPictures) }));
         return;
       } catch {
         told(withPictures ? "pictures of this size" : "this session");
       }
+  }
+  get place() { return `${this.key} ${this.tab}`; }
+  takeNumber(tab) { sessionStorage.setItem("paint-studio tab", (this.tab = tab)); }
+  // Another tab wrote the session of this one, as a copy of this tab does, or took it away: each has a place of its own.
+  keepApart(written) {
+    if (written) this.takeNumber(crypto.randomUUID());
+    this.store();
   }
   // The sessions of all tabs, the newest first.
   kept() {
