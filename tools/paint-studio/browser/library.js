@@ -1,5 +1,5 @@
 // Opens a page with many paints: how long that takes, what memory it needs, and how long filters and the cloud take.
-// Prints the figures as JSON. Goes through the list by mouse and keyboard.
+// Prints the figures as JSON; a filter's time is the least of five runs, and filter_ms the largest of these. Goes through the list by mouse and keyboard.
 //
 //   node library.js PAGE.html FOLDER
 "use strict";
@@ -10,17 +10,18 @@ drive("the library answers", { width: 1280, height: 1000 }, async ({ browser, va
   await quiet(120);
   await browser.send("HeapProfiler.collectGarbage");
   const memory = await value("({ heap_mb: performance.memory.usedJSHeapSize / 1e6, compiled_mb: studio.engine.bytes() / 1e6 })");
-  const type = (text) => value(`(() => { const field = document.getElementById("search"); field.value = ${JSON.stringify(text)}; field.dispatchEvent(new Event("input")); return studio.panel.filter_ms; })()`);
+  const best = "Math.min(...[1, 2, 3, 4, 5].map(() => (studio.panel.filter(), studio.panel.filter_ms)))";
+  const type = (text) => value(`(() => { const field = document.getElementById("search"); field.value = ${JSON.stringify(text)}; field.dispatchEvent(new Event("input")); return ${best}; })()`);
   const times = [];
   const count = await value("studio.library.count"), name = await value(`studio.library.paint(${count} - 1).name`);
   for (const text of ["1", "12", "p", "zzzz", name.toUpperCase()]) times.push(await type(text));
   check("the search finds a paint by its name, whatever its case", (await value("studio.panel.places.includes(studio.library.count - 1)")));
   await type("");
   check("without a word all paints are there", (await value("studio.panel.places.length")) === count);
-  times.push(await value(`(() => { const field = document.querySelector("#filters input[data-metric=flop_index][data-side=low]"); field.value = 8; field.dispatchEvent(new Event("input", { bubbles: true })); return studio.panel.filter_ms; })()`));
+  times.push(await value(`(() => { const field = document.querySelector("#filters input[data-metric=flop_index][data-side=low]"); field.value = 8; field.dispatchEvent(new Event("input", { bubbles: true })); return ${best}; })()`));
   const passing = await value("studio.panel.places.length");
   check("a filter leaves some paints out", passing > 0 && passing < count);
-  times.push(await value(`(() => { const list = document.getElementById("order"); list.value = "flop_index"; list.dispatchEvent(new Event("change")); return studio.panel.filter_ms; })()`));
+  times.push(await value(`(() => { const list = document.getElementById("order"); list.value = "flop_index"; list.dispatchEvent(new Event("change")); return ${best}; })()`));
   // Few rows are elements, wherever the list is scrolled to.
   await value("studio.panel.list.scrollIntoView({ block: 'center' })");
   await value("studio.panel.list.focus()");

@@ -45,9 +45,14 @@ class LibraryPanel {
     document.getElementById("search").addEventListener("input", () => this.filter());
     for (const element of [order, document.getElementById("paint-class")]) element.addEventListener("change", () => this.filter());
     form.addEventListener("input", () => this.filter());
-    this.list.addEventListener("scroll", () => this.showRows());
+    this.list.addEventListener("scroll", () => this.scrollTo(this.list.scrollTop));
     this.list.addEventListener("keydown", (event) => this.key(event));
-    new ResizeObserver(() => this.showRows()).observe(this.list);
+    this.top = 0;  // how far the list is scrolled; to ask for it lays out the page
+    this.height = 0;
+    new ResizeObserver(() => {
+      this.height = this.list.clientHeight;
+      this.showRows();
+    }).observe(this.list);
     this.filter();
   }
 
@@ -61,15 +66,19 @@ class LibraryPanel {
     if (this.app.attempt(() => this.app.engine.ask(request)) === undefined) return;
     this.places = this.app.engine.list("filtered");
     this.current = 0;
-    this.list.scrollTop = 0;
+    if (this.top > 0) this.list.scrollTop = this.top = 0;
     this.space.style.height = `${rowHeight * this.places.length}px`;
     document.getElementById("paint-count").textContent = told`${this.places.length} of ${this.app.library.count} paints`;
     this.showRows();
     this.filter_ms = performance.now() - begin;
   }
 
+  scrollTo(top) {
+    this.top = top;
+    this.showRows();
+  }
   showRows() {
-    const first = Math.floor(this.list.scrollTop / rowHeight), count = Math.ceil(this.list.clientHeight / rowHeight) + 1, places = [...this.places.slice(first, first + count)];
+    const first = Math.floor(this.top / rowHeight), count = Math.ceil(this.height / rowHeight) + 1, places = [...this.places.slice(first, first + count)];
     const rows = places.length > 0 ? this.app.engine.ask({ do: "rows", places }).list : [];
     this.space.replaceChildren(...rows.map(({ name, code, colors }, i) => {
       const chip = made("span", { class: "chip", "aria-hidden": "true" }), place = places[i], row = first + i;
@@ -103,7 +112,7 @@ class LibraryPanel {
     else if (step === undefined || this.places.length === 0) return;
     else {
       const row = clamped(this.current + step, 0, this.places.length - 1), top = rowHeight * row;
-      this.list.scrollTop = clamped(this.list.scrollTop, top + rowHeight - this.list.clientHeight, top);
+      this.list.scrollTop = this.top = clamped(this.top, top + rowHeight - this.height, top);
       this.choose(row);
     }
     event.preventDefault();
