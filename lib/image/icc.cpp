@@ -15,6 +15,7 @@
 #include <cctype>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -175,7 +176,75 @@ const char* pixels_name(int channels) {
   return channels == 1 ? "gray" : channels == 3 ? "RGB" : "CMYK";
 }
 
+// Colors to the inks of a printer and back.
+class InkRoundTrip {
+ public:
+  InkRoundTrip(const Profile& profile, bool is_cmyk)
+      : lab_(cmsCreateLab4Profile(nullptr)),
+        to_inks_(cmsCreateTransform(lab_.get(), TYPE_Lab_DBL, profile.get(), is_cmyk ? TYPE_CMYK_DBL : TYPE_RGB_DBL,
+                                    INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOOPTIMIZE)),
+        to_lab_(cmsCreateTransform(profile.get(), is_cmyk ? TYPE_CMYK_DBL : TYPE_RGB_DBL, lab_.get(), TYPE_Lab_DBL,
+                                   INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOOPTIMIZE)) {}
+  bool ok() const { return to_inks_ && to_lab_; }
+
+  // True if a color relative to D65 comes back.
+  bool shows(const color::Lab& lab) const {
+    const color::Xyz d65 = color::xyz_d65_from_rgb({1, 1, 1});
+    const color::Lab wanted = color::lab_from_xyz(color::adapted(color::xyz_from_lab(lab, d65), d65, kD50), kD50);
+    const cmsCIELab asked = {wanted.L, wanted.a, wanted.b};
+    double inks[4] = {};
+    cmsCIELab back;
+    cmsDoTransform(to_inks_.get(), &asked, inks, 1);
+    cmsDoTransform(to_lab_.get(), inks, &back, 1);
+    return color::delta_e_76(wanted, {back.L, back.a, back.b}) <= kPrinted_de76;
+  }
+
+ private:
+  static constexpr double kPrinted_de76 = 1.5;  // tables of 8 and 16 bits err by less
+  Profile lab_;
+  Transform to_inks_, to_lab_;
+};
+
+// The last number on the way from one that holds to one that does not, to a thousandth of the way.
+template <class Holds>
+double last_of(double inside, double outside, const Holds& holds) {
+  for (int step = 0; step < 10; ++step) {
+    const double middle = 0.5 * (inside + outside);
+    (holds(middle) ? inside : outside) = middle;
+  }
+  return inside;
+}
+
 }  // namespace
+
+Result<color::PrintGamut> print_gamut(const std::string& bytes, const std::string& name) {
+  const Profile profile(cmsOpenProfileFromMem(bytes.data(), static_cast<cmsUInt32Number>(bytes.size())));
+  if (!profile) return input_error("{}: it is no ICC profile: name the profile of a printer", name);
+  const cmsColorSpaceSignature space = cmsGetColorSpace(profile.get());
+  const bool is_printer = cmsGetDeviceClass(profile.get()) == cmsSigOutputClass &&
+                          (space == cmsSigCmykData || space == cmsSigRgbData) &&
+                          cmsIsIntentSupported(profile.get(), INTENT_RELATIVE_COLORIMETRIC, LCMS_USED_AS_OUTPUT) != 0;
+  const InkRoundTrip inks(profile, space == cmsSigCmykData);
+  if (!is_printer || !inks.ok())
+    return input_error("{}: it is no profile of a printer with inks of RGB or CMYK: name one of the class prtr", name);
+  color::PrintGamut gamut;
+  gamut.name = name;
+  const auto is_gray = [&](double lightness) { return inks.shows({lightness, 0, 0}); };
+  if (!is_gray(50)) return input_error("{}: it prints no gray: name another profile", name);
+  constexpr double kInside = 0.5;  // so that the tolerance is not used up where rows of chromas end
+  gamut.darkest = last_of(50, 0, is_gray) + kInside;
+  gamut.lightest = last_of(50, 100, is_gray) - kInside;
+  for (int i = 0; i < color::PrintGamut::kLightnesses; ++i)
+    for (int j = 0; j < color::PrintGamut::kHues; ++j) {
+      const double share = 1.0 * i / (color::PrintGamut::kLightnesses - 1),
+                   hue = 2 * std::numbers::pi * j / color::PrintGamut::kHues;
+      const double lightness = std::lerp(gamut.darkest, gamut.lightest, share);
+      gamut.chroma.push_back(last_of(0, 160, [&](double chroma) {
+        return inks.shows({lightness, chroma * std::cos(hue), chroma * std::sin(hue)});
+      }));
+    }
+  return Result(std::move(gamut));
+}
 
 int color_channels(const Image& image) {
   const auto& names = image.channel_names;

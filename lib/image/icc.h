@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/result.h"
+#include "color/print_gamut.h"
 #include "image/image.h"
 
 namespace goniochrome::image {
@@ -18,5 +19,10 @@ int color_channels(const Image& image);
 // the image; a gray image may have an RGB profile.
 Result<Image> image_through_icc(const Image& image, const std::string& profile, const std::string& name,
                                 bool whole_numbers = true);
+
+// The colors that a printer of this profile shows, relative to its paper: those that come back from its inks within 1.5
+// dE76, as L*, a*, b* relative to D65. `name` is what errors call the profile. Error, with the remedy: bytes that are
+// no profile, or one without tables toward the inks of a printer.
+Result<color::PrintGamut> print_gamut(const std::string& profile, const std::string& name);
 
 }  // namespace goniochrome::image

@@ -48,6 +48,7 @@ struct Studio::State {
   std::optional<library::LibraryIndex> index;
   std::optional<library::LibrarySearch> by_de76, by_de00;
   std::optional<LibraryPane> pane;
+  std::optional<color::PrintGamut> print;
   std::vector<float> weights, tilts, flakes;
   std::map<int, ViewPane> views;
   const ViewPane* shown_view = nullptr;
@@ -117,7 +118,13 @@ Result<Json> Studio::State::load(JsonReader& request) {
   GONIO_ASSIGN(formats::Basis basis, basis_of(request));
   effects = page_effects(basis.exponents, basis.mirror, 0);
   fitter.emplace(std::move(basis), fit::FitOptions{});
-  by_de76.reset(), by_de00.reset(), pane.reset();
+  by_de76.reset(), by_de00.reset(), pane.reset(), print.reset();
+  if (request.has("print")) {
+    JsonReader of(request.member("print"));
+    constexpr std::size_t kCount = std::size_t{1} * color::PrintGamut::kLightnesses * color::PrintGamut::kHues;
+    print = {of.text("name"), of.number("darkest"), of.number("lightest"), of.numbers("chroma", kCount)};
+    GONIO_TRY(of.status());
+  }
   if (request.flag("attached")) {
     GONIO_ASSIGN(index, library::LibraryIndex::from_bytes(std::exchange(attached, {})));
   } else {
@@ -194,7 +201,7 @@ Result<Json> Studio::State::flakes_of(JsonReader& request) {
 
 Result<Json> Studio::State::describe(JsonReader& request) const {
   GONIO_ASSIGN(const paint::Paint paint, paint_of_json(request.member("paint")));
-  return description(paint);
+  return description(paint, print ? &*print : nullptr);
 }
 
 Result<Json> Studio::State::variations(JsonReader& request) const {

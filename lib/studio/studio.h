@@ -22,7 +22,8 @@ render::Effects page_effects(const std::vector<double>& exponents, bool mirror, 
 color::ReflectionOperator page_operator();
 
 // A session of one page. A request is an object whose member "do" names one of these:
-//   load        basis{name, exponents[], mirror}, paints[]: must come first. With attached true, attached() holds the
+//   load        basis{name, exponents[], mirror}, paints[], print{}, which may be absent: the members of
+//               color::PrintGamut. Must come first. With attached true, attached() holds the
 //               content of a library::LibraryIndex in the place of paints[]. Answers paints, the size of the library,
 //               and geometries[] of geometry and angle.
 //   edit        paint, edit{}: the moves of paint-edit, by the names of its options without dashes; numbers are numbers

@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/scratch_for_test.h"
 #include "base/testdata_for_test.h"
+#include "color/print_gamut.h"
 #include "fit/paint_fit.h"
 #include "formats/cxf.h"
 #include "formats/paint_source.h"
@@ -377,6 +378,32 @@ TEST(Studio, DescribesTheColorsOfAScreen) {
   const auto at_25 = std::ranges::find_if(curve, [](const Json& point) { return point.at("angle") == 25.0; });
   ASSERT_NE(at_25, curve.end());
   EXPECT_EQ(at_25->at("lab"), described.at("rows")[1].at("lab"));
+}
+
+TEST(Studio, DescribesTheLossesOfAPrint) {
+  Studio studio;
+  const std::vector<double> chroma(std::size_t{1} * color::PrintGamut::kLightnesses * color::PrintGamut::kHues, 12);
+  const Json print = {{"name", "matt"}, {"darkest", 20}, {"lightest", 60}, {"chroma", chroma}};
+  const auto load = [&](const Json& gamut) {
+    return studio.answer({{"do", "load"},
+                          {"basis", {{"name", "b4"}, {"exponents", kExponents}, {"mirror", true}}},
+                          {"paints", {paint_json(metallic())}},
+                          {"print", gamut}});
+  };
+  load(print);
+  paint::Paint paint = metallic();
+  paint.appearance = paint::Appearance{{70, 0, 30}, {40, 3, 4}, 60, {}};
+  const Json told = studio.answer({{"do", "describe"}, {"paint", paint_json(paint)}}).at("print");
+  EXPECT_EQ(told.at("face").at("nearest"), Json::array({60.0, 0.0, 12.0}));
+  EXPECT_GT(told.at("face").at("de00"), 5);
+  EXPECT_FALSE(told.at("face").contains("low"));
+  EXPECT_EQ(told.at("flop").at("de00"), 0);
+  EXPECT_EQ(told.at("flop").at("low"), 20);
+  EXPECT_EQ(told.at("flop").at("high"), 60);
+  EXPECT_NEAR(told.at("border").at(0).at("a").get<double>(), 12, 1e-9);
+  load(Json());
+  EXPECT_FALSE(studio.answer({{"do", "describe"}, {"paint", paint_json(paint)}}).contains("print"));
+  EXPECT_TRUE(load({{"name", "matt"}, {"darkest", 20}, {"lightest", 60}, {"chroma", {1, 2}}}).contains("error"));
 }
 
 TEST(Studio, OpensFilesByTheReadersOfTheTools) {

@@ -5,6 +5,7 @@ _paint_studio() {
     --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --transport) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --basis|-b) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --print-profile) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --title) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -12,7 +13,7 @@ _paint_studio() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--mesh --env --transport --basis --empty --title --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--mesh --env --transport --basis --empty --print-profile --title --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

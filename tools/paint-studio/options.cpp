@@ -6,10 +6,10 @@ cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec{.name = "paint-studio", .summary = "write a page in which a paint is designed by hand and eye"};
   spec.description = {
       "paint-studio packs a mesh, prefiltered environments, a basis and a library of paints into one HTML page. The "
-      "page opens from a file in any browser that has WebGL 2, and needs no network. A designer starts from a paint "
-      "of the library, changes its face, flop, travel, gloss and flakes, and sees it on the mesh at once, beside its "
+      "page opens from a file in any browser that has WebGL 2, and needs no network. A designer starts from a paint of "
+      "the library, changes its face, flop, travel, gloss and flakes, and sees it on the mesh at once, beside its "
       "curves, its nine variations and the paints of the library that are nearest to it. All of it works by mouse, "
-      "touch and keyboard. The picture stays in the window, and the panels scroll beside it or below it.",
+      "touch and keyboard.",
       "On the picture, dragging goes around the mesh, turns the light, moves a lamp by its highlight, ends the "
       "travel, or sets the gloss by the width of the highlight. The page tells the aspecular angle under the pointer "
       "and the color that the paint has at this angle, and marks both in the curves. A cross has buttons that change "
@@ -20,11 +20,11 @@ cli::ToolSpec tool_spec(Options& o) {
       "focus, and with Ctrl; so do two fingers. Two fingers and the right button move what the camera goes around, and "
       "a double click puts it where the pointer is.",
       "Swatches show what a matt surface of their color shows in the picture. The wheel shows which colors a screen "
-      "has at the lightness of the face, and the way of the nearest paint from face to flop, dashed; the page tells "
-      "how far it shows a face or a flop off, with the nearest that it shows. A paint that is edited becomes a copy "
-      "with a name that can be changed. Two or four whole cars stand side by side in step: the design, the paint that "
-      "it is compared with, and the nearest paints. The words of the field have notes, a tour shows the page in two "
-      "minutes, and its texts are English or German.",
+      "has at the lightness of the face, those of the print of --print-profile, dotted, and the way of the nearest "
+      "paint, dashed; the page tells how far either shows a face or a flop off, with the nearest color that it has. A "
+      "paint that is edited becomes a copy with a name that can be changed. Two or four whole cars stand side by side "
+      "in step: the design, the paint that it is compared with, and the nearest paints. The words of the field have "
+      "notes, a tour shows the page in two minutes, and its texts are English or German.",
       "Pictures can be added, dropped or pasted, and stand on boards with a zoom of their own. Droppers take the "
       "face, the flop and the gloss from them as paint-pick(1) does, and the page shows the command. The library is a "
       "list with a search by name and code and with filters by metrics, and a cloud of points in L*a*b* at a chosen "
@@ -48,14 +48,14 @@ cli::ToolSpec tool_spec(Options& o) {
       "told by their names, as in render-osmesa. A list has all parts, with what was recognized. There, or after a "
       "click on a part, it wears the paint, a second paint, glass, rubber or chrome, or is hidden. The ground of the "
       "environment lies below the mesh, with the shadow that the mesh throws on it for eight turns of the light, "
-      "between which the page interpolates. The page finds the shadow of the mesh on itself, and the shadows of "
-      "meshes and lights that are opened in it, while nothing else is to be done, from 128 directions. The ground "
-      "gets light from painted parts, unless mesh or light is opened, and they mirror it. Parts send no light to each "
-      "other, but in the traced views of --transport. Color maps are not shown, and a warning tells how many paints "
-      "have them. Brushed paints take longer to draw. While something moves, and first after each change, slow "
-      "computers draw the picture with fewer pixels; at rest, pixels that differ from their neighbors get 4 samples, "
-      "or 16 where these are fast. Where a picture takes long, the page keeps the light of a view at rest, in up to "
-      "96 MB of the graphics' memory, so that edits are shown sooner.",
+      "between which the page interpolates. The page finds the shadow of the mesh on itself, and the shadows of meshes "
+      "and lights that are opened in it, while nothing else is to be done, from 128 directions. The ground gets light "
+      "from painted parts, unless mesh or light is opened, and they mirror it. Parts send no light to each other, but "
+      "in the traced views of --transport. Color maps are not shown, and a warning tells how many paints have them. "
+      "Brushed paints take longer to draw. Flakes that the paint states sparkle in lamps and bright spots, where an "
+      "eye sees single ones; slow computers draw them at rest. They draw moving pictures with fewer pixels, and keep "
+      "the light of a view in up to 96 MB of the graphics' memory. At rest, pixels that differ from their neighbors "
+      "get 4 or 16 samples.",
       "The compiled library lies in ../lib/goniochrome beside the program, as the files studio.wasm and "
       "studio.html, or in $GONIOCHROME_MODULE_PATH. Where the compiler for WebAssembly was missing when the tools "
       "were built, paint-studio says which packages it takes, and the exit status is 3.",
@@ -82,6 +82,8 @@ cli::ToolSpec tool_spec(Options& o) {
       .more(
           "The page is the whole studio for somebody who has a browser alone: paints, meshes and light are opened in "
           "it.");
+  spec.option("print-profile", "FILE", "coated.icc", &o.print_profile,
+              "ICC profile of a printer, whose gamut the page shows");
   spec.option("title", "TEXT", "Spring", &o.title, "title of the page; the name of the mesh by default");
   spec.heading = "output";
   spec.option("output,o", "FILE", "studio.html", &o.output, "page to write; - is standard output");

@@ -284,6 +284,22 @@ needs_browser() {
   [ "$status" -eq 0 ]
 }
 
+@test "the gamut of a print stands beside that of the screen, and losses in print are told" {
+  needs_browser
+  python3 "$code/print_profile.py" printer.icc
+  pack() { paint-studio -q --mesh "$TESTDATA/speed-shape.obj" --env studio.env.exr --basis "$TESTDATA/b5.basis.xml" "$TESTDATA/paints.paints.xml" -o print.html "$@"; }
+  pack --print-profile printer.icc
+  run node "$code/print.js" print.html .
+  echo "$output"
+  [ "$status" -eq 0 ]
+  head -c 1000 printer.icc >cut.icc
+  for file in cut.icc page.html; do
+    run pack --print-profile "$file"
+    [ "$status" -eq 3 ]
+    [[ "$output" == "paint-studio: $file: "*"profile of a printer"* ]]
+  done
+}
+
 @test "a paint is designed and saved by the keyboard alone" {
   needs_browser
   run node "$code/keys.js" page.html .

@@ -8,6 +8,7 @@
 #include "formats/default_basis.h"
 #include "formats/reference.h"
 #include "ground.h"
+#include "image/icc.h"
 #include "pack.h"
 #include "paint_stream.h"
 #include "render/page_stage.h"
@@ -146,6 +147,14 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
                {"layouts", paints.layouts()},
                {"environments", Json::array()},
                {"views", Json::array()}};
+  if (!options.print_profile.empty()) {
+    GONIO_ASSIGN(const std::string profile, file_content(options.print_profile));
+    GONIO_ASSIGN(const color::PrintGamut print, image::print_gamut(profile, options.print_profile));
+    data["print"] = {{"name", name_of(options.print_profile)},
+                     {"darkest", print.darkest},
+                     {"lightest", print.lightest},
+                     {"chroma", print.chroma}};
+  }
   Json& results = session.results();
   const auto add_light = [&](const std::string& path,
                              const Result<envmap::PrefilteredEnvironment>& env) -> Result<void> {

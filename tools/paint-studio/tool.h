@@ -11,7 +11,7 @@ namespace goniochrome::tool {
 struct Options {
   cli::CommonOptions common;
   std::vector<std::string> paints;
-  std::string mesh, basis, output = "-", title;
+  std::string mesh, basis, output = "-", title, print_profile;
   std::vector<std::string> environments, transports;
   bool empty = false;
 };

@@ -1,5 +1,6 @@
 #include "studio/internal/describe.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/angles.h"
@@ -43,16 +44,30 @@ Json screen_json(const color::Lab& lab, const color::Xyz& white) {
   return {{"de00", color::delta_e_2000(lab, shown)}, {"nearest", lab_json({lab.L, share * lab.a, share * lab.b})}};
 }
 
-// The border of what the screen shows at a lightness, in the plane of a* and b*.
-Json border_json(double lightness, const color::Xyz& white) {
+// The border of what a screen or a print shows at a lightness, in the plane of a* and b*.
+template <class Most>
+Json border_json(double lightness, const color::Xyz& white, const Most& most_chroma) {
   constexpr int kStep_deg = 5;
   Json border = Json::array();
   for (int hue_deg = 0; hue_deg < 360; hue_deg += kStep_deg) {
-    const double chroma = display::screen_chroma(lightness, hue_deg, white), h = hue_deg * kDegree;
+    const double chroma = most_chroma(lightness, hue_deg), h = hue_deg * kDegree;
     const color::Lab lab{lightness, chroma * math::cos(h), chroma * math::sin(h)};
     border.push_back({{"a", lab.a}, {"b", lab.b}, {"css", display::css_color(lab, white)}});
   }
   return border;
+}
+
+Json print_json(const color::Lab& lab, const color::PrintGamut& print) {
+  const color::Lab nearest = print.nearest(lab);
+  Json json = {{"de00", color::delta_e_2000(lab, nearest)}, {"nearest", lab_json(nearest)}};
+  constexpr int kSteps = 100;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double lightness = std::lerp(print.darkest, print.lightest, 1.0 * i / kSteps);
+    if (print.most(lightness, color::hue_deg(lab)) < color::chroma(lab)) continue;
+    if (!json.contains("low")) json["low"] = lightness;
+    json["high"] = lightness;
+  }
+  return json;
 }
 
 Json metrics_json(const paint::PaintMetrics& metrics) {
@@ -74,7 +89,7 @@ std::string css_color(const color::Lab& lab, const color::ViewingCondition& cond
   return display::css_color(lab, screen_white(condition));
 }
 
-Result<Json> description(const paint::Paint& paint) {
+Result<Json> description(const paint::Paint& paint, const color::PrintGamut* print) {
   const color::ViewingCondition condition = paint::condition_of(paint);
   GONIO_TRY([&]() -> Result<void> {
     const auto white = color::white_point(condition);
@@ -102,7 +117,16 @@ Result<Json> description(const paint::Paint& paint) {
   const color::Xyz white = screen_white(condition);
   json["screen"] = {{"face", screen_json(appearance.face, white)},
                     {"flop", screen_json(appearance.flop, white)},
-                    {"border", border_json(appearance.face.L, white)}};
+                    {"border", border_json(appearance.face.L, white, [&](double lightness, double hue_deg) {
+                       return display::screen_chroma(lightness, hue_deg, white);
+                     })}};
+  if (print != nullptr)
+    json["print"] = {
+        {"name", print->name},
+        {"face", print_json(appearance.face, *print)},
+        {"flop", print_json(appearance.flop, *print)},
+        {"border", border_json(std::clamp(appearance.face.L, print->darkest, print->lightest), white,
+                               [&](double lightness, double hue_deg) { return print->most(lightness, hue_deg); })}};
   json["average"] = {{"L", average.L}, {"chroma", average.chroma}, {"hue", average.hue_deg}};
   json["gloss"] = Json::array();
   for (const paint::GlossReading& reading : paint.gloss)

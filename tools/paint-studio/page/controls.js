@@ -142,11 +142,15 @@ class NumberControls {
     }
   }
 
-  // The part of an end that the screen does not show, and a button that takes the nearest color that it shows.
-  lossOf(end, { de00, nearest }) {
-    const [, a, b] = nearest.map((value) => value.toFixed(1));
-    const take = () => this.app.commit({ [end]: nearest.map((value) => rounded(value)), ...this.residual() });
-    return made("p", { class: "loss" }, [told`The screen shows the ${words(end)} ${de00.toFixed(1)} (CIEDE2000) off.`, " ", made("button", { type: "button", text: told`take a* ${a}, b* ${b}`, onclick: take })]);
+  // How far a medium shows an end off, and a button that takes the nearest color that it shows.
+  lossOf(end, { nearest }, said) {
+    const color = nearest.map((value) => rounded(value)), [L, a, b] = nearest.map((value) => value.toFixed(1));
+    const text = Math.abs(nearest[0] - this.app.description.appearance[end][0]) > 0.05 ? told`take L* ${L}, a* ${a}, b* ${b}` : told`take a* ${a}, b* ${b}`;
+    return made("p", { class: "loss" }, [said, " ", made("button", { type: "button", text, onclick: () => this.app.commit({ [end]: color, ...this.residual() }) })]);
+  }
+  losses({ screen, print }) {
+    const off = (medium, say) => (medium ? ["face", "flop"].filter((end) => medium[end].de00 > 1).map((end) => this.lossOf(end, medium[end], say(words(end), medium[end].de00.toFixed(1)))) : []);
+    return [...off(screen, (end, de00) => told`The screen shows the ${end} ${de00} (CIEDE2000) off.`), ...off(print, (end, de00) => told`A print by ${print.name} shows the ${end} ${de00} (CIEDE2000) off.`)];
   }
 
   show(description) {
@@ -158,7 +162,7 @@ class NumberControls {
       ["L", "a", "b"].forEach((channel, i) => set(this.fields[end + channel], rounded(appearance[end][i])));
       this.fields[end + "-swatch"].style.background = appearance[end + "_css"];
     }
-    this.loss.replaceChildren(...["face", "flop"].filter((end) => description.screen[end].de00 > 1).map((end) => this.lossOf(end, description.screen[end])));
+    this.loss.replaceChildren(...this.losses(description));
     const numbers = { travel: appearance.travel, gloss: gloss.length > 0 ? gloss[0].units : 0,
                       lightness: average.L, chroma: average.chroma, hue: average.hue, "flake size": flakes?.values[0], coverage: flakes?.values[1] };
     for (const [name, value] of Object.entries(numbers)) {

@@ -12,7 +12,7 @@ class App {
     this.highlight = 0;  // degrees, of the highlight of the light
     this.compared = { choice: "none", name: "", weights: null };
     this.key = "paint-studio " + data.title + " " + data.basis.name + " " + library.count;
-    ({ geometries: this.geometries } = engine.ask({ do: "load", basis: data.basis, attached: true }));
+    ({ geometries: this.geometries } = engine.ask({ do: "load", basis: data.basis, print: data.print, attached: true }));
     this.traced = new TracedViews(this);
     this.stageView = new StageView(this);
     this.stage = this.stageView.stage;

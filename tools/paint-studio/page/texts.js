@@ -53,6 +53,7 @@ const german = {
   // Sentences with values, in their order.
   "This place is turned away from {}.": "Diese Stelle ist abgewandt: {}.", "the lamp": "die Lampe", "the brightest light": "das hellste Licht", "gray": "grau", "chroma {}, hue {}°": "Buntheit {}, Farbton {}°",
   "{}° from the mirror direction of {}: L* {}, a* {}, b* {} ({})": "{}° vom Spiegelwinkel ({}): L* {}, a* {}, b* {} ({})",
+  "A print by {} shows the {} {} (CIEDE2000) off.": "Ein Druck mit {} verfehlt {} um {} (CIEDE2000).", "take L* {}, a* {}, b* {}": "L* {}, a* {}, b* {} nehmen",
   "The screen shows the {} {} (CIEDE2000) off.": "Der Bildschirm verfehlt {} um {} (CIEDE2000).", "take a* {}, b* {}": "a* {}, b* {} nehmen", "none": "keine",
   "{} parts: told by their names are {}; {} not recognized, which wear the paint.": "{} Teile: nach ihren Namen {}; {} nicht erkannt, sie tragen den Lack.",
   "The design lies outside the library: its nearest paint differs by more than 10 on average.": "Der Entwurf liegt außerhalb der Bibliothek: sein nächster Lack weicht im Mittel um mehr als 10 ab.",

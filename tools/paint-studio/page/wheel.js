@@ -13,6 +13,8 @@ class Wheel {
       back.append(drawn("line", { x1: -105 * x, y1: -105 * y, x2: 105 * x, y2: 105 * y, class: "grid" }));
     [["+a*", 90, -3], ["-a*", -108, -3], ["+b*", 3, -101], ["-b*", 3, 108]].forEach(([text, x, y]) =>
       back.append(drawn("text", { x, y }, text)));
+    this.printed = drawn("polygon", { class: "printed", id: "print-border" });
+    this.svg.append(this.printed);
     this.match = drawn("polyline", { class: "seen", id: "match-way" });  // of the nearest paint
     this.way = drawn("polyline", { class: "way" });
     this.arrow = drawn("path", { class: "arrow" });
@@ -21,6 +23,8 @@ class Wheel {
       this.column.append(drawn("line", { x1: 18, x2: 44, y1: this.heightOf(L), y2: this.heightOf(L), class: "grid" }));
       this.column.append(drawn("text", { x: 0, y: this.heightOf(L) + 3 }, String(L)));
     }
+    this.columns = ["face", "flop"].map((end) => drawn("path", { class: "printed", id: `print-${end}` }));
+    this.column.append(...this.columns);
     this.handles = {};
     for (const end of ["face", "flop"]) {
       this.handles[end] = this.handle(this.svg, end, "a* and b*", (event) => this.placeOf(event),
@@ -70,11 +74,21 @@ class Wheel {
   }
   lightnessOf(event) { return [clamped((205 - this.pointOf(this.column, event).y) / 1.27, 0, 150), null, null]; }
 
+  // A point of a border, no farther out than the plane goes.
+  borderPoint({ a, b }) { return [a, -b].map((value) => value * Math.min(1, 108 / Math.hypot(a, b, 1e-9))).join(); }
+  // The border of a print at the lightness of the face, and between which lightnesses it has the colors of face and flop.
+  showPrint(print) {
+    this.printed.setAttribute("points", print.border.map(this.borderPoint).join(" "));
+    ["face", "flop"].forEach((end, i) => {
+      const { low, high } = print[end], x = [16, 48][i];
+      this.columns[i].setAttribute("d", low === undefined ? "" : `M${x - 3},${this.heightOf(high)} h6 M${x},${this.heightOf(high)} V${this.heightOf(low)} M${x - 3},${this.heightOf(low)} h6`);
+    });
+  }
   showBorder(border) {
     const key = JSON.stringify(border);
     if (this.borderKey === key) return;
     this.borderKey = key;
-    const at = ({ a, b }) => [a, -b].map((value) => value * Math.min(1, 108 / Math.hypot(a, b, 1e-9))).join(), before = (i) => border[(i + border.length - 1) % border.length];
+    const at = this.borderPoint, before = (i) => border[(i + border.length - 1) % border.length];
     while (this.border.children.length < border.length) this.border.append(drawn("polygon", { class: "shown" }));
     border.forEach((point, i) => {
       const wedge = this.border.children[i];
@@ -89,6 +103,7 @@ class Wheel {
   show(description) {
     const { face, flop, face_css, flop_css } = description.appearance;
     this.showBorder(description.screen.border);
+    if (description.print) this.showPrint(description.print);
     const from = this.place(face), to = this.place(flop);
     this.way.setAttribute("points", this.pathOf(description.curve));
     const dx = to[0] - from[0], dy = to[1] - from[1], length = Math.hypot(dx, dy);
