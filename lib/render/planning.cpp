@@ -139,7 +139,7 @@ Choice forced_choice(const EffectWords& words, const std::vector<EffectSwitch>& 
     choice.on[i] = switches[i].needed && forced.value_or(words.start != Start::kNone);
     choice.forced[i] = forced.has_value();
   }
-  // What a forced effect needs is on as well, unless it is forced off.
+  // A forced effect turns on what it needs, unless that is forced off.
   for (std::size_t i = switches.size(); i-- > 0;) {
     if (switches[i].needs < 0 || !choice.forced[i] || !choice.on[i]) continue;
     const auto needed = static_cast<std::size_t>(switches[i].needs);
