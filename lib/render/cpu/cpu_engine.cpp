@@ -156,6 +156,7 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
   const std::size_t shift_floats = (2 * stacks_.size() + kBlock - 1) / kBlock * kBlock;
   shading_.segment_floats = shading_.shift_offset + shift_floats;
   weights_.assign(shading_.segment_floats * static_cast<std::size_t>(table.segments * table.parts), 0.0F);
+  shown_blocks_.assign(static_cast<std::size_t>(table.parts), 0);
   float* to = weights_.data();
   for (int row = 0; row < table.parts * table.segments; ++row) {
     const auto texel = [&](int slot) { return table.at(row / table.segments, row % table.segments, slot); };
@@ -165,6 +166,11 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
         for (const std::size_t end : {0, 1}) std::copy_n(texel(stack.shape.slots[i]) + 4 * end, 4, ends + kBlock * end);
       }
       to += 2 * kBlock * static_cast<std::size_t>(stack.blocks);
+    }
+    for (std::size_t block = 0; block < blocks; ++block) {
+      const float* of = to - 2 * kBlock * (blocks - block);
+      if (std::any_of(of, of + 2 * kBlock, [](float weight) { return weight != 0; }))
+        shown_blocks_[static_cast<std::size_t>(row / table.segments)] |= std::uint64_t{1} << block;
     }
     for (int slot = 0; slot < light_slots; ++slot, to += 8) std::copy_n(texel(table.light_slot() + slot), 8, to);
     if (light_slots > 0) std::copy_n(texel(table.lamp_mirror_slot()), 8, to), to += 8;
@@ -177,6 +183,7 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
     to += shift_floats;
   }
   shading_.weights = weights_.data();
+  shading_.shown_blocks = shown_blocks_.data();
   lit_lobes_.assign(static_cast<std::size_t>(table.parts), 0);
   for (int row = 0; light_slots > 0 && row < table.parts * table.segments; ++row)
     for (std::size_t j = 0; j < effects.lobes.size(); ++j)

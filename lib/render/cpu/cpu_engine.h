@@ -67,7 +67,7 @@ class CpuEngine : public Engine {
   ProductColumns product_{};
   std::vector<float> weights_, lights_, exponents_, tilts_;
   std::vector<int> first_tilt_;
-  std::vector<std::uint64_t> lit_lobes_;
+  std::vector<std::uint64_t> lit_lobes_, shown_blocks_;
   std::vector<bool> bare_;  // parts whose paint shows nothing, as it lies under a texture
   CpuShading shading_;
   TiltStore tilt_store_;

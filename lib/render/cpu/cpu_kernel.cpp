@@ -101,9 +101,8 @@ struct Shifts {
 };
 
 // Adds what one block of the maps shows, and steps to the weights of the next.
-HWY_INLINE void add_weighted(const Block& t, const Block& maps, const float*& weight, Products<8>& sums) {
+HWY_INLINE void add_weighted(const Block& t, const Block& maps, const float* weight, Products<8>& sums) {
   sums.add(maps, mul_add(t, Block::load(weight + 8), Block::load(weight)));
-  weight += 16;
 }
 
 // The tilted normals of every point, one at a time.
@@ -200,16 +199,18 @@ HWY_INLINE void add_environment(const CpuShading& s, const PointArrays& points, 
     const Block t = Block::filled(frame.t[i]);
     const float* tilted = gathered + i * kMostBlocks * 8;
     Products<8> sums;
+    std::uint64_t shown = s.shown_blocks[points.part[i]];
     for (int k = 0; k < s.classes; ++k) {
       if (s.use[k] == MapUse::kTilted && s.tilts != nullptr) {
-        for (int block = 0; block < s.maps[k].blocks; ++block, tilted += 8) {
-          add_weighted(t, Block::load(tilted), weight, sums);
+        for (int block = 0; block < s.maps[k].blocks; ++block, tilted += 8, weight += 16, shown >>= 1) {
+          if ((shown & 1) != 0) add_weighted(t, Block::load(tilted), weight, sums);
         }
         continue;
       }
       const Corners corners = corners_of(s.maps[k], taps[k], i);
-      for (int block = 0; block < s.maps[k].blocks; ++block) {
-        add_weighted(t, add_between(corners, static_cast<std::size_t>(block) * 8, Block::filled(0)), weight, sums);
+      for (int block = 0; block < s.maps[k].blocks; ++block, weight += 16, shown >>= 1) {
+        if ((shown & 1) != 0)
+          add_weighted(t, add_between(corners, static_cast<std::size_t>(block) * 8, Block::filled(0)), weight, sums);
       }
     }
     sums.on(Quad::filled(0), s.product).store(rgba + 4 * i);

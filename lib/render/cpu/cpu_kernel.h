@@ -31,6 +31,7 @@ struct CpuShading {
   int segments = 1;
   const float* weights = nullptr;
   std::size_t segment_floats = 0;
+  const std::uint64_t* shown_blocks = nullptr;  // of each part, bits: the blocks of all classes with any weight
   // Within a segment: of the light slots, after which the mirror's for lamps stands, and of the shifts.
   std::size_t light_offset = 0, shift_offset = 0;
 

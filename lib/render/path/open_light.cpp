@@ -107,26 +107,32 @@ std::vector<LobeAxis> OpenLight::axes(const OpenView& view, const Surface& surfa
   return axes;
 }
 
-// The columns of each view one after the other, by the maps, the bright spots and the lamps, whatever is summed.
-std::vector<color::Rgb> OpenLight::columns_at(const std::vector<OpenView>& views, std::size_t surface) const {
-  std::vector<VisiblePoint> points;
-  points.reserve(views.size() * columns_.count());
-  for (const OpenView& view : views)
-    for (std::size_t k = 0; k < columns_.count(); ++k)
-      points.push_back({.normal = view.normal,
-                        .to_viewer = view.to_viewer,
-                        .part = static_cast<int>(surface * columns_.count() + k)});
-  return engine_->colors(points);
+// Column by column: points that are shaded side by side then show one lobe, and the light of lamps in no other is
+// computed.
+void OpenLight::look_up(const std::vector<VisiblePoint>& points, color::Rgb* light) const {
+  const std::size_t count = columns_.count();
+  std::vector<VisiblePoint> units;
+  units.reserve(points.size() * count);
+  for (std::size_t k = 0; k < count; ++k)
+    for (const VisiblePoint& point : points)
+      units.push_back({.normal = point.normal,
+                       .to_viewer = point.to_viewer,
+                       .part = static_cast<int>(surface_of(point.part) * count + k)});
+  const std::vector<color::Rgb> seen = engine_->colors(units);
+  for (std::size_t i = 0; i < seen.size(); ++i) light[i % points.size() * count + i / points.size()] = seen[i];
 }
 
 void OpenLight::mean(const std::vector<OpenView>& views, int part, color::Rgb* light) const {
-  const std::size_t number = surface_of(part);
-  const std::vector<color::Rgb> seen = columns_at(views, number);
+  std::vector<VisiblePoint> points;
+  for (const OpenView& view : views)
+    points.push_back({.normal = view.normal, .to_viewer = view.to_viewer, .part = part});
+  std::vector<color::Rgb> seen(views.size() * columns_.count());
+  look_up(points, seen.data());
   std::fill_n(light, columns_.count(), color::Rgb{});
   for (std::size_t i = 0; i < seen.size(); ++i)
     light[i % columns_.count()] += (1.0 / static_cast<double>(views.size())) * seen[i];
   if (!summed_) return;
-  const Surface& surface = surfaces_[number];
+  const Surface& surface = surfaces_[surface_of(part)];
   std::vector<color::Rgb> summed(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(columns_.count()));
   summed_->at(views.front().normal, views.front().to_viewer, axes(views.front(), surface), surface.coat_index,
               summed.data());

@@ -49,6 +49,9 @@ class OpenLight {
   // first view alone: at the others they differ from it as the maps do.
   void mean(const std::vector<OpenView>& views, int part, color::Rgb* light) const;
 
+  // Writes the light of all columns at each point in turn, whatever is summed.
+  void look_up(const std::vector<VisiblePoint>& points, color::Rgb* light) const;
+
   // The light of the mirror's column alone, at each view.
   std::vector<color::Rgb> mirrors(const std::vector<OpenView>& views, int part) const;
 
@@ -61,7 +64,6 @@ class OpenLight {
   };
   OpenLight() = default;
   std::size_t surface_of(int part) const;
-  std::vector<color::Rgb> columns_at(const std::vector<OpenView>& views, std::size_t surface) const;
   static std::vector<LobeAxis> axes(const OpenView& view, const Surface& surface);
 
   LobeColumns columns_;

@@ -27,17 +27,18 @@ LobeTransport open_transport(const OpenLight& light, const LobeColumns& columns,
   t.direct.resize(t.places.size() * t.floats());
   t.bounced.assign(t.places.size() * t.floats(), 0.0F);
   parallel_for(t.places.size(), kPointsTogether, [&](std::size_t begin, std::size_t end) {
-    std::vector<color::Rgb> columns_of_point(columns.count());
+    std::vector<VisiblePoint> points;
     for (std::size_t k = begin; k < end; ++k) {
       const Gbuffer& seen = *samples[t.places[k] / of_sample];
       const std::size_t pixel = t.places[k] % of_sample;
       const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
-      light.at(seen.normal(x, y), seen.to_viewer(x, y), t.part[k], columns_of_point.data());
-      for (std::size_t column = 0; column < columns_of_point.size(); ++column)
-        for (int c = 0; c < 3; ++c)
-          t.direct[k * t.floats() + 3 * column + static_cast<std::size_t>(c)] =
-              static_cast<float>(columns_of_point[column][c]);
+      points.push_back({.normal = seen.normal(x, y), .to_viewer = seen.to_viewer(x, y), .part = t.part[k]});
     }
+    std::vector<color::Rgb> gathered(points.size() * columns.count());
+    light.look_up(points, gathered.data());
+    float* to = &t.direct[begin * t.floats()];
+    for (const color::Rgb& of_column : gathered)
+      for (int c = 0; c < 3; ++c) *to++ = static_cast<float>(of_column[c]);
   });
   return t;
 }
