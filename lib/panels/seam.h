@@ -74,7 +74,8 @@ class EnvironmentPanels {
   static Result<EnvironmentPanels> make(const envmap::PrefilteredEnvironment& env,
                                         const color::ViewingCondition& condition, double coat_index = paint::kNoCoat);
 
-  // The light that each column of the environment's lobes gathers at a place, as render::OpenLight has it.
+  // The light that each column of the environment's lobes gathers at a place, as render::OpenLight has it without the
+  // horizon.
   using Light = std::vector<color::Rgb>;
   Light light(const Vec3& normal, const Vec3& view) const;
 

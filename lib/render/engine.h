@@ -75,10 +75,10 @@ struct EngineInfo {
   // True if plans may choose it and leave effects out for it. Otherwise it is used when it is asked for by name, and it
   // draws all effects, because leaving one out saves no time.
   bool is_planned;
-  bool needs_texels;  // It sums the image that the environment was made from: Scene::texels.
-  bool traces_rays;   // It sees the mesh in the way of light: it draws shadows, floors and parts that shine.
-  bool needs_opengl;  // It shades in the OpenGL context of the renderer.
-  bool needs_mesh;    // It cannot shade a G-buffer that comes from a file.
+  bool needs_texels;        // It sums the image that the environment was made from: Scene::texels.
+  bool traces_rays;         // It sees the mesh in the way of light: it draws shadows, floors and parts that shine.
+  bool needs_opengl;        // It shades in the OpenGL context of the renderer.
+  bool needs_mesh;          // It cannot shade a G-buffer that comes from a file.
   bool draws_placed_lamps;  // Lamps may stand at a place.
   std::unique_ptr<Engine> (*make)(Sight& sight);
 };

@@ -78,8 +78,8 @@ struct PlaneHit {
 };
 PlaneHit plane_hit(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction);
 
-// Where a ray meets the plane of a triangle of the mesh. If that is outside of the triangle, as it may be by rounding, it
-// is the nearest place within by shares of the corners; if the ray runs along the plane, the middle of the triangle.
+// Where a ray meets the plane of a triangle of the mesh. If that is outside of the triangle, as it may be by rounding,
+// it is the nearest place within by shares of the corners; if the ray runs along the plane, the middle of the triangle.
 MeshPoint mesh_point(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction);
 
 // The point of the mesh that a pixel of the G-buffer shows. The pixel must show something, and the G-buffer must have

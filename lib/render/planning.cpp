@@ -300,8 +300,8 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   points.insert(points.end(), highlights.begin(), highlights.end());
   const Compact compact = compacted(scene, points);
   const double white = request.white_luminance > 0 ? request.white_luminance : 1;
-  Prober prober{probe.size(), compact.scene, all,   switches,
-                compact.points, points, white, tried, tries_plain ? &plain : nullptr};
+  Prober prober{
+      probe.size(), compact.scene, all, switches, compact.points, points, white, tried, tries_plain ? &plain : nullptr};
   Plan plan;
   plan.items = measured_items(prober, switches);
   for (std::size_t i = 0; i < switches.size() && engine.is_planned; ++i)

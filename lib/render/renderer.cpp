@@ -50,7 +50,7 @@ struct Renderer::State : Sight {
   Scene scene;
   Effects effects;
   std::optional<RaySetup> ray_setup;
-  Scene ray_scene;  // all of it, seen or not: rays meet parts that the camera does not see
+  Scene ray_scene;                           // all of it, seen or not: rays meet parts that the camera does not see
   Rayed ray_mesh;                            // of that scene, whose panes rays pass; none: not yet
   std::vector<bool> ray_panes;               // empty: the scene has none
   std::optional<envmap::SunlitSky> ray_sun;  // of the environment of ray_setup, where it has a sun
@@ -189,8 +189,7 @@ Renderer::State::Kept& Renderer::State::keep(int sample) {
   const Stopwatch clock;
   const auto [x, y] = shift_of(sample, view->samples);
   one.sample = sample, one.places.clear(), one.seen.forget();
-  one.gbuffer =
-      std::make_shared<const Gbuffer>(mesh_gbuffer(*traced, rays.shifted(x, y), view->width, view->height));
+  one.gbuffer = std::make_shared<const Gbuffer>(mesh_gbuffer(*traced, rays.shifted(x, y), view->width, view->height));
   gbuffer_ms = 1000 * clock.elapsed_s();
   return one;
 }
@@ -209,9 +208,8 @@ const std::vector<TexturePlace>& Renderer::State::places(int sample) {
   }
   Kept& one = keep(sample);
   if (!one.places.empty()) return one.places;
-  one.places = effects.texture_filter
-                   ? layer.filtered_places(*one.gbuffer, to_middle_of_part(sample, view->samples))
-                   : layer.places(*one.gbuffer);
+  one.places = effects.texture_filter ? layer.filtered_places(*one.gbuffer, to_middle_of_part(sample, view->samples))
+                                      : layer.places(*one.gbuffer);
   return one.places;
 }
 

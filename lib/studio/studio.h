@@ -31,8 +31,7 @@ color::ReflectionOperator page_operator();
 //   fit         paint, extent: fits it as fit-paint does by default, and fills weights(). Answers lobes and the report,
 //               and highlight, the angle where the highlight of a lamp of that extent falls to half.
 //   flakes      paint, lamps[] of radii: fills list kFlakes and answers per_m2 and most[], as render::PageFlakes has
-//   them;
-//               per_m2 is 0 where the paint states no flakes.
+//               them; per_m2 is 0 where the paint states no flakes.
 //   describe    paint: its curve, readings, average color, metrics and the colors of a screen.
 //   variations  paint, of ("face", "flop", "travel", "gloss"), step: answers list[] of name, edit and paint.
 //   nearest     paint, metric ("de76", "de00"), count: answers list[] of place, name, code, distance and differences,

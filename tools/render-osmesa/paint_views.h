@@ -45,7 +45,7 @@ class PaintViews {
   virtual Result<void> draw(const SourcePaint& paint, PaintView& view) = 0;
 
   std::shared_ptr<const render::Plan> plan = std::make_shared<render::Plan>();  // of the picture that was drawn last
-  double stops = 0, automatic_stops = 0;  // exposure in force, and that of a PNG
+  double stops = 0, automatic_stops = 0;                                        // exposure in force, and that of a PNG
   double white_luminance = 0;
   double gbuffer_ms = 0;
 };

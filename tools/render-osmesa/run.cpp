@@ -382,7 +382,7 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
   results["white_luminance"] = json_number(white_.luminance);
   const std::string name = options_.output == "-" ? "standard output" : shots_.front().output;
   session_.say(fmt::format(
-      "{}{}: {} x {}, {} samples a pixel, drawn in {:.0f} ms by {} (one look at it {:.0f} ms), exposure {:+.2f}{}",
+      "{}{}: {} x {}, {} samples a pixel, drawn in {:.0f} ms by {} (visible points {:.0f} ms), exposure {:+.2f}{}",
       name, shots_.size() > 1 ? fmt::format(" and {} more", shots_.size() - 1) : "", request_.size.width,
       request_.size.height, request_.samples, frame_ms, plan_.engine, frame_.gbuffer_ms, stops,
       display ? ", " + display->name() : ""));

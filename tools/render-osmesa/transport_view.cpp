@@ -191,10 +191,7 @@ Result<std::optional<KeptTransport>> kept_transport(image::AovFile file, const O
 }
 
 ViewShader::ViewShader(const KeptTransport& kept, const render::Gbuffer& gbuffer, const render::Scene& scene)
-    : kept_(kept),
-      gbuffer_(gbuffer),
-      scene_(scene),
-      scaler_(kept.light, render::operator_or_null(scene.reflection)) {}
+    : kept_(kept), gbuffer_(gbuffer), scene_(scene), scaler_(kept.light, render::operator_or_null(scene.reflection)) {}
 
 // Lays the light out, once, and once more where a paint comes that changes with the view.
 void ViewShader::lay_out(bool with_views) {

@@ -42,7 +42,7 @@ struct CpuShading {
   int most_tilts = 1;
 
   int lights = 0;
-  const float* light = nullptr;    // 8 a light: direction, 0, pi times its white, 0
+  const float* light = nullptr;        // 8 a light: direction, 0, pi times its white, 0
   const PlacedLamp* placed = nullptr;  // of each light; null: all are far away
   int lobes = 0;
   const float* exponents = nullptr;

@@ -200,9 +200,8 @@ HWY_INLINE V log_beside_one(V x) {
   const D f;
   const V one = hn::Set(f, 1.0F);
   const V series = hn::Mul(
-      x,
-      hn::NegMulAdd(x, hn::NegMulAdd(x, hn::NegMulAdd(x, hn::Set(f, 0.25F), hn::Set(f, 0.33333333F)), hn::Set(f, 0.5F)),
-                    one));
+      x, hn::NegMulAdd(
+             x, hn::NegMulAdd(x, hn::NegMulAdd(x, hn::Set(f, 0.25F), hn::Set(f, 0.33333333F)), hn::Set(f, 0.5F)), one));
   const V direct = hn::Log(f, hn::Max(hn::Add(one, x), hn::Set(f, 1e-30F)));
   return hn::IfThenElse(hn::Lt(hn::Abs(x), hn::Set(f, 0.02F)), series, direct);
 }

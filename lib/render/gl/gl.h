@@ -11,45 +11,45 @@
 #include "render/gl/gl_choice.h"
 
 // Every OpenGL function in use. libepoxy aborts under OSMesa, so they are looked up here, by name.
-#define GONIO_GL_FUNCTIONS(X)                                  \
-  X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                     \
-  X(PFNGLATTACHSHADERPROC, AttachShader)                       \
-  X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                 \
-  X(PFNGLBINDTEXTUREPROC, BindTexture)                         \
-  X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
-  X(PFNGLBLENDFUNCPROC, BlendFunc)                             \
-  X(PFNGLCOMPILESHADERPROC, CompileShader)                     \
-  X(PFNGLCREATEPROGRAMPROC, CreateProgram)                     \
-  X(PFNGLCREATESHADERPROC, CreateShader)                       \
-  X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)           \
-  X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                     \
-  X(PFNGLDELETESHADERPROC, DeleteShader)                       \
-  X(PFNGLDELETETEXTURESPROC, DeleteTextures)                   \
-  X(PFNGLDISABLEPROC, Disable)                                 \
-  X(PFNGLDRAWARRAYSPROC, DrawArrays)                           \
-  X(PFNGLENABLEPROC, Enable)                                   \
-  X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)       \
-  X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                 \
-  X(PFNGLGENTEXTURESPROC, GenTextures)                         \
-  X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                 \
-  X(PFNGLGETERRORPROC, GetError)                               \
-  X(PFNGLGETINTEGERVPROC, GetIntegerv)                         \
-  X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)             \
-  X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                       \
-  X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)               \
-  X(PFNGLGETSHADERIVPROC, GetShaderiv)                         \
-  X(PFNGLGETSTRINGPROC, GetString)                             \
-  X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
-  X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
-  X(PFNGLREADPIXELSPROC, ReadPixels)                           \
-  X(PFNGLSHADERSOURCEPROC, ShaderSource)                       \
-  X(PFNGLTEXIMAGE2DPROC, TexImage2D)                           \
-  X(PFNGLTEXPARAMETERIPROC, TexParameteri)                     \
-  X(PFNGLUNIFORM1IPROC, Uniform1i)                             \
-  X(PFNGLUNIFORM2FPROC, Uniform2f)                             \
-  X(PFNGLUNIFORM3FPROC, Uniform3f)                             \
-  X(PFNGLUNIFORM4FPROC, Uniform4f)                             \
-  X(PFNGLUSEPROGRAMPROC, UseProgram)                           \
+#define GONIO_GL_FUNCTIONS(X)                            \
+  X(PFNGLACTIVETEXTUREPROC, ActiveTexture)               \
+  X(PFNGLATTACHSHADERPROC, AttachShader)                 \
+  X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)           \
+  X(PFNGLBINDTEXTUREPROC, BindTexture)                   \
+  X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)           \
+  X(PFNGLBLENDFUNCPROC, BlendFunc)                       \
+  X(PFNGLCOMPILESHADERPROC, CompileShader)               \
+  X(PFNGLCREATEPROGRAMPROC, CreateProgram)               \
+  X(PFNGLCREATESHADERPROC, CreateShader)                 \
+  X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)     \
+  X(PFNGLDELETEPROGRAMPROC, DeleteProgram)               \
+  X(PFNGLDELETESHADERPROC, DeleteShader)                 \
+  X(PFNGLDELETETEXTURESPROC, DeleteTextures)             \
+  X(PFNGLDISABLEPROC, Disable)                           \
+  X(PFNGLDRAWARRAYSPROC, DrawArrays)                     \
+  X(PFNGLENABLEPROC, Enable)                             \
+  X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D) \
+  X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)           \
+  X(PFNGLGENTEXTURESPROC, GenTextures)                   \
+  X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)           \
+  X(PFNGLGETERRORPROC, GetError)                         \
+  X(PFNGLGETINTEGERVPROC, GetIntegerv)                   \
+  X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)       \
+  X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                 \
+  X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)         \
+  X(PFNGLGETSHADERIVPROC, GetShaderiv)                   \
+  X(PFNGLGETSTRINGPROC, GetString)                       \
+  X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)     \
+  X(PFNGLLINKPROGRAMPROC, LinkProgram)                   \
+  X(PFNGLREADPIXELSPROC, ReadPixels)                     \
+  X(PFNGLSHADERSOURCEPROC, ShaderSource)                 \
+  X(PFNGLTEXIMAGE2DPROC, TexImage2D)                     \
+  X(PFNGLTEXPARAMETERIPROC, TexParameteri)               \
+  X(PFNGLUNIFORM1IPROC, Uniform1i)                       \
+  X(PFNGLUNIFORM2FPROC, Uniform2f)                       \
+  X(PFNGLUNIFORM3FPROC, Uniform3f)                       \
+  X(PFNGLUNIFORM4FPROC, Uniform4f)                       \
+  X(PFNGLUSEPROGRAMPROC, UseProgram)                     \
   X(PFNGLVIEWPORTPROC, Viewport)
 
 namespace goniochrome::render {

@@ -46,7 +46,7 @@ class GlEngine : public Engine {
   std::string text_;
   GLuint program_ = 0, weights_ = 0, tilts_ = 0, tilted_ = 0, discs_ = 0, no_vertices_ = 0, texture_ = 0, target_ = 0;
   std::vector<std::pair<std::string, GLuint>> cubes_;  // by the name of their sampler
-  GLuint gbuffer_ = 0, positions_ = 0;  // of the sample that was shaded last
+  GLuint gbuffer_ = 0, positions_ = 0;                 // of the sample that was shaded last
   std::vector<Light> lights_;
   std::vector<PlacedLamp> placed_;
   const mesh::Mesh* mesh_ = nullptr;  // which lamps at a place need

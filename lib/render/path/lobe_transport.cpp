@@ -295,7 +295,7 @@ class Tracing {
     needed_[i] = needed / (request_.tolerance_de00 * request_.tolerance_de00);
   }
 
-  // The batches of the next round; whether there are any.
+  // Plans the batches of the next round, and returns true if there are any.
   bool plan(std::vector<int>& more) const {
     RoundLimits limits;
     limits.of_point = request_.most_batches, limits.at_once = kMostAtOnce;
@@ -317,9 +317,9 @@ class Tracing {
   TracedLobes result_;
   std::vector<VisibleSurface> samples_;  // of the pixels; none: their centers
   PixelPoints by_pixel_;
-  std::vector<float> open_light_;        // point, column, channel
-  std::vector<float> variance_;          // of one batch: point, column, and the paint that is worn last; dE00^2
-  std::vector<float> shown_noise_;       // of each point, in that paint
+  std::vector<float> open_light_;   // point, column, channel
+  std::vector<float> variance_;     // of one batch: point, column, and the paint that is worn last; dE00^2
+  std::vector<float> shown_noise_;  // of each point, in that paint
   std::vector<int> batches_, freedom_;
   int fewest_ = kFirstBatches;  // of a round; of several samples each gets two sequences
   std::vector<double> needed_, nominal_;

@@ -520,16 +520,17 @@ class Picture {
   }
 
   // The fours of the next round, unless points that got all that they may get keep the picture from its tolerance: they
-  // end with what their neighborhoods ask for. Whether there are any.
+  // end with what their neighborhoods ask for. Returns true if there are any.
   bool plan(const Errors& errors, std::vector<int>& more) const {
     RoundLimits limits;
     limits.of_point = request_.most_samples / kOfFour;
     limits.typical = worse_percentile([this](std::size_t i) { return states_[i].needed; });
     limits.lacking = std::min(errors.all / std::max(1e-9, request_.tolerance_de00), errors.noise / least_aim());
     limits.least = std::max(1.0, kLeastRound * drawn());
-    limits.in_vain = request_.tolerance_de00 > 0 && tolerance() < worse_percentile([&](std::size_t i) {
-                       return states_[i].sums.fours() >= limits.of_point ? points_[i].noise_de00 : 0;
-                     });
+    limits.in_vain =
+        request_.tolerance_de00 > 0 && tolerance() < worse_percentile([&](std::size_t i) {
+                                         return states_[i].sums.fours() >= limits.of_point ? points_[i].noise_de00 : 0;
+                                       });
     return plan_round(
         limits, [&](std::size_t i) { return states_[i].needed; }, [&](std::size_t i) { return counted(i); }, more);
   }
@@ -572,16 +573,16 @@ class Picture {
   std::size_t count_ = 1;                      // of the pixels' samples
   std::vector<std::array<double, 2>> shifts_;  // of these, where rays find what is seen
   Coverage coverage_;
-  PixelFlags even_;                   // empty but where surfaces of all samples are given
+  PixelFlags even_;  // empty but where surfaces of all samples are given
   PixelPoints by_pixel_;
   std::vector<PathPoint> points_;
   std::vector<State> states_;
   unsigned drawn_ = kAllShares;  // the shares that are drawn on
   FoundShares found_;
   std::vector<std::array<LightShares, Round::kSequences>> first_;  // of the first round; empty: not kept
-  std::vector<Halves> kept_;                                   // of shares that stopped
-  const double beside_ = percentile_95(request_.beside_de00);  // of the errors that are no noise
-  std::vector<ShownPoint> shown_;                              // by the points; empty: nothing is reconstructed
+  std::vector<Halves> kept_;                                       // of shares that stopped
+  const double beside_ = percentile_95(request_.beside_de00);      // of the errors that are no noise
+  std::vector<ShownPoint> shown_;                                  // by the points; empty: nothing is reconstructed
 };
 
 }  // namespace

@@ -30,10 +30,10 @@ class Pace {
   double per_s_ = 0;
 };
 
-// Cuts a round, what each point is to get, so that no more than `left` are drawn in all; whether any are. All points
-// lose the same part, and what is too little to be drawn is passed on to the points that follow. `drawable(n)`: the
-// most that can be drawn of n. A round that the time limit broke off instead would leave some points with a fourth of
-// the samples that others have.
+// Cuts a round, what each point is to get, so that no more than `left` are drawn in all, and returns true if any are.
+// All points lose the same part, and what is too little to be drawn is passed on to the points that follow.
+// `drawable(n)` returns the most that can be drawn of n. A round that the time limit broke off instead would leave some
+// points with a fourth of the samples that others have.
 template <class Drawable>
 bool cut_round(double left, std::vector<int>& more, const Drawable& drawable) {
   const double asked = std::accumulate(more.begin(), more.end(), 0.0);
@@ -119,7 +119,7 @@ struct RoundLimits {
 
 // How many samples each point is to get next: needed(point) less those that it has, at most three times these. Where
 // the points are content but the picture is not, or would draw too little for a round, all is scaled by what it lacks.
-// Whether there are any.
+// Returns true if any point gets some.
 template <class Needed, class Has>
 bool plan_round(const RoundLimits& limits, const Needed& needed, const Has& has, std::vector<int>& more) {
   constexpr double kGrowth = 3;

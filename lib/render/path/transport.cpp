@@ -244,8 +244,7 @@ Transport::LampSample Transport::drawn_from(const SeenLamp& lamp, double u, doub
   const rays::Frame frame = rays::frame_about(middle);
   const auto versine = static_cast<float>(lamp.versine * u), phi = 2 * rays::kFloatPi * static_cast<float>(v);
   const float ring = std::sqrt(versine * (2 - versine));
-  const Float3 direction =
-      (1 - versine) * middle + (ring * std::cos(phi)) * frame.x + (ring * std::sin(phi)) * frame.y;
+  const Float3 direction = (1 - versine) * middle + (ring * std::cos(phi)) * frame.x + (ring * std::sin(phi)) * frame.y;
   return {direction, lamp.reach, (2 / (2 - lamp.versine)) * whole, 0, lamp.extent_sr()};
 }
 

@@ -39,7 +39,7 @@ struct TransportShader::State {
   std::size_t columns = 0, classes = 0, mirror = 0;
   float unit = 1;
   std::vector<Block> blocks;
-  std::vector<float> scales;                         // of the columns, whose light is kept times these
+  std::vector<float> scales;                               // of the columns, whose light is kept times these
   std::vector<std::uint16_t> direct, bounced, of_classes;  // halves
   std::vector<std::uint32_t> places;
   std::vector<float> view_deg;
@@ -100,8 +100,7 @@ void TransportShader::State::lay_out(const LobeTransport& t) {
         std::uint16_t* to = half.data() + (all ? block.direct : block.bounced) * size;
         for (std::size_t lane = 0; lane < kTransportLanes; ++lane)
           for (std::size_t k = 0; k < stride; ++k)
-            to[k * kTransportLanes + lane] =
-                Imath::half(scale[k / 3] * from[block.points[lane] * stride + k]).bits();
+            to[k * kTransportLanes + lane] = Imath::half(scale[k / 3] * from[block.points[lane] * stride + k]).bits();
       }
     });
   };

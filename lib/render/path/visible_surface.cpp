@@ -22,8 +22,8 @@ void visit_hits(const rays::RayScene& scene, const Rays& rays, int width, int he
         rays::Fan fan;
         fan.origin = eye;
         for (int i = 0; i < 8; ++i) {
-          const rays::Float3 d = rays::float3(rays.direction(std::min(x + i, width - 1) + 0.5 + shift[0],
-                                                             static_cast<double>(y) + 0.5 + shift[1]));
+          const rays::Float3 d = rays::float3(
+              rays.direction(std::min(x + i, width - 1) + 0.5 + shift[0], static_cast<double>(y) + 0.5 + shift[1]));
           fan.x[i] = d.x, fan.y[i] = d.y, fan.z[i] = d.z;
           if (x + i < width) fan.wanted |= 1U << i;
         }

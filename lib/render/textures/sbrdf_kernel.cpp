@@ -242,15 +242,15 @@ HWY_INLINE void add_lit(const float* light, const LampInFrames& lamp, const Surf
     const V lt = hn::Load(f, lamp.t + i), lb = hn::Load(f, lamp.b + i), cos_i = hn::Load(f, lamp.n + i);
     const V c = hn::Load(f, l.cos_x + i), q = hn::Load(f, l.sin_x + i);
     const Direction m = loaded(middles.x, middles.y, middles.z, i);
-    const Direction apart =
-        minus(m, {hn::MulAdd(c, lt, hn::Mul(q, lb)), hn::MulSub(c, lb, hn::Mul(q, lt)), cos_i});
+    const Direction apart = minus(m, {hn::MulAdd(c, lt, hn::Mul(q, lb)), hn::MulSub(c, lb, hn::Mul(q, lt)), cos_i});
     const V versine = hn::Mul(half, dot(apart, apart));
     const auto seen =
         hn::And(hn::And(hn::Gt(cos_i, zero), hn::Gt(hn::Load(f, frames.vn + i), zero)), hn::Lt(versine, one));
     if (hn::AllFalse(f, seen)) continue;
     const V exponent = hn::Load(f, l.exponent + i);
     const V lowered = hn::Div(one, hn::MulAdd(exponent, hn::Load(f, lamp.variance + i), one));
-    const V log_lobe = hn::MulAdd(hn::Mul(lowered, exponent), log_beside_one(hn::Neg(versine)), hn::Load(f, middles.log_power + i));
+    const V log_lobe =
+        hn::MulAdd(hn::Mul(lowered, exponent), log_beside_one(hn::Neg(versine)), hn::Load(f, middles.log_power + i));
     const V power = hn::Mul(lowered, bounded_exp(hn::Add(log_lobe, hn::Load(f, l.albedo + i))));
     hn::Store(hn::IfThenElseZero(seen, hn::Mul(power, hn::Mul(cos_i, hn::Load(f, lamp.strength + i)))), f, weight + i);
   }

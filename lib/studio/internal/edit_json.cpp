@@ -68,7 +68,8 @@ const std::map<std::string, Take, std::less<>>& moves() {
        [](JsonReader& r, const char* k, paint::Edit& e) {
          const std::vector<double> alpha = r.numbers(k, 2);
          const bool within = std::ranges::all_of(alpha, [](double a) { return a >= 0 && a <= 10; });
-         if (!within || (alpha[0] == 0) != (alpha[1] == 0)) return r.fail("two numbers above 0 and up to 10, or 0,0", k);
+         if (!within || (alpha[0] == 0) != (alpha[1] == 0))
+           return r.fail("two numbers above 0 and up to 10, or 0,0", k);
          e.anisotropy = paint::Anisotropy{alpha[0], alpha[1]};
        }},
       {"flakes",
