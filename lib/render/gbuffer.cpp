@@ -32,10 +32,9 @@ VisiblePoint Gbuffer::point(int x, int y, const std::vector<TexturePlace>& place
 
 // By Cramer's rule from the origin's place beside the first corner: in the edges a and b, the ray meets the plane at
 // (share of a, share of b) = (d x b . s, d . s x a)/(d x b . a).
-PlaneHit plane_hit(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction) {
-  const auto& corners = mesh.triangles[triangle];
-  const Vec3 &p = mesh.positions[corners[0]], &q = mesh.positions[corners[1]], &r = mesh.positions[corners[2]];
-  const Vec3 a = q - p, b = r - p, s = origin - p, across = cross(direction, b);
+PlaneHit plane_hit(const std::array<Vec3, 3>& corners, const Vec3& origin, const Vec3& direction) {
+  const Vec3 a = corners[1] - corners[0], b = corners[2] - corners[0], s = origin - corners[0],
+             across = cross(direction, b);
   const double determinant = dot(across, a);
   PlaneHit hit;
   if (determinant == 0) return hit;
@@ -46,15 +45,20 @@ PlaneHit plane_hit(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& o
   return hit;
 }
 
-MeshPoint mesh_point(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction) {
-  const auto& corners = mesh.triangles[triangle];
-  const Vec3& p = mesh.positions[corners[0]];
-  const Vec3 a = mesh.positions[corners[1]] - p, b = mesh.positions[corners[2]] - p;
-  MeshPoint point{triangle, plane_hit(mesh, triangle, origin, direction).shares, {}, normalized(cross(a, b))};
+std::array<double, 3> within(const std::array<double, 3>& shares) {
+  std::array<double, 3> result = shares;
   double sum = 0;
-  for (double& share : point.shares) share = std::max(0.0, share), sum += share;
-  for (double& share : point.shares) share /= sum;
-  point.position = p + point.shares[1] * a + point.shares[2] * b;
+  for (double& share : result) share = std::max(0.0, share), sum += share;
+  for (double& share : result) share /= sum;
+  return result;
+}
+
+MeshPoint mesh_point(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction) {
+  const auto& [p, q, r] = mesh.triangles[triangle];
+  const std::array<Vec3, 3> corners{mesh.positions[p], mesh.positions[q], mesh.positions[r]};
+  const Vec3 a = corners[1] - corners[0], b = corners[2] - corners[0];
+  MeshPoint point{triangle, within(plane_hit(corners, origin, direction).shares), {}, normalized(cross(a, b))};
+  point.position = corners[0] + point.shares[1] * a + point.shares[2] * b;
   return point;
 }
 

@@ -45,7 +45,8 @@ struct Gbuffer {
   int width = 0, height = 0;
   std::vector<float> data;  // 4 a pixel: unit normal turned to the viewer, part + 1 (negative: seen from inside), or 0
   Rays rays;                // through the points: their shift within the pixel is in the corner
-  std::vector<std::uint32_t> triangles = {};  // of the mesh, one a pixel; empty where the buffer comes from a file
+  // A triangle of the mesh, rays::kFloor or kNoTriangle, pixel by pixel. Empty where the buffer comes from a file.
+  std::vector<std::uint32_t> triangles = {};
 
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }
   const float* at(int x, int y) const { return &data[index(x, y) * 4]; }
@@ -76,7 +77,10 @@ struct PlaneHit {
   std::array<double, 3> shares = {1.0 / 3, 1.0 / 3, 1.0 / 3};
   bool ahead = false;
 };
-PlaneHit plane_hit(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction);
+PlaneHit plane_hit(const std::array<Vec3, 3>& corners, const Vec3& origin, const Vec3& direction);
+
+// The nearest place within a triangle, by shares of its corners.
+std::array<double, 3> within(const std::array<double, 3>& shares);
 
 // Where a ray meets the plane of a triangle of the mesh. If that is outside of the triangle, as it may be by rounding,
 // it is the nearest place within by shares of the corners; if the ray runs along the plane, the middle of the triangle.

@@ -257,8 +257,9 @@ Result<void> Renderer::State::add_seen_through(int sample, float gain, image::Im
     add_behind(behind, shown, gain, picture);
     if (!effects.rays.floor || !transport) continue;
     std::fill(shown.data.begin(), shown.data.end(), 0.0F);
-    add_surroundings(*transport, {&behind.gbuffer},
-                     {effects.background, scene.background_color, ray_setup->environment}, effects.rays, 1, shown);
+    const Gbuffer* one = &behind.gbuffer;
+    add_surroundings(*transport, {&one, 1}, {effects.background, scene.background_color, ray_setup->environment},
+                     effects.rays, 1, shown);
     add_behind(behind, shown, gain, picture);
   }
   return {};
@@ -282,11 +283,11 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
     if (effort_asked.time_limit_s > 0) request.time_limit_s = std::max(1e-3, deadline->left_s()) / (groups - group);
     const int begin = first + group * together, end = std::min(first + count, begin + together);
     request.seed = mixed(effort_asked.seed, static_cast<std::uint64_t>(begin));
-    std::vector<VisibleSurface> samples;
-    for (int i = begin; i < end; ++i) samples.push_back(drawn_surface(*scene.mesh, *gbuffer(i)));
+    std::vector<std::shared_ptr<const Gbuffer>> seen;
+    std::vector<const Gbuffer*> samples;
+    for (int i = begin; i < end; ++i) samples.push_back(seen.emplace_back(gbuffer(i)).get());
     if (effects.rays.floor)
-      add_surroundings(*transport, gbuffers_of(samples), backdrop, effects.rays, 1.0F / static_cast<float>(count),
-                       picture);
+      add_surroundings(*transport, samples, backdrop, effects.rays, 1.0F / static_cast<float>(count), picture);
     const float gain = static_cast<float>(end - begin) / static_cast<float>(count);
     const PathPicture one = add_correction(*transport, samples, request, before, gain, picture);
     if (group == 0) all.dark = true, all.found = one.found;

@@ -98,13 +98,13 @@ class Judge {
         truth_(sample_.places.size()) {}
 
   // `bare`, unless null, is the same without the floor of `transport`.
-  void refine(const Transport& transport, const Transport* bare, const mesh::Mesh& mesh) {
+  void refine(const Transport& transport, const Transport* bare) {
     if (bare != nullptr) bare_.resize(truth_.size());
     std::vector<int> batches(truth_.size());
     for (int count = kFirst; count <= request_.batches && !is_sharp(); count *= 4) {
       std::ranges::fill(batches, count);
-      trace(transport, mesh, batches, truth_);
-      if (bare != nullptr && count <= kBareBatches) trace(*bare, mesh, batches, bare_);
+      trace(transport, batches, truth_);
+      if (bare != nullptr && count <= kBareBatches) trace(*bare, batches, bare_);
       judge();
     }
     // By now every point has met its bright paths, so that its noise tells what it needs: that falls with the root of
@@ -115,7 +115,7 @@ class Judge {
         const double needed = kSpare * ratio * ratio * truth_[i].batches.count();
         batches[i] = static_cast<int>(std::min<double>(request_.most_batches, needed));
       }
-      trace(transport, mesh, batches, truth_);
+      trace(transport, batches, truth_);
       judge();
     }
   }
@@ -187,15 +187,15 @@ class Judge {
   }
 
   // Every point, until it has that many batches.
-  void trace(const Transport& transport, const mesh::Mesh& mesh, const std::vector<int>& batches,
-             std::vector<PointTruth>& truth) const {
+  void trace(const Transport& transport, const std::vector<int>& batches, std::vector<PointTruth>& truth) const {
     PathOptions options;
     options.bounces = request_.bounces;
     options.correction = !request_.whole;
     parallel_for(truth.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const auto [x, y] = sample_.places[i];
-        const RayPoint at = ray_point(transport.rays(), mesh, *frame_.gbuffer, x, y);
+        const RayPoint at{spot_at(transport.rays(), *frame_.gbuffer, x, y),
+                          rays::float3(frame_.gbuffer->to_viewer(x, y))};
         add_batches(transport, options, at, mixed(seed(), i), batches[i], truth[i]);
       }
     });
@@ -281,7 +281,7 @@ Result<TruthError> truth_error(const Frame& frame, const Scene& scene, const Ray
     GONIO_ASSIGN(bare, Transport::create(paths));
   }
   Judge judge(frame, scene, drawn, request);
-  judge.refine(transport, bare ? &*bare : nullptr, *scene.mesh);
+  judge.refine(transport, bare ? &*bare : nullptr);
   if (bare) judge.look_beside(transport, scene);
   TruthError error = judge.error(scene);
   error.total.time_s = clock.elapsed_s();

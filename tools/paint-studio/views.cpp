@@ -57,7 +57,7 @@ Result<void> check_mesh(const image::AovFile& file, const render::LobeTransport&
                          i + 1, shown(file.parts[i]), shown(mesh.parts[i].name));
   GONIO_ASSIGN(const rays::RayScene scene, rays::RayScene::create(mesh));
   const render::Rays rays{file.corner, file.right, file.down, *file.eye};
-  const render::Gbuffer again = render::visible_surface(scene, rays, seen.width, seen.height).gbuffer;
+  const render::Gbuffer again = render::visible_surface(scene, rays, seen.width, seen.height);
   std::size_t points = 0, others = 0;
   for (int y = 0; y < seen.height; ++y) {
     for (int x = 0; x < seen.width; ++x) {

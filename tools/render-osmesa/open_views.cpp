@@ -88,7 +88,7 @@ class OpenViews : public PaintViews {
       render::Rays shifted = centers;
       shifted.corner += x * centers.right + y * centers.down;
       auto seen = render::visible_surface(mesh, shifted, request_.size.width, request_.size.height);
-      samples_.push_back(std::make_shared<const render::Gbuffer>(std::move(seen.gbuffer)));
+      samples_.push_back(std::make_shared<const render::Gbuffer>(std::move(seen)));
     }
     gbuffer_ms = 1000 * clock.elapsed_s() / static_cast<double>(samples_.size());
     return {};

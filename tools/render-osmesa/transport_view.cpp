@@ -82,8 +82,8 @@ void report_traced(const render::TracedLobes& traced, const render::TransportPar
                   traced.transport.places.size(), traced.transport.columns.count(), traced.shown_p95_de00,
                   traced.noise_p95_de00, traced.samples_mean, traced.time_s, per_point, file.float_parts));
   if (!traced.reached)
-    session.warn(fmt::format("the noise of the transport is {:.2f} dE00, above --tolerance {}: {}",
-                             traced.noise_p95_de00, shortest(session.common().tolerance),
+    session.warn(fmt::format("the error of the transport is {:.2f} dE00, above --tolerance {}: {}", traced.error_de00(),
+                             shortest(session.common().tolerance),
                              session.common().time_limit_s > 0
                                  ? "give more --time-limit"
                                  : "some points have as many samples as one can have: give a larger --tolerance"));
@@ -148,13 +148,13 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
     unlit.lights.clear();
     GONIO_ASSIGN(open, render::OpenLight::create(unlit, columns, worn.coats));
   }
-  const render::VisibleSurface surface = render::visible_surface(transport.rays(), seen.rays, seen.width, seen.height);
+  render::Gbuffer surface = render::visible_surface(transport.rays(), seen.rays, seen.width, seen.height);
   std::optional<envmap::BlockTree> tree;
   std::optional<OpenBySums> sums;
   if (open && environment != nullptr) {
     tree.emplace(*environment);
-    sums = sum_where_maps_miss(*tree, columns, seen_points(surface.gbuffer, worn), white_luminance,
-                               session.common().tolerance, *open);
+    sums = sum_where_maps_miss(*tree, columns, seen_points(surface, worn), white_luminance, session.common().tolerance,
+                               *open);
   }
   render::LobeTransportRequest request;
   request.tolerance_de00 = session.common().tolerance;
@@ -163,13 +163,13 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
   request.bounces = bounces;
   request.pixel_samples = samples;
   request.time_limit_s = session.common().time_limit_s;
-  request.progress = [&](double noise, double seconds) {
-    session.progress(fmt::format("transport: noise {:.2f} dE00 after {:.1f} s", noise, seconds));
+  request.progress = [&](double error, double seconds) {
+    session.progress(fmt::format("transport: error {:.2f} dE00 after {:.1f} s", error, seconds));
   };
   const render::TracedLobes traced =
       render::traced_lobes(transport, surface, columns, worn, open ? &*open : nullptr, request);
-  TracedView view{std::make_shared<const render::Gbuffer>(surface.gbuffer), render::transport_parts(traced.transport),
-                  traced.reached};
+  TracedView view{std::make_shared<const render::Gbuffer>(std::move(surface)),
+                  render::transport_parts(traced.transport), traced.reached};
   report_traced(traced, view.file, sums, session);
   return view;
 }

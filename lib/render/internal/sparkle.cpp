@@ -369,8 +369,8 @@ void Sparkle::add(const Gbuffer& g, const rays::RayScene* blockers, image::Image
           if (blockers == nullptr) return true;
           const auto& from = lamps_[*grain.lamp].place;
           const double reach = from ? length(from->position - point.position) * blockers->scale() : 1e30;
-          return !blockers->occluded(ray_point(*blockers, *scene_.mesh, g, x, y).spot.start,
-                                     rays::float3(grain.light.direction), static_cast<float>(reach));
+          return !blockers->occluded(spot_at(*blockers, g, x, y).start, rays::float3(grain.light.direction),
+                                     static_cast<float>(reach));
         };
         Place& place = places[static_cast<std::size_t>(x) / kBlock];
         if (place.part == number && place.at.axis == steepest_axis(point.face)) {

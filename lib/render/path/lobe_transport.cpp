@@ -29,11 +29,11 @@ constexpr int kProbeSequences = 4, kProbeDirections = 256;
 
 class Tracing {
  public:
-  Tracing(const Transport& transport, const VisibleSurface& surface, const LobeColumns& columns, const WornPaints& worn,
+  Tracing(const Transport& transport, const Gbuffer& surface, const LobeColumns& columns, const WornPaints& worn,
           const OpenLight* open, const LobeTransportRequest& request)
       : transport_(transport), surface_(surface), open_(open), request_(request), deadline_(request.time_limit_s) {
     LobeTransport& t = result_.transport;
-    const Gbuffer& g = surface.gbuffer;
+    const Gbuffer& g = surface;
     t.width = g.width, t.height = g.height, t.columns = columns, t.worn = worn;
     t.white_luminance = request.white_luminance, t.bounces = request.bounces, t.samples = request.pixel_samples;
     for (const auto& [dx, dy] : sample_shifts(request.pixel_samples)) {
@@ -41,8 +41,8 @@ class Tracing {
       samples_.push_back(visible_surface(transport.rays(), g.rays.shifted(dx, dy), g.width, g.height));
     }
     by_pixel_ = PixelPoints(g.width, g.height);
-    for (std::size_t i = 0; i < surface.hits.size(); ++i) {
-      if (!surface.hits[i].any()) continue;
+    for (std::size_t i = 0; i < g.triangles.size(); ++i) {
+      if (g.triangles[i] == kNoTriangle) continue;
       by_pixel_.add(static_cast<int>(i) % g.width, static_cast<int>(i) / g.width);
       t.places.push_back(static_cast<std::uint32_t>(i));
       t.part.push_back(std::abs(static_cast<int>(g.data[4 * i + 3])) - 1);
@@ -66,8 +66,8 @@ class Tracing {
       sample(more);
       pace_.end(drawn() - before);
       judge();
-      if (request_.progress) request_.progress(result_.noise_p95_de00, clock_.elapsed_s());
-      result_.reached = result_.noise_p95_de00 <= request_.tolerance_de00;
+      if (request_.progress) request_.progress(result_.error_de00(), clock_.elapsed_s());
+      result_.reached = result_.error_de00() <= request_.tolerance_de00;
       if (result_.reached || deadline_.passed() || !plan(more) || !cut(more)) break;
     }
     const double count = std::max<double>(1, static_cast<double>(batches_.size()));
@@ -107,16 +107,16 @@ class Tracing {
             t.worn.groups,
             request_.bounces,
             spot_at(transport_.rays(), surface_, x, y),
-            rays::float3(surface_.gbuffer.to_viewer(x, y))};
+            rays::float3(surface_.to_viewer(x, y))};
   }
 
   // The samples of a pixel that a point is the mean of.
-  std::vector<const VisibleSurface*> samples_of(std::size_t i) const {
+  std::vector<const Gbuffer*> samples_of(std::size_t i) const {
     const std::uint32_t place = result_.transport.places[i];
-    const float part = surface_.gbuffer.data[4 * static_cast<std::size_t>(place) + 3];
-    std::vector<const VisibleSurface*> shown;
-    for (const VisibleSurface& sample : samples_)
-      if (sample.gbuffer.data[4 * static_cast<std::size_t>(place) + 3] == part) shown.push_back(&sample);
+    const float part = surface_.data[4 * static_cast<std::size_t>(place) + 3];
+    std::vector<const Gbuffer*> shown;
+    for (const Gbuffer& sample : samples_)
+      if (sample.data[4 * static_cast<std::size_t>(place) + 3] == part) shown.push_back(&sample);
     if (shown.empty()) shown.push_back(&surface_);
     return shown;
   }
@@ -158,9 +158,9 @@ class Tracing {
     std::deque<LobePoint> points;  // which stay where they are
     std::vector<const LobePoint*> of_pixel;
     std::vector<OpenView> views;
-    for (const VisibleSurface* sample : samples_of(i)) {
+    for (const Gbuffer* sample : samples_of(i)) {
       const rays::Spot spot = spot_at(transport_.rays(), *sample, x, y);
-      const Vec3 to_viewer = sample->gbuffer.to_viewer(x, y);
+      const Vec3 to_viewer = sample->to_viewer(x, y);
       views.push_back({rays::vec3(spot.shading), to_viewer});
       of_pixel.push_back(
           &points.emplace_back(transport_, t.columns, t.worn.groups, request_.bounces, spot, rays::float3(to_viewer)));
@@ -284,12 +284,14 @@ class Tracing {
     double worst = 0, needed = 0;
     for (std::size_t k = 0; k < kinds; ++k) {
       const double own = variance_[i * kinds + k], found = smoothed_variance(own, freedom, around[k], count) / n;
+      const double expected = count > 0 ? around[k] / count : own;
       if (k == columns) {
         shown_noise_[i] = static_cast<float>(std::sqrt(found));
+        needed = std::max(needed, kDeviations * kDeviations * expected);
         continue;
       }
       worst = std::max(worst, found);
-      needed = std::max(needed, count > 0 ? around[k] / count : own);
+      needed = std::max(needed, expected / (TracedLobes::kColumnTolerances * TracedLobes::kColumnTolerances));
     }
     t.noise_de00[i] = static_cast<float>(std::sqrt(worst));
     needed_[i] = needed / (request_.tolerance_de00 * request_.tolerance_de00);
@@ -300,7 +302,7 @@ class Tracing {
     RoundLimits limits;
     limits.of_point = request_.most_batches, limits.at_once = kMostAtOnce;
     limits.typical = worse_percentile(needed_);
-    limits.lacking = result_.noise_p95_de00 / request_.tolerance_de00;
+    limits.lacking = result_.error_de00() / request_.tolerance_de00;
     const bool any = plan_round(
         limits, [this](std::size_t i) { return needed_[i]; }, [this](std::size_t i) { return batches_[i]; }, more);
     for (int& batches : more) batches = (batches + fewest_ - 1) / fewest_ * fewest_;
@@ -308,14 +310,14 @@ class Tracing {
   }
 
   const Transport& transport_;
-  const VisibleSurface& surface_;
+  const Gbuffer& surface_;
   const OpenLight* open_;
   const LobeTransportRequest& request_;
   Deadline deadline_;
   Pace pace_{deadline_};
   Stopwatch clock_;
   TracedLobes result_;
-  std::vector<VisibleSurface> samples_;  // of the pixels; none: their centers
+  std::vector<Gbuffer> samples_;  // of the pixels; none: their centers
   PixelPoints by_pixel_;
   std::vector<float> open_light_;   // point, column, channel
   std::vector<float> variance_;     // of one batch: point, column, and the paint that is worn last; dE00^2
@@ -371,7 +373,7 @@ Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path
   return worn;
 }
 
-TracedLobes traced_lobes(const Transport& transport, const VisibleSurface& surface, const LobeColumns& columns,
+TracedLobes traced_lobes(const Transport& transport, const Gbuffer& surface, const LobeColumns& columns,
                          const WornPaints& worn, const OpenLight* open, const LobeTransportRequest& request) {
   return Tracing(transport, surface, columns, worn, open, request).trace();
 }

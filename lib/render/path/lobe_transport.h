@@ -2,6 +2,7 @@
 // linear in. goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -70,9 +71,7 @@ struct LobeTransport {
 
 struct LobeTransportRequest {
   int bounces = 8;
-  // The noise of a column is what its random error changes in the gray paint of nominal_weight(), as CIEDE2000 before
-  // white_luminance, one standard deviation. That of a point is the largest over its columns; samples are added until
-  // the 95th percentile over the points is within the tolerance.
+  // Samples are added until TracedLobes::error_de00() is within it.
   double tolerance_de00 = 0.5;
   double time_limit_s = 0;  // 0: none
   int most_batches = 2048;  // of a point
@@ -80,13 +79,18 @@ struct LobeTransportRequest {
   int probes = 256;       // at most, at pixel centers
   int pixel_samples = 1;  // LobeTransport::samples
   std::uint64_t seed = 1;
-  std::function<void(double noise_de00, double seconds)> progress = {};
+  std::function<void(double error_de00, double seconds)> progress = {};
 };
 
 struct TracedLobes {
   LobeTransport transport;
+  // The noise of a column is what its random error changes in the gray paint of nominal_weight(), as CIEDE2000 before
+  // white_luminance, one standard deviation. That of a point is the largest over its columns.
   double noise_p95_de00 = 0, noise_mean_de00 = 0;
-  double shown_p95_de00 = 0;                // what 5 of 100 errors exceed in the paints that are worn
+  double shown_p95_de00 = 0;  // what 5 of 100 errors exceed in the paints that are worn
+  // Errors of columns cancel in part in a paint: a single column may have the noise of four tolerances.
+  static constexpr double kColumnTolerances = 4;
+  double error_de00() const { return std::max(shown_p95_de00, noise_p95_de00 / kColumnTolerances); }
   double samples_mean = 0, free_share = 0;  // directions of a point; points that nothing rises above
   double time_s = 0;
   bool reached = false;
@@ -94,7 +98,7 @@ struct TracedLobes {
 
 // `open` null: rays alone, which is noisier and has no error of maps. Bit-identical for any number of threads while no
 // time limit ends it.
-TracedLobes traced_lobes(const Transport& transport, const VisibleSurface& surface, const LobeColumns& columns,
+TracedLobes traced_lobes(const Transport& transport, const Gbuffer& surface, const LobeColumns& columns,
                          const WornPaints& worn, const OpenLight* open, const LobeTransportRequest& request);
 
 }  // namespace goniochrome::render

@@ -25,7 +25,7 @@ TEST(LobeTransport, OfAConvexShapeIsThatOfTheMapsAndWithoutNoise) {
   stage.environment = sky();
   stage.scene.env = &maps();
   stage.build();
-  const VisibleSurface surface =
+  const Gbuffer surface =
       visible_surface(stage.transport->rays(), *rays({{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30}, 40, 30), 40, 30);
   const LobeColumns columns = *lobe_columns(stage.scene);
   const OpenLight open = *OpenLight::create(scene_under(maps()), columns);
@@ -40,7 +40,7 @@ TEST(LobeTransport, OfAConvexShapeIsThatOfTheMapsAndWithoutNoise) {
   std::vector<color::Rgb> light(columns.count());
   for (std::size_t i = 0; i < t.places.size(); ++i) {
     const int x = static_cast<int>(t.places[i]) % 40, y = static_cast<int>(t.places[i]) / 40;
-    open.at(rays::vec3(spot_at(stage.transport->rays(), surface, x, y).shading), surface.gbuffer.to_viewer(x, y), 0,
+    open.at(rays::vec3(spot_at(stage.transport->rays(), surface, x, y).shading), surface.to_viewer(x, y), 0,
             light.data());
     for (std::size_t k = 0; k < columns.count(); ++k)
       for (int c = 0; c < 3; ++c) ASSERT_EQ(t.light(i, k)[c], static_cast<float>(light[k][c])) << columns.name(k);
@@ -142,8 +142,7 @@ TEST(LobeTransport, ShowsEveryPaintAsTracingItAnewDoes) {
       const auto weights = weights_of(stage.columns, spot.part == 5 ? ball : cup);
       ours.push_back(seen_difference(shown(t, i, weights, false), point.radiance, 1));
       noise.push_back(seen_difference(shown(t, i, weights, false), shown(other.transport, i, weights, false), 1));
-      stage.open->at(rays::vec3(spot.shading), stage.surface.gbuffer.to_viewer(point.x, point.y), spot.part,
-                     open.data());
+      stage.open->at(rays::vec3(spot.shading), stage.surface.to_viewer(point.x, point.y), spot.part, open.data());
       color::Rgb sum;
       for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * open[k];
       maps_alone.push_back(seen_difference(sum, point.radiance, 1));
@@ -211,9 +210,9 @@ TEST(LobeTransport, APixelOfSeveralSamplesIsTheirMean) {
   PathRequest path;
   path.tolerance_de00 = 0.4, path.pixel_samples = 4;
   const PathPicture truth = path_picture(*stage.path.transport, stage.surface, nullptr, path);
-  const Gbuffer& g = stage.surface.gbuffer;
+  const Gbuffer& g = stage.surface;
   const auto weights = weights_of(stage.columns, paint);
-  std::vector<VisibleSurface> samples;
+  std::vector<Gbuffer> samples;
   for (const auto& [dx, dy] : sample_shifts(4))
     samples.push_back(visible_surface(stage.path.transport->rays(), g.rays.shifted(dx, dy), g.width, g.height));
   for (const bool with_maps : {true, false}) {
@@ -231,7 +230,7 @@ TEST(LobeTransport, APixelOfSeveralSamplesIsTheirMean) {
         const auto place = static_cast<std::uint32_t>(point.y * g.width + point.x);
         const auto at = std::ranges::find(t.places, place);
         const float part = g.data[4 * static_cast<std::size_t>(place) + 3];
-        const auto shows_it = [&](const VisibleSurface& s) { return s.gbuffer.data[4 * place + 3] == part; };
+        const auto shows_it = [&](const Gbuffer& s) { return s.data[4 * place + 3] == part; };
         if (at == t.places.end() || !std::ranges::all_of(samples, shows_it)) continue;
         const color::Rgb ours = shown(t, static_cast<std::size_t>(at - t.places.begin()), weights, true);
         off[static_cast<std::size_t>(of_four)].push_back(seen_difference(ours, point.radiance, 1));
@@ -323,7 +322,7 @@ TEST(LobeTransport, HoldsAFloorThatShowsTheEnvironment) {
     stage.build();
     Transport transport = *stage.transport;
     if (shaded) transport.shade_ground(ground_request(request.tolerance_de00, 1, 0), request.bounces);
-    const VisibleSurface surface = visible_surface(transport.rays(), *rays(camera, 16, 12), 16, 12);
+    const Gbuffer surface = visible_surface(transport.rays(), *rays(camera, 16, 12), 16, 12);
     PathScene scene;
     scene.scene = &stage.scene;
     scene.ground = stage.ground;
@@ -342,7 +341,7 @@ TEST(LobeTransport, HoldsAFloorThatShowsTheEnvironment) {
     for (const paint::LobeFit& paint : paints) {
       stage.scene.paints.assign(1, paint);
       stage.build();
-      const VisibleSurface surface = visible_surface(stage.transport->rays(), *rays(camera, 16, 12), 16, 12);
+      const Gbuffer surface = visible_surface(stage.transport->rays(), *rays(camera, 16, 12), 16, 12);
       PathRequest path;
       path.options.bounces = request.bounces;
       path.tolerance_de00 = 0.4;

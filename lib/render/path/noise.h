@@ -59,5 +59,7 @@ double noise_de00(const color::Rgb& radiance, const Covariance& covariance, doub
 // along one direction of color as those of light mostly are. Independent of them each point has one of the errors
 // `beside`, across that direction; none: nothing.
 double largest_errors(const std::vector<double>& deviations, const std::vector<double>& beside = {});
+// They were about so many standard deviations of the noisiest points, in four pictures.
+constexpr double kDeviations = 1.4;
 
 }  // namespace goniochrome::render

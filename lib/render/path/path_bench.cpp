@@ -23,7 +23,7 @@ struct BenchScene {
   std::optional<envmap::BlockTree> blocks;
   Scene scene;
   std::optional<Transport> transport;
-  VisibleSurface surface;
+  Gbuffer surface;
   double white = 1;
 };
 
@@ -79,7 +79,7 @@ std::unique_ptr<BenchScene> bench_scene(const std::string& probe, int width, int
 
 // The unoccluded light, point by point, as the engine `integral` sums it.
 image::Image open_light(const BenchScene& bench) {
-  const Gbuffer& g = bench.surface.gbuffer;
+  const Gbuffer& g = bench.surface;
   image::Image image{g.width, g.height, 4, std::vector<float>(static_cast<std::size_t>(g.width) * g.height * 4), {}};
   std::vector<SurfacePoint> points;
   std::vector<std::size_t> places;

@@ -134,8 +134,7 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   if (add) return {};
   const int samples = sample == 0 ? 1 : static_cast<int>(std::lround(1 / gain));
   const std::shared_ptr<const Gbuffer> seen = sight.gbuffer(0);
-  const VisibleSurface surface = visible_surface(transport_->eye(), seen->rays, seen->width, seen->height);
-  const Gbuffer& g = surface.gbuffer;
+  const Gbuffer g = visible_surface(transport_->eye(), seen->rays, seen->width, seen->height);
   const Effort effort = sight.effort();
   const Stopwatch clock;
   transport_->draw_toward(transport_->find_bright_places(effort.bounces, effort.seed));
@@ -148,10 +147,10 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   request.progress = effort.progress;
   request.white_luminance = white_luminance_;
   if (!(request.white_luminance > 0))
-    request.white_luminance = visible_white(*transport_, surface, effort.bounces, effort.seed);
+    request.white_luminance = visible_white(*transport_, g, effort.bounces, effort.seed);
   if (!(request.white_luminance > 0)) request.white_luminance = 1;
   request.pixel_samples = samples;
-  const PathPicture picture = path_picture(*transport_, surface, nullptr, request);
+  const PathPicture picture = path_picture(*transport_, g, nullptr, request);
   rgba = {g.width, g.height, 4, {}, {}};
   rgba.data.assign(static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height) * 4, 0.0F);
   const bool with_panes = has_panes(scene_);

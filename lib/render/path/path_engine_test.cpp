@@ -166,7 +166,7 @@ TEST(PathPicture, SpreadsItsPathsOverTheSamplesOfAPixel) {
     Rays shifted = through;
     shifted.corner += shift[0] * through.right + shift[1] * through.down;
     request.pixel_samples = samples;
-    const VisibleSurface surface = visible_surface(transport.rays(), shifted, 24, 24);
+    const Gbuffer surface = visible_surface(transport.rays(), shifted, 24, 24);
     const PathPicture picture = path_picture(transport, surface, nullptr, request);
     std::vector<double> values(24 * 24, 0);
     for (const PathPoint& point : picture.points)

@@ -9,11 +9,10 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "render/internal/seen.h"
-#include "render/panes.h"
 #include "render/path/gathered.h"
-#include "render/path/pixel_pieces.h"
 #include "render/path/reconstruction.h"
 #include "render/path/rounds.h"
+#include "render/path/seen_point.h"
 
 namespace goniochrome::render {
 
@@ -27,12 +26,13 @@ constexpr int kFirstFours = 2;
 // A round draws no less than this part of all fours so far: after each the noise of every point is judged anew, which
 // takes the time of a fan for every twenty points.
 constexpr double kLeastRound = 1.0 / 16;
-// The largest errors of a picture are about so many standard deviations of its noisiest points, in four pictures.
-constexpr double kDeviations = 1.4;
 // The samples of a pixel are first looked at, which took about as long as so many fours of a car in two probes.
 constexpr double kFoursOfLook = 2;
-// Rays look at every sample of a pixel at an edge, and at about so many where all of them show one piece of surface.
+// Rays look at every sample of a pixel at an edge. Where all of them show one piece of surface, rays look at the first
+// and the last, and at so many where these two differ by more than this part of the tolerance without paths.
 constexpr unsigned kOfOnePiece = 4;
+constexpr double kAlike = 0.2;
+constexpr std::size_t kMostOfPixel = 16;  // samples
 // Points at which the shares of the first round are compared.
 constexpr std::size_t kCompared = 4096;
 
@@ -40,71 +40,11 @@ std::uint64_t seed_of(std::uint64_t seed, std::uint64_t point, int batch) {
   return mixed(mixed(seed, point), static_cast<std::uint64_t>(batch));
 }
 
-// The points that a camera sees along one ray: a point, or a pane and the points behind it.
-// goniochrome-coats(7), "PANES".
-class SeenPoint {
- public:
-  // `spot` is of transport.eye(), and `to_viewer` is unit. The arguments but for these two must outlive the point.
-  SeenPoint(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
-            const rays::Float3& to_viewer)
-      : front_(transport, options, spot, to_viewer) {
-    if (transport.meets_pane({spot.triangle, spot.u, spot.v, 0})) look_behind(transport, options, spot, to_viewer);
-  }
-
-  // True as PointTransport has it; each point behind panes counts by the light that these let through.
-  bool certain() const {
-    bool certain = front_.certain();
-    for (const Behind& point : behind_) certain = certain && point.at.certain();
-    return certain;
-  }
-  color::Rgb deterministic() const {
-    color::Rgb sum = front_.deterministic();
-    for (const Behind& point : behind_) sum += static_cast<double>(point.passed) * point.at.deterministic();
-    return sum;
-  }
-  LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count) const {
-    LightShares sum = front_.certain() ? LightShares{} : front_.shares_of(sequence, first, count);
-    for (const Behind& point : behind_)
-      if (!point.at.certain()) sum += static_cast<double>(point.passed) * point.at.shares_of(sequence, first, count);
-    return sum;
-  }
-  color::Rgb floor_light() const {
-    color::Rgb sum = front_.floor_light();
-    for (const Behind& point : behind_) sum += static_cast<double>(point.passed) * point.at.floor_light();
-    return sum;
-  }
-
- private:
-  struct Behind {
-    float passed;
-    PointTransport at;
-  };
-
-  void look_behind(const Transport& transport, const PathOptions& options, rays::Spot spot,
-                   const rays::Float3& to_viewer) {
-    const rays::Float3 direction = -to_viewer;
-    float share = 1;
-    while (share > kLeastPassed) {
-      const PassedPane passed = through_pane(transport.eye(), spot, direction);
-      if (!passed.hit.any()) return;
-      share *= passed.passed;
-      const rays::Spot next = transport.eye().spot(passed.hit, spot.position, direction);
-      behind_.push_back({share, PointTransport(transport, options, next, to_viewer)});
-      if (!transport.meets_pane(passed.hit)) return;
-      spot = next;
-    }
-  }
-
-  PointTransport front_;
-  std::vector<Behind> behind_;
-};
-
 class Picture {
  public:
-  Picture(const Transport& transport, std::span<const VisibleSurface> samples, const image::Image* base,
-          const PathRequest& request)
+  Picture(const Transport& transport, PixelSamples samples, const image::Image* base, const PathRequest& request)
       : transport_(transport),
-        surface_(samples.front()),
+        first_seen_(*samples.front()),
         seen_(samples),
         base_(base),
         request_(request),
@@ -115,7 +55,7 @@ class Picture {
       shifts_ = sample_shifts(request.pixel_samples);
       count_ = shifts_.size(), seen_ = {};
     }
-    const Gbuffer& g = surface_.gbuffer;
+    const Gbuffer& g = first_seen_;
     coverage_ = seen_.empty() ? coverage(transport.eye(), g.rays, g.width, g.height, shifts_) : coverage(seen_);
     add_points();
   }
@@ -138,8 +78,10 @@ class Picture {
       if (request_.progress) request_.progress(errors.all, clock_.elapsed_s());
       reached = request_.tolerance_de00 > 0 && errors.all <= request_.tolerance_de00;
       const bool ended = reached || (request_.tolerance_de00 > 0 && errors.noise <= least_aim());
-      const bool goes_on = !deadline_.passed() && (ended ? !mended && plan_worst(more) : plan(errors, more));
-      mended = ended;
+      bool goes_on = false;
+      if (ended) std::ranges::fill(more, 0);
+      if (!deadline_.passed() && !ended) goes_on = plan(errors, more);
+      if (!deadline_.passed() && !mended && (ended || goes_on)) goes_on = add_worst(more) || goes_on, mended = true;
       if (!goes_on || !cut(pace_.left(judging_s_), more)) break;
     }
     PathPicture picture;
@@ -161,15 +103,15 @@ class Picture {
 
  private:
   void add_points() {
-    const Gbuffer& g = surface_.gbuffer;
+    const Gbuffer& g = first_seen_;
     by_pixel_ = PixelPoints(g.width, g.height);
     for (int y = 0; y < g.height; ++y)
       for (int x = 0; x < g.width; ++x) add_point(x, y);
     states_.resize(points_.size());
+    if (!points_.empty()) left_ = std::ranges::min(points_, {}, &PathPoint::x).x;
     if (request_.reconstruct) shown_.assign(points_.size(), {0, 0, {-1, {}, {}}});
-    if (count_ > kOfOnePiece && !even_.empty())
-      for (std::size_t i = 0; i < points_.size(); ++i)
-        if (even_[place(points_[i])] != 0) states_[i].step = static_cast<unsigned>(count_) / kOfOnePiece + 1;
+    for (std::size_t i = 0; i < points_.size() && !even_.empty(); ++i)
+      if (even_[place(points_[i])] != 0) states_[i].step = static_cast<unsigned>(count_) - 1;
     options_ = whole_ = request_.options;
     whole_.correction = false;
     first_whole_ = whole_;
@@ -183,7 +125,7 @@ class Picture {
     std::vector<int> fours(points_.size(), kFirstFours);
     const int spacing = first_spacing(points_.size(), request_.first_points);
     if (!request_.reconstruct || even_.empty() || spacing == 1) return fours;
-    const PixelFlags told = told_by_corners(surface_.gbuffer, even_, spacing);
+    const PixelFlags told = told_by_corners(first_seen_, even_, spacing);
     for (std::size_t i = 0; i < points_.size(); ++i)
       if (told[place(points_[i])] != 0) fours[i] = 0;
     return fours;
@@ -241,7 +183,7 @@ class Picture {
 
   std::size_t place(const PathPoint& point) const { return place(point.x, point.y); }
   std::size_t place(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(surface_.gbuffer.width) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(first_seen_.width) + static_cast<std::size_t>(x);
   }
 
   // No clock ends a round that is needed.
@@ -259,7 +201,7 @@ class Picture {
     State& state = states_[i];
     ShownPoint& shown = shown_[i];
     const ShownPiece piece{spot.part, spot.shading, spot.position, static_cast<float>(share)};
-    if (shown.piece.part < 0) shown = {points_[i].x, points_[i].y, piece};
+    if (shown.piece.part < 0) shown = {points_[i].x - left_, points_[i].y - points_.front().y, piece};
     if (share < 1 && (even_.empty() || even_[place(points_[i])] == 0)) shown.pieces.push_back(piece);
     state.sharp +=
         share * (state.hidden ? SeenPoint(transport_, options_, spot, to_viewer).deterministic() : deterministic);
@@ -330,22 +272,32 @@ class Picture {
     }
   }
 
-  // A sample of a pixel sees this, which is something.
-  SeenPoint transport_at(std::size_t i, std::size_t sample, rays::Spot& spot, rays::Float3& to_viewer) const {
+  struct Look {
+    rays::Spot spot;
+    rays::Float3 to_viewer;
+    SeenPoint at;
+  };
+  // The point that a sample of a pixel sees, which is something.
+  Look look_at(std::size_t i, std::size_t sample) const {
     const PathPoint& point = points_[i];
     const rays::RayScene& scene = transport_.eye();
+    const auto look = [&](const rays::Spot& spot, const rays::Float3& to_viewer) {
+      return Look{spot, to_viewer, {transport_, options_of(i), spot, to_viewer}};
+    };
     if (!seen_.empty()) {
-      const VisibleSurface& surface = seen_[sample];
-      spot = spot_at(scene, surface, point.x, point.y);
-      to_viewer = rays::float3(surface.gbuffer.to_viewer(point.x, point.y));
-      return {transport_, options_of(i), spot, to_viewer};
+      const Gbuffer& seen = *seen_[sample];
+      return look(spot_at(scene, seen, point.x, point.y), rays::float3(seen.to_viewer(point.x, point.y)));
     }
-    const Rays& through = surface_.gbuffer.rays;
+    const Rays& through = first_seen_.rays;
     const Vec3 toward = through.direction(point.x + 0.5 + shifts_[sample][0], point.y + 0.5 + shifts_[sample][1]);
     const rays::Float3 eye = scene.local(through.eye), direction = rays::float3(toward);
-    spot = scene.spot(scene.closest(eye, direction), eye, direction);
-    to_viewer = -direction;
-    return {transport_, options_of(i), spot, to_viewer};
+    return look(scene.spot(scene.closest(eye, direction), eye, direction), -direction);
+  }
+
+  bool are_alike(std::size_t i, const Look& a, const Look& b) const {
+    const color::Rgb base = base_ != nullptr ? base_at(points_[i]) : color::Rgb{};
+    return seen_difference(base + a.at.deterministic(), base + b.at.deterministic(), request_.white_luminance) <=
+           kAlike * request_.tolerance_de00;
   }
 
   // Each round at a point has sequences of its own. Samples of a pixel that show one piece have one light of the open
@@ -369,6 +321,12 @@ class Picture {
   void sample(std::size_t i, int fours) {
     State& state = states_[i];
     const Round round(fours);
+    std::array<std::optional<Look>, kMostOfPixel> looks;
+    const auto look = [&](std::size_t sample) -> const Look& {
+      return looks[sample] ? *looks[sample] : looks[sample].emplace(look_at(i, sample));
+    };
+    if (!state.looked && state.step > 1 && !are_alike(i, look(0), look(count_ - 1)))
+      state.step = static_cast<unsigned>(count_ - 1) / (kOfOnePiece - 1);
     const unsigned step = state.step, count = (static_cast<unsigned>(count_) + step - 1) / step;
     const unsigned covered = coverage_.any[place(points_[i].x, points_[i].y)];
     const bool first_time = !state.looked;
@@ -382,9 +340,7 @@ class Picture {
       if ((covered >> sample & 1U) == 0) continue;
       auto fan = static_cast<int>((k + count - first) % count);
       if (!first_time && (fan >= round.fans() || (state.uncertain >> sample & 1U) == 0)) continue;
-      rays::Spot spot;
-      rays::Float3 to_viewer;
-      const SeenPoint at = transport_at(i, sample, spot, to_viewer);
+      const auto& [spot, to_viewer, at] = look(sample);
       if (first_time) {
         state.deterministic += (1.0 / count) * at.deterministic();
         show(i, spot, 1.0 / count, at.deterministic(), to_viewer);
@@ -536,16 +492,20 @@ class Picture {
   }
 
   // A picture that is within its tolerance at 95 of 100 points may have specks at the others, most of them at edges,
-  // which no neighbor tells. One round more goes to these alone, and takes no more than a part of all samples.
-  bool plan_worst(std::vector<int>& more) const {
+  // which no neighbor tells. They get more in one round, which takes no more than a part of all samples for them.
+  // Returns true if there are any.
+  bool add_worst(std::vector<int>& more) const {
     if (!request_.reconstruct) return false;
     const double limit = request_.most_samples / kOfFour;
+    std::vector<int> worst(more.size());
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const double n = counted(i), wanted = std::min(states_[i].needed / (kSpeck * kSpeck), limit) - n;
-      more[i] = static_cast<int>(std::clamp(wanted, 0.0, kMostOfSpeck * n));
+      worst[i] = static_cast<int>(std::clamp(wanted, 0.0, kMostOfSpeck * n));
     }
-    const double most = kSpecksShare * std::max(drawn(), static_cast<double>(points_.size()));
-    return std::ranges::any_of(more, [](int fours) { return fours > 0; }) && cut(most, more);
+    const bool any = std::ranges::any_of(worst, [](int fours) { return fours > 0; });
+    if (!any || !cut(kSpecksShare * std::max(drawn(), static_cast<double>(points_.size())), worst)) return false;
+    std::ranges::transform(more, worst, more.begin(), [](int a, int b) { return std::max(a, b); });
+    return true;
   }
 
   double drawn() const {
@@ -560,9 +520,9 @@ class Picture {
   }
 
   const Transport& transport_;
-  const VisibleSurface& surface_;
+  const Gbuffer& first_seen_;
   PathOptions options_, whole_, first_whole_;  // of what is drawn and, of a first round; the others without correction
-  std::span<const VisibleSurface> seen_;       // of each sample of a pixel; empty: rays find what is seen
+  PixelSamples seen_;                          // of each sample of a pixel; empty: rays find what is seen
   const image::Image* base_;
   const PathRequest& request_;
   Deadline deadline_;
@@ -582,12 +542,13 @@ class Picture {
   std::vector<std::array<LightShares, Round::kSequences>> first_;  // of the first round; empty: not kept
   std::vector<Halves> kept_;                                       // of shares that stopped
   const double beside_ = percentile_95(request_.beside_de00);      // of the errors that are no noise
+  int left_ = 0;                                                   // the least x of a point
   std::vector<ShownPoint> shown_;                                  // by the points; empty: nothing is reconstructed
 };
 
 }  // namespace
 
-PathPicture path_picture(const Transport& transport, std::span<const VisibleSurface> samples, const image::Image* base,
+PathPicture path_picture(const Transport& transport, PixelSamples samples, const image::Image* base,
                          const PathRequest& request) {
   return Picture(transport, samples, base, request).draw();
 }

@@ -4,14 +4,13 @@
 
 #include <array>
 #include <functional>
-#include <span>
 #include <vector>
 
 #include "image/image.h"
 #include "render/path/found_shares.h"
 #include "render/path/noise.h"
+#include "render/path/pixel_pieces.h"
 #include "render/path/transport.h"
-#include "render/path/visible_surface.h"
 
 namespace goniochrome::render {
 
@@ -70,13 +69,14 @@ struct PathPicture {
 // `base`: with PathOptions::correction what the points show without the mesh in the way, R G B in the first channels of
 // each pixel; it tells how visible noise is, and is not added. Null: black. Bit-identical for any number of threads
 // while no time limit ends it.
-// `samples` are the surfaces that the samples of the pixels see, at most 16; paths are spread over them. The points of
-// a surface may be others than those that rays find. PathRequest::pixel_samples counts where there is one surface.
-PathPicture path_picture(const Transport& transport, std::span<const VisibleSurface> samples, const image::Image* base,
+// `samples` are what the samples of the pixels see; paths are spread over them. The points of a surface may be others
+// than those that rays find. PathRequest::pixel_samples counts where there is one surface.
+PathPicture path_picture(const Transport& transport, PixelSamples samples, const image::Image* base,
                          const PathRequest& request);
-inline PathPicture path_picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
+inline PathPicture path_picture(const Transport& transport, const Gbuffer& surface, const image::Image* base,
                                 const PathRequest& request) {
-  return path_picture(transport, std::span(&surface, 1), base, request);
+  const Gbuffer* one = &surface;
+  return path_picture(transport, PixelSamples(&one, 1), base, request);
 }
 
 }  // namespace goniochrome::render

@@ -36,7 +36,7 @@ std::unique_ptr<PathStage> ball_in_a_cup() {
   return stage;
 }
 
-VisibleSurface seen_from_above(const PathStage& stage, int width, int height) {
+Gbuffer seen_from_above(const PathStage& stage, int width, int height) {
   Camera camera;
   camera.eye = {0.5, 4, 2};
   camera.fov_deg = 36;
@@ -45,7 +45,7 @@ VisibleSurface seen_from_above(const PathStage& stage, int width, int height) {
 
 TEST(PathPicture, IsTheSameForAnyNumberOfThreads) {
   const auto stage = ball_in_a_cup();
-  const VisibleSurface surface = seen_from_above(*stage, 24, 18);
+  const Gbuffer surface = seen_from_above(*stage, 24, 18);
   PathRequest request;
   request.tolerance_de00 = 4;
   PathPicture first;
@@ -63,16 +63,16 @@ TEST(PathPicture, IsTheSameForAnyNumberOfThreads) {
   set_threads(0);
   // The surface as well.
   set_threads(1);
-  const VisibleSurface again = seen_from_above(*stage, 24, 18);
+  const Gbuffer again = seen_from_above(*stage, 24, 18);
   set_threads(0);
-  EXPECT_EQ(again.gbuffer.data, surface.gbuffer.data);
+  EXPECT_EQ(again.data, surface.data);
 }
 
 // The picture against one of 25 times the samples: the root mean square difference in CIEDE2000 is the stated noise,
 // and 95 % of the points are within two of theirs.
 TEST(PathPicture, IsAsNoisyAsItSays) {
   const auto stage = ball_in_a_cup();
-  const VisibleSurface surface = seen_from_above(*stage, 32, 24);
+  const Gbuffer surface = seen_from_above(*stage, 32, 24);
   PathRequest request;
   request.options.bounces = 4;
   request.tolerance_de00 = 1.5;
@@ -107,7 +107,7 @@ TEST(PathPicture, IsAsNoisyAsItSays) {
 // Adaptive sampling decides by what it has drawn, which could bend the mean: over many pictures it does not.
 TEST(PathPicture, ItsMeanIsTheTruthWhateverIsSampledMore) {
   const auto stage = ball_in_a_cup();
-  const VisibleSurface surface = seen_from_above(*stage, 12, 9);
+  const Gbuffer surface = seen_from_above(*stage, 12, 9);
   PathRequest request;
   request.options.bounces = 3;
   const auto mean_of = [&](double tolerance, std::uint64_t first, int pictures, double& variance) {
@@ -137,7 +137,7 @@ TEST(PathPicture, ItsMeanIsTheTruthWhateverIsSampledMore) {
 // for.
 TEST(PathPicture, LongSequencesNeedFewerSamples) {
   const auto stage = ball_in_a_cup();
-  const VisibleSurface surface = seen_from_above(*stage, 16, 12);
+  const Gbuffer surface = seen_from_above(*stage, 16, 12);
   PathRequest request;
   request.options.bounces = 2;
   request.white_luminance = 1.2;
@@ -148,7 +148,7 @@ TEST(PathPicture, LongSequencesNeedFewerSamples) {
   for (const PathPoint& point : picture.points) {
     const rays::Spot spot = spot_at(stage->transport->rays(), surface, point.x, point.y);
     const PathEstimate estimate =
-        path_estimate(*stage->transport, request.options, spot, surface.gbuffer.to_viewer(point.x, point.y), 64, 5);
+        path_estimate(*stage->transport, request.options, spot, surface.to_viewer(point.x, point.y), 64, 5);
     const double noise = noise_de00(estimate.radiance, estimate.covariance, request.white_luminance);
     if (!(point.noise_de00 > 0)) continue;
     drawn += point.samples, short_ones += 64 * kBatch * std::pow(noise / point.noise_de00, 2);
@@ -161,7 +161,7 @@ TEST(PathPicture, AConvexShapeIsDrawnWithoutASample) {
   PathStage stage(sphere_mesh(64), {glossy()});
   stage.environment = even_environment();
   stage.build();
-  const VisibleSurface surface = seen_from_above(stage, 32, 24);
+  const Gbuffer surface = seen_from_above(stage, 32, 24);
   PathRequest request;
   request.options.correction = true;
   const PathPicture picture = path_picture(*stage.transport, surface, nullptr, request);
@@ -174,7 +174,7 @@ TEST(PathPicture, AConvexShapeIsDrawnWithoutASample) {
 
 TEST(PathPicture, StopsWhenItsTimeIsUpAndSaysHowFarItCame) {
   const auto stage = ball_in_a_cup();
-  const VisibleSurface surface = seen_from_above(*stage, 64, 48);
+  const Gbuffer surface = seen_from_above(*stage, 64, 48);
   PathRequest request;
   request.tolerance_de00 = 0.001;
   request.time_limit_s = 0.3;
@@ -195,7 +195,7 @@ TEST(PathPicture, StopsWhenItsTimeIsUpAndSaysHowFarItCame) {
 // none is brought to it by a few points at a time: here that took 79 and 42 rounds.
 TEST(PathPicture, TakesFewRounds) {
   const auto stage = ball_in_a_cup();
-  const VisibleSurface surface = seen_from_above(*stage, 32, 24);
+  const Gbuffer surface = seen_from_above(*stage, 32, 24);
   int rounds = 0;
   PathRequest request;
   request.progress = [&](double, double) { ++rounds; };
@@ -233,17 +233,17 @@ TEST(HardCase, SmoothBallsAreLitSmoothlyAtAnyScale) {
     camera.eye = size * Vec3{2, 4, 7};
     camera.target = size * Vec3{0, 1.2, 0};
     camera.fov_deg = 25;
-    const VisibleSurface surface = visible_surface(transport.rays(), *rays(camera, kWidth, kHeight), kWidth, kHeight);
+    const Gbuffer surface = visible_surface(transport.rays(), *rays(camera, kWidth, kHeight), kWidth, kHeight);
     PathOptions options;
     options.bounces = 0;
     double ours = 0, textbook = 0;
     int lit = 0, plane = 0, plane_lit = 0;
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
-        const int part = surface.gbuffer.part(x, y);
+        const int part = surface.part(x, y);
         if (part < 0) continue;
         rays::Spot spot = spot_at(transport.rays(), surface, x, y);
-        const rays::Float3 viewer = rays::float3(surface.gbuffer.to_viewer(x, y));
+        const rays::Float3 viewer = rays::float3(surface.to_viewer(x, y));
         const double shown = PointTransport(transport, options, spot, viewer).deterministic().y;
         if (part != kBall) {
           plane_lit += std::abs(shown - 0.5 * to_light.y) < 1e-6, ++plane;
@@ -275,7 +275,7 @@ TEST(PathPicture, CorrectsHiddenPointsByTheSumOfWhatIsLeft) {
   for (Vec3& p : stage.mesh.positions) p.y = 1 + 3 * (p.y - 1);
   stage.environment = even_environment();
   stage.build();
-  const VisibleSurface surface = seen_from_above(stage, 32, 24);
+  const Gbuffer surface = seen_from_above(stage, 32, 24);
   image::Image base;
   base.width = 32, base.height = 24, base.channels = 3;
   base.data.assign(std::size_t{32} * 24 * 3, static_cast<float>(kAlbedo));
@@ -306,9 +306,15 @@ TEST(PathPicture, CorrectsHiddenPointsByTheSumOfWhatIsLeft) {
 }
 
 // The surfaces that four samples of each pixel show.
-std::vector<VisibleSurface> four_samples(const PathStage& stage, const Camera& camera, int width, int height) {
+std::vector<const Gbuffer*> pointers(const std::vector<Gbuffer>& samples) {
+  std::vector<const Gbuffer*> result;
+  for (const Gbuffer& sample : samples) result.push_back(&sample);
+  return result;
+}
+
+std::vector<Gbuffer> four_samples(const PathStage& stage, const Camera& camera, int width, int height) {
   const Rays center = *rays(camera, width, height);
-  std::vector<VisibleSurface> samples;
+  std::vector<Gbuffer> samples;
   for (const auto& [dx, dy] : sample_shifts(4))
     samples.push_back(visible_surface(stage.transport->rays(), center.shifted(dx, dy), width, height));
   return samples;
@@ -323,15 +329,15 @@ TEST(PathPicture, PointsWithoutSamplesAreToldByTheirNeighbors) {
   camera.eye = {0.5, 4, 2};
   camera.fov_deg = 36;
   constexpr int kWidth = 96, kHeight = 72;
-  const std::vector<VisibleSurface> samples = four_samples(*stage, camera, kWidth, kHeight);
+  const std::vector<Gbuffer> samples = four_samples(*stage, camera, kWidth, kHeight);
   PathRequest request;
   request.options.bounces = 2;
   request.tolerance_de00 = 1, request.seed = 9;
-  const PathPicture truth = path_picture(*stage->transport, samples, nullptr, request);
+  const PathPicture truth = path_picture(*stage->transport, pointers(samples), nullptr, request);
   request.reconstruct = true, request.tolerance_de00 = 0, request.most_samples = 8, request.seed = 1;
-  const PathPicture dense = path_picture(*stage->transport, samples, nullptr, request);
+  const PathPicture dense = path_picture(*stage->transport, pointers(samples), nullptr, request);
   request.first_points = truth.points.size() / 20;
-  const PathPicture sparse = path_picture(*stage->transport, samples, nullptr, request);
+  const PathPicture sparse = path_picture(*stage->transport, pointers(samples), nullptr, request);
   std::vector<double> errors;
   for (std::size_t i = 0; i < truth.points.size(); ++i) {
     EXPECT_TRUE(std::isfinite(sparse.points[i].noise_de00)) << i;
@@ -359,7 +365,7 @@ TEST(PathPicture, TheWorstPointsGetOneRoundMore) {
   camera.eye = {0.2, 5, 1};
   camera.fov_deg = 30;
   constexpr int kWidth = 128, kHeight = 96;
-  const std::vector<VisibleSurface> samples = four_samples(stage, camera, kWidth, kHeight);
+  const std::vector<Gbuffer> samples = four_samples(stage, camera, kWidth, kHeight);
   PathRequest request;
   request.options.bounces = 2, request.options.correction = true;
   constexpr color::Rgb kBase{0.2, 0.2, 0.2};
@@ -371,14 +377,14 @@ TEST(PathPicture, TheWorstPointsGetOneRoundMore) {
   std::vector<color::Rgb> truth;
   for (int i = 0; i < kPictures; ++i) {
     request.seed = 100 + static_cast<std::uint64_t>(i);
-    const PathPicture one = path_picture(*stage.transport, samples, &base, request);
+    const PathPicture one = path_picture(*stage.transport, pointers(samples), &base, request);
     truth.resize(one.points.size(), kBase);
     for (std::size_t k = 0; k < truth.size(); ++k) truth[k] += (1.0 / kPictures) * one.points[k].radiance;
   }
   request.reconstruct = true, request.seed = 1;
-  const PathPicture first = path_picture(*stage.transport, samples, &base, request);
+  const PathPicture first = path_picture(*stage.transport, pointers(samples), &base, request);
   request.tolerance_de00 = 1, request.most_samples = 1 << 16;
-  const PathPicture mended = path_picture(*stage.transport, samples, &base, request);
+  const PathPicture mended = path_picture(*stage.transport, pointers(samples), &base, request);
   const auto worst = [&](const PathPicture& picture) {
     std::vector<double> errors;
     for (std::size_t i = 0; i < truth.size(); ++i)
@@ -391,7 +397,7 @@ TEST(PathPicture, TheWorstPointsGetOneRoundMore) {
   EXPECT_LE(mended.samples_mean, first.samples_mean + 2);
   EXPECT_LT(worst(mended), 0.6 * worst(first));
   request.most_samples = 8;
-  EXPECT_EQ(path_picture(*stage.transport, samples, &base, request).samples_mean, first.samples_mean)
+  EXPECT_EQ(path_picture(*stage.transport, pointers(samples), &base, request).samples_mean, first.samples_mean)
       << "no point gets more than it may";
 }
 

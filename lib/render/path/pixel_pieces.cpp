@@ -28,26 +28,25 @@ PixelFlags flags_of(const Gbuffer& gbuffer, const Flag& flag) {
 
 }  // namespace
 
-Coverage coverage(std::span<const VisibleSurface> samples) {
-  const std::size_t pixels = samples.front().hits.size();
+Coverage coverage(PixelSamples samples) {
+  const std::size_t pixels = samples.front()->triangles.size();
   Coverage result{std::vector<std::uint16_t>(pixels, 0), std::vector<std::uint16_t>(pixels, 0)};
   for (std::size_t sample = 0; sample < samples.size(); ++sample) {
     const auto bit = static_cast<std::uint16_t>(1U << sample);
     for (std::size_t i = 0; i < pixels; ++i) {
-      const rays::Hit& hit = samples[sample].hits[i];
-      if (hit.any()) result.any[i] |= bit;
-      if (hit.triangle == rays::kFloor) result.floor[i] |= bit;
+      const std::uint32_t triangle = samples[sample]->triangles[i];
+      if (triangle != kNoTriangle) result.any[i] |= bit;
+      if (triangle == rays::kFloor) result.floor[i] |= bit;
     }
   }
   return result;
 }
 
-PixelFlags even_pixels(std::span<const VisibleSurface> samples) {
-  const Gbuffer& first = samples.front().gbuffer;
+PixelFlags even_pixels(PixelSamples samples) {
+  const Gbuffer& first = *samples.front();
   return flags_of(first, [&](int x, int y) {
-    return std::ranges::all_of(samples, [&](const VisibleSurface& sample) {
-      return are_one_piece(sample.gbuffer.at(x, y), first.at(x, y), kSamePiece);
-    });
+    return std::ranges::all_of(
+        samples, [&](const Gbuffer* sample) { return are_one_piece(sample->at(x, y), first.at(x, y), kSamePiece); });
   });
 }
 
@@ -65,17 +64,17 @@ PixelFlags told_by_corners(const Gbuffer& gbuffer, const PixelFlags& even, int s
   });
 }
 
-PixelFlags hidden_pixels(const Transport& transport, std::span<const VisibleSurface> samples) {
+PixelFlags hidden_pixels(const Transport& transport, PixelSamples samples) {
   constexpr int kBlock = 2;
-  const Gbuffer& gbuffer = samples.front().gbuffer;
+  const Gbuffer& gbuffer = *samples.front();
   const auto shows_pane = [&](std::size_t i) {
-    return std::ranges::any_of(samples, [&](const VisibleSurface& s) { return transport.meets_pane(s.hits[i]); });
+    return std::ranges::any_of(samples, [&](const Gbuffer* s) { return transport.meets_pane({s->triangles[i]}); });
   };
   const auto is_hidden = [&](int x, int y) {
     const std::size_t i = gbuffer.index(x, y);
-    const auto seen = std::ranges::find_if(samples, [&](const VisibleSurface& s) { return s.hits[i].any(); });
+    const auto seen = std::ranges::find_if(samples, [&](const Gbuffer* s) { return s->triangles[i] != kNoTriangle; });
     return seen != samples.end() && !shows_pane(i) &&
-           transport.open_share(spot_at(transport.rays(), *seen, x, y)) < kMostlyHidden;
+           transport.open_share(spot_at(transport.rays(), **seen, x, y)) < kMostlyHidden;
   };
   const auto decides = [](int x, int y) { return x % kBlock == 0 && y % kBlock == 0; };
   const PixelFlags decided = flags_of(gbuffer, [&](int x, int y) { return decides(x, y) && is_hidden(x, y); });

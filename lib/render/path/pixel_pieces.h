@@ -12,14 +12,17 @@
 
 namespace goniochrome::render {
 
+// The G-buffers of the samples of all pixels, with triangles: at most 16.
+using PixelSamples = std::span<const Gbuffer* const>;
+
 // One flag for each pixel.
 using PixelFlags = std::vector<std::uint8_t>;
 
-// Which samples meet the scene or its floor; at most 16 samples.
-Coverage coverage(std::span<const VisibleSurface> samples);
+// Which samples meet the scene or its floor.
+Coverage coverage(PixelSamples samples);
 
 // Pixels whose samples all show one piece, by part and normal.
-PixelFlags even_pixels(std::span<const VisibleSurface> samples);
+PixelFlags even_pixels(PixelSamples samples);
 
 // The distance of pixels that are sampled first, a power of two: at least `least` of so many points are left.
 int first_spacing(std::size_t points, std::size_t least);
@@ -35,6 +38,6 @@ constexpr double kMostlyHidden = 0.5;
 // Pixels of the mesh that are so hidden, by their first sample. Both sums have the same mean, so that one pixel decides
 // for others beside it on its part. Where a pane is seen, the picture has what is behind as well, and no pixel is
 // hidden.
-PixelFlags hidden_pixels(const Transport& transport, std::span<const VisibleSurface> samples);
+PixelFlags hidden_pixels(const Transport& transport, PixelSamples samples);
 
 }  // namespace goniochrome::render

@@ -18,25 +18,8 @@ constexpr double kStopShare = 0.35;
 }  // namespace
 
 int corrected_together(int width, int height) {
-  constexpr double kMostBytes = 4e8, kBytesOfPixel = sizeof(rays::Hit) + 4 * sizeof(float) + sizeof(std::uint32_t);
+  constexpr double kMostBytes = 4e8, kBytesOfPixel = 4 * sizeof(float) + sizeof(std::uint32_t);
   return std::clamp(static_cast<int>(kMostBytes / (kBytesOfPixel * width * height)), 4, 16);
-}
-
-VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer) {
-  VisibleSurface surface;
-  surface.gbuffer = gbuffer;
-  surface.hits.resize(static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height));
-  parallel_for(static_cast<std::size_t>(gbuffer.height), kCorrectedRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < gbuffer.width; ++x) {
-        if (gbuffer.part(x, y) < 0) continue;
-        const MeshPoint at = mesh_point(mesh, gbuffer, x, y);
-        surface.hits[gbuffer.index(x, y)] = {at.triangle, static_cast<float>(at.shares[1]),
-                                             static_cast<float>(at.shares[2]), 0};
-      }
-    }
-  });
-  return surface;
 }
 
 color::Rgb Backdrop::at(const rays::Float3& direction) const {
@@ -63,13 +46,7 @@ void CorrectionNoise::add(const PathPicture& one, int groups) {
   reached = reached && one.reached, dark = dark && one.dark;
 }
 
-std::vector<const Gbuffer*> gbuffers_of(const std::vector<VisibleSurface>& samples) {
-  std::vector<const Gbuffer*> gbuffers;
-  for (const VisibleSurface& sample : samples) gbuffers.push_back(&sample.gbuffer);
-  return gbuffers;
-}
-
-void add_surroundings(const Transport& transport, const std::vector<const Gbuffer*>& samples, const Backdrop& backdrop,
+void add_surroundings(const Transport& transport, PixelSamples samples, const Backdrop& backdrop,
                       const RayEffects& effects, float gain, image::Image& picture) {
   const rays::RayScene& scene = transport.rays();
   const Gbuffer& first = *samples.front();
@@ -108,12 +85,11 @@ PathRequest correction_request(const RayEffects& effects, int bounces, double to
   return paths;
 }
 
-PathPicture add_correction(const Transport& transport, const std::vector<VisibleSurface>& samples,
-                           const PathRequest& request, const image::Image& before, float gain, image::Image& picture) {
+PathPicture add_correction(const Transport& transport, PixelSamples samples, const PathRequest& request,
+                           const image::Image& before, float gain, image::Image& picture) {
   PathPicture drawn = path_picture(transport, samples, &before, request);
   for (const PathPoint& point : drawn.points) {
-    float* pixel =
-        &picture.data[samples.front().gbuffer.index(point.x, point.y) * static_cast<std::size_t>(picture.channels)];
+    float* pixel = &picture.data[samples.front()->index(point.x, point.y) * static_cast<std::size_t>(picture.channels)];
     for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>(point.radiance[c]);
   }
   return drawn;

@@ -10,10 +10,6 @@
 
 namespace goniochrome::render {
 
-// The surface behind a rasterized G-buffer of the mesh: the points on the very triangles that were drawn, so that a
-// pixel on an edge is corrected as the surface that it shows. The G-buffer must have triangles.
-VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer);
-
 // Samples of a pixel are corrected together, as many as there is memory for: 4 to 16.
 int corrected_together(int width, int height);
 
@@ -49,17 +45,15 @@ struct Backdrop {
 double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Backdrop& backdrop,
                     const RayEffects& effects, double white_luminance);
 
-std::vector<const Gbuffer*> gbuffers_of(const std::vector<VisibleSurface>& samples);
-
 // Adds `gain` times what each of these samples of the pixels shows beside the mesh: the floor, whose ground is shaded,
 // or, above the horizon, the background. Where these points are the floor, it adds their coverage.
-void add_surroundings(const Transport& transport, const std::vector<const Gbuffer*>& samples, const Backdrop& backdrop,
+void add_surroundings(const Transport& transport, PixelSamples samples, const Backdrop& backdrop,
                       const RayEffects& effects, float gain, image::Image& picture);
 
 // Adds `gain` times the correction, the mean over these samples of each pixel, to the first three channels of the
 // picture, which holds radiance times coverage.
 // `before` is the picture without corrections; it tells how visible noise is. Bit-identical for any number of threads.
-PathPicture add_correction(const Transport& transport, const std::vector<VisibleSurface>& samples,
-                           const PathRequest& request, const image::Image& before, float gain, image::Image& picture);
+PathPicture add_correction(const Transport& transport, PixelSamples samples, const PathRequest& request,
+                           const image::Image& before, float gain, image::Image& picture);
 
 }  // namespace goniochrome::render

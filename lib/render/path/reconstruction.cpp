@@ -50,11 +50,16 @@ color::Rgb half(const Predicted& p, std::size_t which) {
   return {p[3 * which], p[3 * which + 1], p[3 * which + 2]};
 }
 
+bool at_edge(const ShownPoint& point) {
+  return !point.pieces.empty();
+}
+
+// The image of the points at edges or of all others, without those that have no value.
 SurfaceImage image_of(int width, int height, const std::vector<ShownPoint>& points,
-                      const std::vector<Predicted>& values) {
+                      const std::vector<Predicted>& values, bool at_edges) {
   SurfaceImage image(width, height);
   each_point(points.size(), [&](std::size_t n) {
-    if (!points[n].pieces.empty() || std::isnan(values[n][0])) return;
+    if (at_edge(points[n]) != at_edges || std::isnan(values[n][0])) return;
     const ShownPiece& p = points[n].piece;
     const std::size_t i = image.at(points[n].x, points[n].y);
     image.weight[i] = 1, image.part[i] = static_cast<float>(p.part);
@@ -107,38 +112,37 @@ SurfaceImage coarser(const SurfaceImage& fine) {
   return image;
 }
 
-// The linear functions around each element of an image, which lies on a level of the pyramid.
+// The linear functions around each element of some rows of an image, which lies on a level of the pyramid.
 class Fits {
  public:
-  Fits(const SurfaceImage& image, const Filter& filter) : image_(image), filter_(filter) {
+  Fits(const SurfaceImage& image, const Filter& filter, int begin, int end)
+      : image_(image), filter_(filter), begin_(begin) {
     const auto width = static_cast<std::size_t>(image.width);
     const std::size_t row = (width + SurfaceImage::kLanes - 1) / SurfaceImage::kLanes * SurfaceImage::kLanes;
-    coefficients_.resize(kCoefficients * width * static_cast<std::size_t>(image.height));
-    parallel_for(static_cast<std::size_t>(image.height), 1, [&](std::size_t begin, std::size_t end) {
-      std::vector<float> planes(kCoefficients * row);
-      std::array<float*, kCoefficients> plane{};
-      for (std::size_t k = 0; k < kCoefficients; ++k) plane[k] = &planes[k * row];
-      for (std::size_t y = begin; y < end; ++y) {
-        fit_row(image, filter.window, static_cast<int>(y), plane.data());
-        float* at = &coefficients_[kCoefficients * width * y];
-        for (std::size_t x = 0; x < width; ++x)
-          for (std::size_t k = 0; k < kCoefficients; ++k) *at++ = plane[k][x];
-      }
-    });
+    coefficients_.reserve(kCoefficients * width * static_cast<std::size_t>(end - begin));
+    std::vector<float> planes(kCoefficients * row);
+    std::array<float*, kCoefficients> plane{};
+    for (std::size_t k = 0; k < kCoefficients; ++k) plane[k] = &planes[k * row];
+    for (int y = begin; y < end; ++y) {
+      fit_row(image, filter.window, y, plane.data());
+      for (std::size_t x = 0; x < width; ++x)
+        for (std::size_t k = 0; k < kCoefficients; ++k) coefficients_.push_back(plane[k][x]);
+    }
   }
 
   Predicted at(const ShownPoint& point) const {
-    if (point.pieces.empty()) {
-      const bool own_fit = filter_.level == 0 && image_.weight[image_.at(point.x, point.y)] > 0;
-      if (own_fit) return own(point);
-      return about(point.x, point.y, point.piece, filter_.level == 0 ? kFarReach : kNearReach);
-    }
+    if (!at_edge(point)) return of_piece(point);
     Predicted sum{};
     for (const ShownPiece& piece : point.pieces) {
       const Predicted one = about(point.x, point.y, piece, kFarReach);
       for (std::size_t c = 0; c < kHalvesChannels; ++c) sum[c] += piece.share * one[c];
     }
     return sum;
+  }
+  // The light of its one piece, as if it were at no edge.
+  Predicted of_piece(const ShownPoint& point) const {
+    if (filter_.level == 0 && image_.weight[image_.at(point.x, point.y)] > 0) return own(point);
+    return about(point.x, point.y, point.piece, filter_.level == 0 ? kFarReach : kNearReach);
   }
 
  private:
@@ -147,7 +151,7 @@ class Fits {
   // By feature and channel.
   const float* coefficients(int x, int y) const {
     const auto width = static_cast<std::size_t>(image_.width);
-    return &coefficients_[kCoefficients * (static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x))];
+    return &coefficients_[kCoefficients * (static_cast<std::size_t>(y - begin_) * width + static_cast<std::size_t>(x))];
   }
   Predicted own(const ShownPoint& point) const {
     Predicted result;
@@ -205,15 +209,26 @@ class Fits {
 
   const SurfaceImage& image_;
   const Filter& filter_;
+  int begin_;                        // the first row
   std::vector<float> coefficients_;  // by element
 };
 
-std::vector<Predicted> predictions(const Filter& filter, const SurfaceImage& image,
-                                   const std::vector<ShownPoint>& points) {
-  std::vector<Predicted> result(points.size());
-  const Fits fits(image, filter);
-  each_point(points.size(), [&](std::size_t n) { result[n] = fits.at(points[n]); });
-  return result;
+// Calls visit(fits, n) for each point, where the fits have the rows about it: bands of rows are fitted one by one,
+// because the functions of a whole image fill more memory than all else.
+template <class Visit>
+void each_fit(const Filter& filter, const SurfaceImage& image, const std::vector<ShownPoint>& points,
+              const Visit& visit) {
+  constexpr int kAround = 1;  // rows on each side of those in which points lie
+  const int rows = std::max(16, 64 >> filter.level), bands = (image.height + rows - 1) / rows;
+  parallel_for(static_cast<std::size_t>(bands), 1, [&](std::size_t first, std::size_t last) {
+    for (int band = static_cast<int>(first); band < static_cast<int>(last); ++band) {
+      const int begin = band * rows, end = std::min(image.height, begin + rows);
+      const Fits fits(image, filter, std::max(0, begin - kAround), std::min(image.height, end + kAround));
+      auto point = std::ranges::lower_bound(points, begin << filter.level, {}, &ShownPoint::y);
+      for (; point != points.end() && point->y >> filter.level < end; ++point)
+        visit(fits, static_cast<std::size_t>(point - points.begin()));
+    }
+  });
 }
 
 // The variance of the mean of two halves, whose difference is noise alone.
@@ -254,11 +269,15 @@ Predictions all_predictions(int width, int height, const std::vector<ShownPoint>
     for (std::size_t c = 0; c < kHalvesChannels; ++c)
       predicted[0][n][c] = static_cast<float>(halves[n][c / 3][static_cast<int>(c % 3)]);
   });
-  SurfaceImage image = image_of(width, height, points, predicted[0]);
+  SurfaceImage image = image_of(width, height, points, predicted[0], false);
   for (int level = 0; level < kLevels; ++level) {
     if (level > 0) image = coarser(image);
-    for (std::size_t f = 0; f < kFilters.size(); ++f)
-      if (kFilters[f].level == level) predicted[f + 1] = predictions(kFilters[f], image, points);
+    for (std::size_t f = 0; f < kFilters.size(); ++f) {
+      if (kFilters[f].level != level) continue;
+      predicted[f + 1].resize(points.size());
+      each_fit(kFilters[f], image, points,
+               [&](const Fits& fits, std::size_t n) { predicted[f + 1][n] = fits.at(points[n]); });
+    }
   }
   return predicted;
 }
@@ -269,19 +288,12 @@ std::vector<Values> neighborhood_means(int width, int height, const std::vector<
                                        const std::vector<Values>& of) {
   std::vector<Values> result = of;
   for (const bool at_edges : {false, true}) {
-    std::vector<std::size_t> numbers;
-    std::vector<ShownPoint> kind;
-    std::vector<Values> values;
-    for (std::size_t n = 0; n < points.size(); ++n) {
-      if (points[n].pieces.empty() == at_edges) continue;
-      numbers.push_back(n), values.push_back(of[n]);
-      kind.push_back({points[n].x, points[n].y, points[n].piece});
-    }
-    SurfaceImage image = image_of(width, height, kind, values);
+    SurfaceImage image = image_of(width, height, points, of, at_edges);
     for (int level = 0; level < kErrorMean.level; ++level) image = coarser(image);
-    const std::vector<Values> means = predictions(kErrorMean, image, kind);
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-      if (!std::isnan(means[i][0])) result[numbers[i]] = means[i];
+    each_fit(kErrorMean, image, points, [&](const Fits& fits, std::size_t n) {
+      if (at_edge(points[n]) != at_edges) return;
+      if (const Values mean = fits.of_piece(points[n]); !std::isnan(mean[0])) result[n] = mean;
+    });
   }
   return result;
 }
@@ -335,20 +347,12 @@ float squared_error(const Predictions& predicted, const Measured& measured, std:
   return std::max({mean[choice], own[choice] / kSpike, 1e-6F}) + bias;
 }
 
-// Moves points to the least coordinates that an image of them can have, and returns the size of that.
-std::array<int, 2> moved_to_corner(std::vector<ShownPoint>& points) {
-  if (points.empty()) return {0, 0};
-  const auto [left, right] = std::ranges::minmax(points, {}, &ShownPoint::x);
-  const int x = left.x, y = points.front().y, width = right.x - x + 1, height = points.back().y - y + 1;
-  for (ShownPoint& point : points) point.x -= x, point.y -= y;
-  return {width, height};
-}
-
 }  // namespace
 
-Reconstruction reconstruction(std::vector<ShownPoint> points, const std::vector<Halves>& halves,
+Reconstruction reconstruction(const std::vector<ShownPoint>& points, const std::vector<Halves>& halves,
                               const std::vector<color::Rgb>& beside, double white_luminance) {
-  const auto [width, height] = moved_to_corner(points);
+  const int width = points.empty() ? 0 : std::ranges::max(points, {}, &ShownPoint::x).x + 1,
+            height = points.empty() ? 0 : points.back().y + 1;
   const Predictions predicted = all_predictions(width, height, points, halves);
   const Measured errors = measured(width, height, points, predicted, beside, white_luminance);
   Reconstruction result;

@@ -25,7 +25,7 @@ struct ShownPiece {
 // At an edge a pixel shows several pieces, and is reconstructed as their sum. Other pixels show one, and are what
 // filters learn from.
 struct ShownPoint {
-  int x = 0, y = 0;  // pixel
+  int x = 0, y = 0;  // pixel, from any corner above and left of all points; the nearest takes the least memory
   ShownPiece piece;
   std::vector<ShownPiece> pieces = {};  // at edges
 };
@@ -43,7 +43,7 @@ struct Reconstruction {
 
 // `beside` is what each point shows beside the light that is reconstructed; with it, errors are seen before a white of
 // this luminance. Points come row by row, at most one for each pixel. Bit-identical for any number of threads.
-Reconstruction reconstruction(std::vector<ShownPoint> points, const std::vector<Halves>& halves,
+Reconstruction reconstruction(const std::vector<ShownPoint>& points, const std::vector<Halves>& halves,
                               const std::vector<color::Rgb>& beside, double white_luminance);
 
 }  // namespace goniochrome::render

@@ -95,7 +95,7 @@ TEST_P(AnotherCoat, ShowsItsImageAsItGoesWithTheView) {
   LobeTransportRequest request;
   request.tolerance_de00 = 5, request.bounces = 1;
   const LobeTransport t = stage.traced(request).transport;
-  const std::vector<float> views_deg = view_angles_deg(t, {&stage.surface.gbuffer});
+  const std::vector<float> views_deg = view_angles_deg(t, {&stage.surface});
   const TransportShader shader(t, views_deg);
   const auto image_of = [&](double index, bool by_view) {
     paint::LobeFit image = matt({});

@@ -424,7 +424,7 @@ TEST(TracedSurface, TexturesAndBrushedPaintsAreThoseOfTheEngineCpu) {
   Frame frame;
   ASSERT_TRUE(renderer->draw({Camera::orbit(stage.mesh, 20, 20, 1, 30, 1), 96, 96, 1, true}, frame).ok());
   const Gbuffer& g = *frame.gbuffer;
-  const VisibleSurface surface = visible_surface(transport.rays(), g.rays, 96, 96);
+  const Gbuffer surface = visible_surface(transport.rays(), g.rays, 96, 96);
   int seen[2] = {0, 0}, off[2] = {0, 0}, flat = 0;
   const double white = 0.05;  // about what both show; differences are told relative to it
   const color::Rgb middle = [&] {
@@ -438,7 +438,7 @@ TEST(TracedSurface, TexturesAndBrushedPaintsAreThoseOfTheEngineCpu) {
   for (int y = 0; y < 96; ++y) {
     for (int x = 0; x < 96; ++x) {
       const int part = g.part(x, y);
-      if (part < 0 || surface.gbuffer.part(x, y) != part) continue;
+      if (part < 0 || surface.part(x, y) != part) continue;
       const rays::Spot spot = spot_at(transport.rays(), surface, x, y);
       PathOptions options;
       options.bounces = 0;

@@ -55,7 +55,7 @@ inline paint::LobeFit random_paint(std::mt19937_64& random) {
 // A ball in a cup under that sky.
 struct Stage {
   PathStage path;
-  VisibleSurface surface;
+  Gbuffer surface;
   LobeColumns columns{kExponents};
   std::optional<OpenLight> open;
   WornPaints worn;

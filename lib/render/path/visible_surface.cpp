@@ -40,36 +40,27 @@ void visit_hits(const rays::RayScene& scene, const Rays& rays, int width, int he
 
 }  // namespace
 
-VisibleSurface visible_surface(const rays::RayScene& scene, const Rays& rays, int width, int height) {
-  VisibleSurface surface;
-  Gbuffer& g = surface.gbuffer;
+Gbuffer visible_surface(const rays::RayScene& scene, const Rays& rays, int width, int height) {
+  Gbuffer g;
   g.width = width, g.height = height, g.rays = rays;
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  g.data.assign(4 * pixels, 0.0F);
-  surface.hits.resize(pixels);
+  g.data.assign(4 * pixels, 0.0F), g.triangles.assign(pixels, kNoTriangle);
   const rays::Float3 eye = scene.local(rays.eye);
   visit_hits(scene, rays, width, height, {}, [&](std::size_t at, const rays::Hit& hit, const rays::Float3& direction) {
     const rays::Spot spot = scene.spot(hit, eye, direction);
     const int part = spot.inside ? -(spot.part + 1) : spot.part + 1;
     const float data[4] = {spot.shading.x, spot.shading.y, spot.shading.z, static_cast<float>(part)};
     std::ranges::copy(data, &g.data[4 * at]);
-    surface.hits[at] = hit;
+    g.triangles[at] = hit.triangle;
   });
-  return surface;
+  return g;
 }
 
 Gbuffer mesh_gbuffer(const rays::RayScene& scene, const Rays& rays, int width, int height) {
-  VisibleSurface surface = visible_surface(scene, rays, width, height);
-  Gbuffer gbuffer = std::move(surface.gbuffer);
-  gbuffer.triangles.assign(surface.hits.size(), kNoTriangle);
-  for (std::size_t i = 0; i < surface.hits.size(); ++i) {
-    if (surface.hits[i].triangle == rays::kFloor) {
-      std::fill_n(&gbuffer.data[4 * i], 4, 0.0F);
-    } else if (surface.hits[i].any()) {
-      gbuffer.triangles[i] = surface.hits[i].triangle;
-    }
-  }
-  return gbuffer;
+  Gbuffer g = visible_surface(scene, rays, width, height);
+  for (std::size_t i = 0; i < g.triangles.size(); ++i)
+    if (g.triangles[i] == rays::kFloor) std::fill_n(&g.data[4 * i], 4, 0.0F), g.triangles[i] = kNoTriangle;
+  return g;
 }
 
 Coverage coverage(const rays::RayScene& scene, const Rays& rays, int width, int height,
@@ -87,17 +78,14 @@ Coverage coverage(const rays::RayScene& scene, const Rays& rays, int width, int 
   return result;
 }
 
-rays::Spot spot_at(const rays::RayScene& scene, const VisibleSurface& surface, int x, int y) {
-  const Gbuffer& g = surface.gbuffer;
-  return scene.spot(surface.hits[static_cast<std::size_t>(y) * g.width + x], scene.local(g.rays.eye),
-                    rays::float3(g.rays.direction(x + 0.5, y + 0.5)));
-}
-
-RayPoint ray_point(const rays::RayScene& scene, const mesh::Mesh& mesh, const Gbuffer& gbuffer, int x, int y) {
-  const MeshPoint at = mesh_point(mesh, gbuffer, x, y);
-  const rays::Hit hit{at.triangle, static_cast<float>(at.shares[1]), static_cast<float>(at.shares[2]), 0};
-  const Vec3 to_viewer = gbuffer.to_viewer(x, y);
-  return {scene.spot(hit, scene.local(gbuffer.rays.eye), rays::float3(-to_viewer)), rays::float3(to_viewer)};
+rays::Spot spot_at(const rays::RayScene& scene, const Gbuffer& g, int x, int y) {
+  const rays::Float3 eye = scene.local(g.rays.eye), direction = rays::float3(g.rays.direction(x + 0.5, y + 0.5));
+  const std::uint32_t triangle = g.triangles[g.index(x, y)];
+  if (triangle == rays::kFloor) return scene.spot(floor_hit(scene, eye, direction), eye, direction);
+  const auto [a, b, c] = scene.corners(triangle);
+  const std::array<double, 3> shares =
+      within(plane_hit({rays::vec3(a), rays::vec3(b), rays::vec3(c)}, rays::vec3(eye), rays::vec3(direction)).shares);
+  return scene.spot({triangle, static_cast<float>(shares[1]), static_cast<float>(shares[2]), 0}, eye, direction);
 }
 
 rays::Hit floor_hit(const rays::RayScene& scene, const rays::Float3& eye, const rays::Float3& direction) {

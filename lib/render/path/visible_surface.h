@@ -11,15 +11,11 @@
 
 namespace goniochrome::render {
 
-struct VisibleSurface {
-  Gbuffer gbuffer;              // the floor is the part after the mesh's
-  std::vector<rays::Hit> hits;  // pixel by pixel
-};
+// The points of all pixels that `rays` names, with triangles; the floor is the part after the mesh's. Bit-identical for
+// any number of threads.
+Gbuffer visible_surface(const rays::RayScene& scene, const Rays& rays, int width, int height);
 
-// The points of all pixels that `rays` names. Bit-identical for any number of threads.
-VisibleSurface visible_surface(const rays::RayScene& scene, const Rays& rays, int width, int height);
-
-// The G-buffer of the mesh alone, with triangles: the floor is no part of the mesh.
+// The visible surface of the mesh alone: the floor is no part of it.
 Gbuffer mesh_gbuffer(const rays::RayScene& scene, const Rays& rays, int width, int height);
 
 // Which of the samples of each pixel meet the scene, or its floor: bit i stands for the sample that is shifted by
@@ -30,18 +26,15 @@ struct Coverage {
 Coverage coverage(const rays::RayScene& scene, const Rays& rays, int width, int height,
                   const std::vector<std::array<double, 2>>& shifts);
 
-// The surface point of a pixel, which shows something.
-rays::Spot spot_at(const rays::RayScene& scene, const VisibleSurface& surface, int x, int y);
+// The surface point of a pixel, which shows something: on the very triangle that a ray met. The G-buffer must have
+// triangles.
+rays::Spot spot_at(const rays::RayScene& scene, const Gbuffer& gbuffer, int x, int y);
 
 // A visible point.
 struct RayPoint {
   rays::Spot spot;
   rays::Float3 to_viewer;
 };
-
-// The point that a pixel of a rasterized G-buffer shows, on the very triangle that was drawn there. The pixel must show
-// the mesh, and the G-buffer must have triangles.
-RayPoint ray_point(const rays::RayScene& scene, const mesh::Mesh& mesh, const Gbuffer& gbuffer, int x, int y);
 
 // The place of the floor that a pixel beside the mesh sees, or nothing above the horizon.
 rays::Hit floor_hit(const rays::RayScene& scene, const rays::Float3& eye, const rays::Float3& direction);

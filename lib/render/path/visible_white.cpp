@@ -16,13 +16,12 @@ constexpr std::uint64_t kBatches = 4;
 
 }  // namespace
 
-double visible_white(const Transport& transport, const VisibleSurface& surface, int bounces, std::uint64_t seed) {
-  const Gbuffer& g = surface.gbuffer;
+double visible_white(const Transport& transport, const Gbuffer& g, int bounces, std::uint64_t seed) {
   const rays::RayScene& scene = transport.rays();
   std::vector<std::size_t> lit;
-  for (std::size_t i = 0; i < surface.hits.size(); ++i) {
-    if (!surface.hits[i].any()) continue;
-    if (transport.emitters().radiance(scene.part(surface.hits[i].triangle)) == color::Rgb{}) lit.push_back(i);
+  for (std::size_t i = 0; i < g.triangles.size(); ++i) {
+    if (g.triangles[i] == kNoTriangle) continue;
+    if (transport.emitters().radiance(scene.part(g.triangles[i])) == color::Rgb{}) lit.push_back(i);
   }
   if (lit.empty()) return 0;
   PathOptions options;
@@ -35,7 +34,7 @@ double visible_white(const Transport& transport, const VisibleSurface& surface, 
       const std::size_t i = lit[(2 * k + 1) * lit.size() / (2 * count)];
       const int x = static_cast<int>(i % static_cast<std::size_t>(g.width)),
                 y = static_cast<int>(i / static_cast<std::size_t>(g.width));
-      const PointTransport at(transport, options, spot_at(scene, surface, x, y), rays::float3(g.to_viewer(x, y)));
+      const PointTransport at(transport, options, spot_at(scene, g, x, y), rays::float3(g.to_viewer(x, y)));
       color::Rgb white = at.deterministic();
       for (std::uint64_t batch = 0; batch < kBatches && !at.certain(); ++batch)
         white += (1.0 / kBatches) * at.batch_shares(mixed(mixed(seed, i), batch)).sum();

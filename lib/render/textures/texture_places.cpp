@@ -45,14 +45,6 @@ using Uv = std::array<double, 2>;
 // So many rows are done at a time.
 constexpr std::size_t kPlaceRowsAtOnce = 16;
 
-// The nearest shares within the triangle, as mesh_point() has them.
-std::array<double, 3> within(std::array<double, 3> shares) {
-  double sum = 0;
-  for (double& share : shares) share = std::max(0.0, share), sum += share;
-  for (double& share : shares) share /= sum;
-  return shares;
-}
-
 // The texture coordinates of a triangle's corners.
 class Unwrapped {
  public:
