@@ -11,9 +11,9 @@ TARGETS = (5, 2, 1, 0.5, 0.1)
 
 def ladder(quick):
     """The settings that are tried."""
-    bases = ("b5",) if quick else ("b5", "b7", "steep")
-    fits = (("l1", False), ("l1", True)) if quick else (("l1", False), ("l1", True), ("deltae", True))
-    tolerances, effects = ((1e-1, 1e-3), ("none", "0.5")) if quick else ((1e-1, 1e-2, 1e-3), ("none", "0.5", "all"))
+    bases = ("b5",) if quick else ("b5", "b7")
+    fits = (("l1", False), ("l1", True)) if quick else (("l1", True), ("deltae", True))
+    tolerances, effects = ((1e-1, 1e-3), ("none", "0.5")) if quick else ((1e-1, 1e-3), ("none", "0.5", "all"))
     integrals = ("integral 0.5",) if quick else ("integral 2", "integral 0.5", "integral 0.1")
     summed = [Settings(b, *fits[-1], 1e-1, e) for e, b in itertools.product(integrals, bases)]
     return [Settings(b, *f, t, e) for t, e, b, f in itertools.product(tolerances, effects, bases, fits)] + summed

@@ -15,6 +15,7 @@ from .study import Run
 
 # The studies in the order of the page. Each is a module beside this one with study(run) -> Study.
 STUDIES = {
+    "paths": "pictures and paths: error against time for tolerances, limits, engines and bounces, and growth",
     "prefilter": "prefiltering: tolerance and size against the exact sum",
     "basis": "choosing a basis: starts, method and number of lobes against what its lobes can do",
     "fit": "fitting: method, lobes and target against the measured colors",
@@ -30,7 +31,6 @@ STUDIES = {
     "search": "search: library size, tree and scan against brute force",
     "growth": "growth of times with probes, maps, paints, pixels and lights, and where it is steepest",
     "frames": "frame rates: lights, lobes and engines, of paints and of lobes in each texel, and the cost of the operator",
-    "paths": "paths: error against time for samples, engines, effects and bounces, and growth with triangles, pixels and lights",
     "rays": "effects of rays: what each changes in ten scenes, by the first pass and in truth",
     "chain": "the whole chain: where the error of a picture comes from, and what it costs to lower it",
 }

@@ -13,7 +13,7 @@ from shared.tools import Failed
 from .scene import CAMERA
 from .study import Figure, Reading, Study
 
-PAINTS = ("signal_red", "silver_black_flop")
+PAINTS = ("silver_black_flop",)
 VIEW = CAMERA[CAMERA.index("--camera"):]  # without the size and the samples, which this study varies
 SIZE, FINER = (240, 135), 4  # The reference is FINER times as wide and high and has 16 samples in each of its pixels.
 DEFAULT = ("cpu", 4)
@@ -77,7 +77,7 @@ def readings_of(run, paint):
 
 
 def study(run):
-    by_paint = {paint: list(readings_of(run, paint)) for paint in run.named(PAINTS[:1] if run.quick else PAINTS)}
+    by_paint = {paint: list(readings_of(run, paint)) for paint in run.named(PAINTS)}
     figures = [Figure(f"edges-{paint}", f"{paint}: mean dE00 of the pixels on its outline against time", readings,
                       "time of a frame, all samples (s)", "dE00 on the outline, mean",
                       note="From left to right: 1, 4 and 16 samples. A single sample is drawn from the buffers that the planning "

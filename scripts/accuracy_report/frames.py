@@ -24,7 +24,7 @@ def engines(run, words):
 def frame_ms(run, *words, options=((),)):
     """The least of several frames for each of these options, which take turns, in ms of the clock."""
     frames = [[run.tool("render-osmesa", *words, *more)[0]["frame_ms"] for more in options]
-              for _ in range(2 if run.quick else 5)]
+              for _ in range(2)]
     return [min(each) for each in zip(*frames)]
 
 
@@ -46,7 +46,7 @@ def study(run):
     drawn = None
     for surface, lobes, words in surfaces(run):
         drawn = drawn or engines(run, (*scene, *words, "--light", LIGHTS[0], "--size", "64x64"))
-        for count in (1, 3) if run.quick else (1, 2, 3):
+        for count in (1, 3):
             lights = [word for light in LIGHTS[:count] for word in ("--light", light)]
             rates = [1e3 / frame_ms(run, *scene, *words, *lights, "--size", "800x600", "--engine", engine)[0]
                      for engine in drawn]

@@ -13,7 +13,7 @@ SIZES = {"sphere": "320x320", "vehicle": "640x360", "shape": "320x180"}
 LIGHTS = {"studio": "studio.exr", "sky": "outdoor.exr"}
 MEASURED = {"studio, measured": "studio_small_03_1k.hdr", "sky, measured": "rooitou_park_1k.hdr"}
 PLANNED = (1.5, 0.8)  # tolerances that the plan is given
-SAMPLES = 15  # beside the first one, over which the time of a frame is taken
+SAMPLES = 7  # beside the first one, over which the time of a frame is taken
 
 
 class Stage:
@@ -49,7 +49,7 @@ class Stage:
         found = {name: self.run.data / file for name, file in LIGHTS.items()}
         if self.shared and not self.run.quick:
             measured = {name: self.shared / "probes" / file for name, file in MEASURED.items()}
-            found |= {name: path for name, path in measured.items() if path.is_file()}
+            found = {name: path for name, path in measured.items() if path.is_file()} or found
         return found
 
     def light(self, name, source):
@@ -72,7 +72,7 @@ class View:
         return self.run.tool("render-osmesa", *self.words, "--effects", *effects, *more)
 
     def checked(self, effects):
-        checks = 40 if self.run.quick else 150
+        checks = 40 if self.run.quick else 80
         return self.drawn(effects, "--samples", 1, "--check", f"{checks},model")[0]
 
     def seconds(self, effects):
@@ -120,7 +120,7 @@ def study(run):
     stage = Stage(run)
     readings = []
     for paint in stage.paints:
-        for mesh in list(stage.meshes)[: 1 if run.quick else None]:
+        for mesh in list(stage.meshes)[: 1 if run.quick or paint != next(iter(stage.paints)) else None]:
             for probe, source in stage.probes().items():
                 readings += readings_of(run, stage, (paint, mesh, probe), stage.light(probe, source))
     scenes = dict.fromkeys(r.numbers["scene"] for r in readings)

@@ -41,7 +41,7 @@ def sketches(run):
         run.tool("fit-paint", *basis, planted, "-o", run.work / "planted-fitted.xml")
         run.tool("prefilter-envmap", run.probe, *basis, "-o", env)
         lights = {"lamp": (("--light", "35,45"), basis), "environment": (("--env", env), ("--env", env))}
-        widths = (80, 160) if run.quick else (40, 80, 160, 320, 640, 1280)
+        widths = (80, 160) if run.quick else (40, 80, 160, 320, 640)
         readings = []
         for (name, (light, told)), paint, width in itertools.product(lights.items(), ("steel", "ruby"), widths):
             picture, buffers = drawn(run, light, paint, width)

@@ -60,7 +60,7 @@ def holds(predicted, true):
 def figures(stage, mesh, light):
     """(the results of a scene as it is drawn by default and checked, the seconds of it and of the same without rays)"""
     words = stage.words(mesh, light)
-    checked, _ = stage.run.tool("render-osmesa", *words, "--check", "1000,truth")
+    checked, _ = stage.run.tool("render-osmesa", *words, "--check", "300,truth")
     drawn, with_s, _ = stage.run.repeated("render-osmesa", *words)
     _, without_s, _ = stage.run.repeated("render-osmesa", *words, "--effects", "auto,-rays")
     return checked, drawn, with_s, without_s

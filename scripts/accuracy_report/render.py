@@ -8,7 +8,7 @@ from .scene import Scene, Settings
 from .scenes import Stage
 from .study import Figure, Reading, Study
 
-PAINTS = ("signal_red", "silver_black_flop", "blue_to_purple")
+PAINTS = ("silver_black_flop", "blue_to_purple")
 QUARTERS = (2.9296875, 11.71875, 46.875, 187.5, 750, 3000)  # These exponents let one cube hold all lobes in its levels.
 DEFAULT = "0.5"
 TILTS = ("4", "8", "16", "32", "0.005", "0.001")  # the last but one is what --tilts takes by itself
@@ -16,7 +16,7 @@ TILTS = ("4", "8", "16", "32", "0.005", "0.001")  # the last but one is what --t
 
 def choices(run):
     """The settings that are tried: a value of --tolerance, or none or all as a value of --effects."""
-    return ("none", "2", "0.5", "all") if run.quick else ("none", "5", "2", "1", "0.5", "0.2", "0.1", "all")
+    return ("none", "2", "0.5", "all") if run.quick else ("none", "2", "0.5", "0.1", "all")
 
 
 def words(choice):

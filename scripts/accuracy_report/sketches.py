@@ -14,11 +14,10 @@ from shared import colors
 
 from .study import Figure, Reading, Study
 
-# From matt to glossy and from black to white, of every class.
-PAINTS = ("arctic_white", "signal_red", "olive_matte", "jet_black", "silver_fine", "satin_silver", "gunmetal", "candy_red",
-          "gold_metallic", "deep_blue_metallic", "white_pearl", "blue_to_purple")
+# A solid, a metallic, a candy and an interference paint.
+PAINTS = ("arctic_white", "silver_fine", "candy_red", "blue_to_purple")
 MESHES = {"teapot": "teapot.obj", "speed shape": "", "vehicle": "vehicle.obj"}  # Without a file it is the mesh of --mesh.
-WIDTHS = (200, 320, 480, 640, 960)
+WIDTHS = (320, 640)
 LIGHTS = {"lamp": "35,45", "studio": "studio_small_03_1k.hdr", "sky": "rooitou_park_1k.hdr"}
 UNMEASURED = {"studio": "studio.exr", "sky": "outdoor.exr"}  # of testdata, where there are no measurements
 QUICK = {"paints": ("silver_fine", "candy_red"), "meshes": ("speed shape",), "widths": (200, 320)}

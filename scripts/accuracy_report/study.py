@@ -118,7 +118,7 @@ class Run:
     def __init__(self, folder, options):
         self.folder, self.options = folder, options
         self.quick = options.quick
-        self.repeats = 1 if options.quick else 3
+        self.repeats = 1 if options.quick else 2
         self.kept = {}  # the results of stages that several pictures share
         self.paints, self.probe, self.mesh = (p.resolve() for p in (options.paints, options.probe, options.mesh))
         self.output = options.output
