@@ -280,15 +280,14 @@ TEST(Coat, IsInTheColumnsOfATransportAndInPaths) {
     const double z = 0.02 + 0.98 * next(), p = 2 * kPi * next(), s = std::sqrt(1 - z * z);
     return Vec3{s * std::cos(p), s * std::sin(p), z};
   };
-  std::vector<float> values(columns.count());
   double control = 0;
   for (int i = 0; i < 500; ++i) {
     const Vec3 viewer = direction(), light = direction();
     const PaintedPoint point(*traced, {0, 0, 1}, rays::float3(viewer));
-    const LobeKernels kernels(columns, point);
-    kernels.at(rays::float3(light), values.data());
+    const PaintedPoint basis = point.of_basis(columns.exponents);
+    const PaintedPoint::Shares values = basis.shares(rays::float3(light));
     color::Rgb sum;
-    for (std::size_t k = 0; k < columns.count(); ++k) sum += values[k] * (*weights)[k];
+    for (std::size_t k = 0; k < columns.count(); ++k) sum += values.of[k] * (*weights)[k];
     const color::Rgb wanted = light.z * brdf::coated_brdf(paint, light, viewer, {0, 0, 1}, 60),
                      f = rays::vec3(point.at(rays::float3(light)).f_cos);
     paint::LobeFit bare = paint;
@@ -299,7 +298,7 @@ TEST(Coat, IsInTheColumnsOfATransportAndInPaths) {
       EXPECT_NEAR(f[c], wanted[c], 1e-4 * wanted[c] + 1e-7);
       control = std::max(control, std::abs(without[c] / wanted[c] - 1));
     }
-    EXPECT_NEAR(kernels.mirror(), brdf::fresnel_dielectric(viewer.z, 1.54), 1e-5);
+    EXPECT_NEAR(basis.mirror().x, brdf::fresnel_dielectric(viewer.z, 1.54), 1e-5);
   }
   EXPECT_GT(control, 0.5);
 }

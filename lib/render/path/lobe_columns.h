@@ -45,28 +45,4 @@ Result<std::vector<color::Rgb>> column_weights(const LobeColumns& columns, const
 constexpr double kNominalGray = 0.18;
 double nominal_weight(const LobeColumns& columns, std::size_t column);
 
-// The columns at one point: what each sends to the viewer from a direction, and directions drawn for all of them.
-class LobeKernels {
- public:
-  // The arguments must outlive it.
-  LobeKernels(const LobeColumns& columns, const PaintedPoint& point);
-
-  // Writes f cos_i of weight 1 for each column, under the coat of the point and the mirror's 0, and returns the density
-  // (1/sr) by which drawn() gives the direction. Where the direction is below the horizon both are 0.
-  float at(const rays::Float3& to_light, float* values) const;
-  // The values integrated over the disc of a lamp that has no place, relative to pi sin^2 of its radius; the mirror's
-  // is 0. Whether there is anything above the horizon. `tabled` as in PaintedPoint::toward_disc().
-  bool toward_disc(const Light& light, bool tabled, float* values) const;
-  // A direction drawn evenly from the cosine and the lobes, by numbers in [0,1). It may lie below the horizon.
-  rays::Float3 direction(double choice, double u, double v) const;
-  // The coat's Fresnel reflectance to the viewer: what the mirror sends back.
-  float mirror() const { return mirror_; }
-
- private:
-  const LobeColumns& columns_;
-  const PaintedPoint& point_;
-  rays::Frame frame_;
-  float mirror_ = 0, axes_total_ = 1;
-};
-
 }  // namespace goniochrome::render

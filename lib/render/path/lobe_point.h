@@ -8,7 +8,7 @@
 
 #include "render/path/lobe_columns.h"
 #include "render/path/noise.h"
-#include "render/path/transport.h"
+#include "render/path/point_sampler.h"
 
 namespace goniochrome::render {
 
@@ -36,13 +36,11 @@ struct LobeEstimate {
   int freedom = 0;                     // of the covariance
 };
 
-class LobePoint {
+class LobePoint : PointSampler {
  public:
   // `bounces` as in PathOptions. The arguments must outlive the point.
   LobePoint(const Transport& transport, const LobeColumns& columns, const PaintGroups& groups, int bounces,
             const rays::Spot& spot, const rays::Float3& to_viewer);
-  LobePoint(const LobePoint&) = delete;  // its kernels are those of its own surface
-  LobePoint& operator=(const LobePoint&) = delete;
 
   // True if nothing rises above its horizon.
   bool open() const { return open_; }
@@ -69,58 +67,37 @@ class LobePoint {
   // environment without any surface in the way, with add_open_floor(): rays correct it without bias, so that points
   // whose rays are all free have no noise. `open_mirrors` has what the mirror of each point sees of it. Both null: rays
   // alone. `paint` has a weight for each column, or is null.
-  static LobeEstimate estimate(std::span<const LobePoint* const> points, const color::Rgb* open_light,
+  static LobeEstimate estimate(std::span<const LobePoint> points, const color::Rgb* open_light,
                                const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed,
                                const color::Rgb* paint = nullptr);
   // The estimate of this point alone.
   LobeEstimate estimate(const color::Rgb* open_light, int sequences, int directions, std::uint64_t seed) const {
     const color::Rgb* mirror = open_light != nullptr ? open_light + columns_.mirror() : nullptr;
-    const LobePoint* const alone = this;
-    return estimate({&alone, 1}, open_light, mirror, sequences, directions, seed);
+    return estimate({this, 1}, open_light, mirror, sequences, directions, seed);
   }
   static constexpr std::size_t kMostPoints = 16;
 
  private:
-  struct Ray {
-    rays::Float3 direction;
-    bool above = false, occluded = false;
-  };
-  struct Sent;
-  class Classes;
-  struct Sums;
-  Ray drawn_ray(const std::array<double, 4>& numbers) const;
-  std::vector<Ray> traced_rays(int directions, std::uint64_t seed, bool& any_occluded) const;
-  Sent sent(const rays::Hit& hit, const rays::Float3& direction, const Sequence& sequence, std::uint32_t index) const;
-  void add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t index, Sums& sums, int which) const;
-  void add_emitter(const std::array<double, 4>& numbers, Sums& sums, int which) const;
-  void add_mirror(std::uint64_t seed, Sums& sums, int which) const;
-  void add_classes(const rays::Float3& f, const rays::Hit& hit, const Sent& sent, double share, Sums& sums) const;
-  rays::Float3 beside_floor(const rays::Float3& direction) const;
-  void add_pairs(const rays::Hit& hit, const rays::Float3& direction, const float* values, double scale,
-                 const Sequence& sequence, std::uint32_t index, Pairs& pairs) const;
-  bool lamp_values(std::size_t which, const Transport::SeenLamp& lamp, float* values) const;
-  void add_sequence(const std::vector<Ray>& rays, std::uint64_t seed, Sums& sums, int which) const;
-  void add_deterministic(const color::Rgb* open_mirror, double share, std::vector<color::Rgb>& direct) const;
+  struct Column;
+  class SentClasses;
+  class Columns;
+  class SentColumns;
+  class PairColumns;
+  PaintedPoint::Shares mirror() const;
+  PaintedPoint::Shares lamp_columns(std::size_t which, const Transport::SeenLamp& lamp) const;
+  void add_deterministic(const color::Rgb* open_mirror, double share, const color::Rgb* paint,
+                         LobeEstimate& estimate) const;
   // The diffuse part and so many lobes are told by the blocks of an open floor; 0: not even that part.
   std::size_t floor_lobes() const;
-  static LobeEstimate floor_estimate(std::span<const LobePoint* const> points, int sequences, int directions,
+  static LobeEstimate floor_estimate(std::span<const LobePoint> points, int sequences, int directions,
                                      std::uint64_t seed);
   int group_of(const rays::Hit& hit) const {
     return groups_.of_part[static_cast<std::size_t>(transport_.rays().part(hit.triangle))];
   }
-  color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
+  std::size_t class_of(const rays::Hit& hit, PaintGroups::Kind kind) const { return groups_.at(group_of(hit), kind); }
 
-  const Transport& transport_;
   const LobeColumns& columns_;
   const PaintGroups& groups_;
-  PathOptions options_;
-  rays::Spot spot_;
-  PaintedPoint painted_;
-  LobeKernels kernels_;
-  rays::Hit mirror_hit_;
-  float light_chance_ = 0;
-  bool open_ = false;
-  bool on_projected_ = false;  // on a floor that shows the environment
 };
 
 }  // namespace goniochrome::render

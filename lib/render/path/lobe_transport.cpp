@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <numeric>
 
 #include "base/angles.h"
@@ -155,15 +154,13 @@ class Tracing {
     const std::uint32_t place = t.places[i];
     const int x = static_cast<int>(place) % t.width, y = static_cast<int>(place) / t.width;
     const int part = t.part[i];
-    std::deque<LobePoint> points;  // which stay where they are
-    std::vector<const LobePoint*> of_pixel;
+    std::vector<LobePoint> points;
     std::vector<OpenView> views;
     for (const Gbuffer* sample : samples_of(i)) {
       const rays::Spot spot = spot_at(transport_.rays(), *sample, x, y);
       const Vec3 to_viewer = sample->to_viewer(x, y);
       views.push_back({rays::vec3(spot.shading), to_viewer});
-      of_pixel.push_back(
-          &points.emplace_back(transport_, t.columns, t.worn.groups, request_.bounces, spot, rays::float3(to_viewer)));
+      points.emplace_back(transport_, t.columns, t.worn.groups, request_.bounces, spot, rays::float3(to_viewer));
     }
     // Looked up or summed in the first round, and kept for the others; what mirrors see is not.
     std::vector<color::Rgb> open(t.columns.count()), mirrors(points.size());
@@ -184,7 +181,7 @@ class Tracing {
     int of_each = 1;  // batches
     while (of_each * sequences < batches) of_each *= 2;
     const LobeEstimate estimate = LobePoint::estimate(
-        of_pixel, open_ != nullptr ? open.data() : nullptr, mirrors.data(), sequences, of_each * kDirections,
+        points, open_ != nullptr ? open.data() : nullptr, mirrors.data(), sequences, of_each * kDirections,
         mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(batches_[i])), worn_by(part).data());
     const double before = batches_[i], added = estimate.sequences * of_each;
     const double share = added > 0 ? added / (before + added) : 1;

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "render/path/noise.h"
-#include "render/path/transport.h"
+#include "render/path/point_transport.h"
 
 namespace goniochrome::render {
 

@@ -12,7 +12,6 @@ color::Rgb Transport::bounced(const Hit& hit, const Float3& origin, const Float3
   return light.sum();
 }
 
-// This is follow() at a vertex on such a floor, with the light of its first step apart.
 Transport::FloorLight Transport::off_floor(const Hit& hit, const Float3& origin, const Float3& direction, int bounces,
                                            const Sequence& sequence, std::uint32_t index, std::uint32_t set) const {
   if (shaded_ != nullptr) {
@@ -20,13 +19,9 @@ Transport::FloorLight Transport::off_floor(const Hit& hit, const Float3& origin,
     return {shown.direct, bounces > 0 ? shown.into_diffuse : color::Rgb{}};
   }
   const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
-  if (vertex.painted.black()) return {vertex.open, {}};
-  Channels fixed(reflection_);
-  const Next next = step(vertex, sequence.point(index, set), sequence.point(index, set + 1), fixed);
-  FloorLight light{vertex.open + fixed.sum(), {}};
-  if (!next.goes_on() || !next.hit.any() || bounces == 0) return light;
-  light.bounced = fixed.shown(bounced(next.hit, next.start, next.direction, bounces, sequence, index, set + 2));
-  return light;
+  Channels light(reflection_);
+  send(vertex, bounces, sequence, index, set, light);
+  return {vertex.open + light.sum(), light.deeper()};
 }
 
 }  // namespace goniochrome::render

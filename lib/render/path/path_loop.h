@@ -8,6 +8,8 @@
 //   add(scale, light)                      adds light that the path so far reflects
 //   reflect(vertex, f, scale), mirror(vertex, scale), scale(factor)   lengthen the path
 //   size()                                 the most that light of 1 can show at the end of the path
+// or, in the place of scale() and size(), where a path has one surface,
+//   add_deeper(light)                      adds light of further surfaces, in three channels, that this one reflects
 #pragma once
 
 #include <algorithm>
@@ -40,8 +42,10 @@ struct Transport::Vertex {
   bool is_white = false;  // matt white, whatever its paint is
 
   Vertex(const Transport& transport, const rays::Spot& at, const rays::Float3& to_viewer)
+      : Vertex(transport, at, transport.painted(at, to_viewer)) {}
+  Vertex(const Transport& transport, const rays::Spot& at, const PaintedPoint& paint)
       : spot(at),
-        painted(transport.painted(at, to_viewer)),
+        painted(paint),
         receiver(transport.receiver(at, painted)),
         is_projected(transport.is_projected(at)),
         open(is_projected ? transport.open_ground(at) : color::Rgb{}) {
@@ -88,9 +92,10 @@ class Transport::Channels {
   void mirror(const Vertex& vertex, double scale) { path_.reflect(scale * rays::vec3(vertex.painted.mirror())); }
   void scale(double factor) { path_.scale(factor); }
   double size() const { return path_.size(); }
+  void add_deeper(const color::Rgb& light) { deeper_ += path_.shown(light); }
 
   const color::Rgb& sum() const { return sum_; }
-  color::Rgb shown(const color::Rgb& light) const { return path_.shown(light); }
+  const color::Rgb& deeper() const { return deeper_; }
 
  private:
   static void lengthen(PathProduct& path, const Vertex& vertex, const color::Rgb& paint) {
@@ -101,7 +106,7 @@ class Transport::Channels {
     }
   }
   PathProduct path_;
-  color::Rgb sum_;
+  color::Rgb sum_, deeper_;
 };
 
 // Light that is drawn at a vertex, weighed against the same light found by the next ray: together they count it once. A
@@ -195,6 +200,23 @@ Transport::Next Transport::step(const Vertex& vertex, const std::array<double, 4
   const Next next = next_ray(vertex, onward, carrier);
   if (next.goes_on()) add_found(vertex, next, carrier);
   return next;
+}
+
+// Adds the light that one surface sends back: what it gets of lights and floors, and what up to `further` surfaces pass
+// on to it.
+template <class Carrier>
+void Transport::send(const Vertex& vertex, int further, const Sequence& sequence, std::uint32_t index,
+                     std::uint32_t set, Carrier& carrier) const {
+  if (vertex.painted.black()) return;
+  const Next next = step(vertex, sequence.point(index, set), sequence.point(index, set + 1), carrier);
+  if (!next.goes_on() || !next.hit.any()) return;
+  if (is_projected(next.hit)) {
+    const FloorLight floor = off_floor(next.hit, next.start, next.direction, further, sequence, index, set + 2);
+    carrier.add(1, {floor.fixed});
+    carrier.add_deeper(floor.bounced);
+  } else if (further > 0) {
+    carrier.add_deeper(bounced(next.hit, next.start, next.direction, further, sequence, index, set + 2));
+  }
 }
 
 // Adds the light that the surface at `hit` sends back along the ray, its own emission apart.

@@ -1,3 +1,5 @@
+#include "render/path/point_transport.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -5,7 +7,6 @@
 #include "base/angles.h"
 #include "render/effects.h"
 #include "render/path/spectral_paths.h"
-#include "render/path/transport.h"
 
 namespace goniochrome::render {
 
@@ -21,64 +22,72 @@ using rays::kInversePi;
 // direction for each ray, and for points without sums so many.
 constexpr float kFloorParts = 32;
 constexpr std::uint32_t kFloorDirections = 4;
-// The most and least chance that a direction is drawn from the environment where there is one.
-constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F, kFloorLightChance = 0.5F;
 
 }  // namespace
 
-// A direction at the visible point.
-struct PointTransport::Ray {
-  Float3 direction;
-  bool above = false;
-  std::optional<EnvironmentTable::Place> place;  // where the direction was drawn from the environment
-  std::optional<std::uint32_t> place_triangle;   // where it was drawn toward a bright place of the surface
+// Receives light in three channels. In a correction floor_light() and sharp_floor_light() tell the floor whose ground
+// is shaded, and rays tell what the mesh takes from there and sends instead.
+class PointTransport::Surface {
+ public:
+  explicit Surface(const PointTransport& point) : point_(point) {}
+  LightShares shares;
+
+  PaintedPoint::Parts at(const Float3& direction) const { return point_.painted_.parts(direction); }
+  PaintedPoint::Parts mirror() const { return {{}, point_.painted_.mirror(), {}, 0}; }
+  bool wants(const Ray& ray) const {
+    if (!point_.correction_) return ray.occluded || point_.transport_.environment_;
+    return ray.occluded && !(point_.over_ground_ && point_.transport_.is_projected(ray.hit));
+  }
+  void add_sky(const PaintedPoint::Parts& f, double scale, const Ray& ray, const color::Rgb& light) {
+    if (ray.occluded != point_.correction_) return;
+    if (!point_.correction_) return add_light(f, scale, light);
+    color::Rgb& share = point_.over_ground_ && ray.direction.y < 0 ? shares.from_floor : shares.direct;
+    share += -scale * reflect(f.diffuse + f.lobes, point_.open_light(ray.direction, light));
+  }
+  void add_light(const PaintedPoint::Parts& f, double scale, const color::Rgb& light) {
+    shares.direct += scale * reflect(f.diffuse + f.lobes, light);
+  }
+  void add_floor(const PaintedPoint::Parts& f, double scale, const Hit&, const Transport::FloorLight& light) {
+    (point_.over_ground_ ? shares.from_floor : shares.direct) += scale * reflect(f.diffuse + f.lobes, light.fixed);
+    add_sent(f, scale, light.bounced);
+  }
+  void add_sent(const PaintedPoint::Parts& f, double scale, const Hit& hit, const Float3& direction,
+                const Sequence& sequence, std::uint32_t index) {
+    const Transport& t = point_.transport_;
+    add_sent(f, scale, t.bounced(hit, point_.spot_.start, direction, point_.bounces_, sequence, index, 4));
+  }
+
+ private:
+  color::Rgb reflect(const Float3& f, const color::Rgb& light) const { return point_.reflect(f, light); }
+  void add_sent(const PaintedPoint::Parts& f, double scale, const color::Rgb& light) {
+    if (light == color::Rgb{}) return;
+    if (point_.options_.into_lobes) shares.into_lobes += scale * reflect(f.lobes, light);
+    if (point_.options_.into_diffuse) shares.into_diffuse += scale * reflect(f.diffuse, light);
+  }
+  const PointTransport& point_;
 };
 
 PointTransport::PointTransport(const Transport& transport, const PathOptions& options, const Spot& spot,
                                const Float3& to_viewer)
-    : transport_(transport),
+    : PointSampler(transport, options.into_lobes || options.into_diffuse ? options.bounces : 0, spot,
+                   options.white ? PaintedPoint(Float3{kInversePi, kInversePi, kInversePi}, spot.shading, to_viewer)
+                                 : transport.painted(spot, to_viewer)),
       options_(options),
-      spot_(spot),
-      to_viewer_(to_viewer),
-      painted_(options.white ? PaintedPoint(Float3{kInversePi, kInversePi, kInversePi}, spot.shading, to_viewer)
-                             : transport.painted(spot, to_viewer)),
-      on_projected_(transport.is_projected(spot)),
-      correction_(options.correction || on_projected_),
+      correction_(on_projected_ ? !under_mesh_ : options.correction),
       over_ground_(!on_projected_ && transport.shaded_ != nullptr && transport.environment_ != nullptr) {
   if (transport.spectral_ != nullptr) {
     deterministic_ = transport.spectral_->emitted(spot);
     certain_ = painted_.black();
     return;
   }
-  deterministic_ = on_projected_ ? transport.open_ground(spot) : transport.emitters_.radiance(spot.part);
-  if (on_projected_) {
-    // Under the mesh most light is occluded: what is left of it is summed, instead of taken from that of the open
-    // floor.
-    if (transport.is_under_mesh(spot)) {
-      correction_ = false, deterministic_ = {};
-    } else {
-      mesh_disc_ = transport.mesh_disc(spot);
-    }
-    if (transport.environment_) light_chance_ = kFloorLightChance;
-  } else if (transport.environment_) {
-    const float wide = 1 - painted_.narrow_share(transport.environment_->extent_sr());
-    light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
-  }
-  if (options.bounces > 0 && !correction_ && !over_ground_) receiver_ = transport.receiver(spot, painted_);
-  open_ =
-      !painted_.is_bent() && !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0);
-  const bool free = open_ && options.correction;
-  if (!free) {
-    add_lights();
-  }
-  if (!free) add_mirror();
+  // Under the mesh most light of a floor is occluded: what is left of it is summed, instead of taken from that of the
+  // open floor.
+  if (!on_projected_) deterministic_ = transport.emitters_.radiance(spot.part);
+  if (on_projected_ && !under_mesh_) deterministic_ = transport.open_ground(spot);
+  if (bounces_ > 0 && !correction_ && !over_ground_) places_ = transport.receiver(spot, painted_);
+  const bool free = open_ && correction_;
+  if (!free) add_lights(), add_mirror();
   certain_ = free || (!(painted_.lobes_weight() > 0) && mirror_samples_ == 0 && lamps_.empty());
-}
-
-color::Rgb PointTransport::reflect(const Float3& f, const color::Rgb& light) const {
-  return transport_.reflection_ != nullptr && !on_projected_
-             ? color::reflected(*transport_.reflection_, rays::vec3(f), light)
-             : rays::vec3(f) * light;
 }
 
 // A point is either seen or hidden. Of a disc the light without the mesh is known, and samples tell what the mesh takes
@@ -179,133 +188,18 @@ color::Rgb PointTransport::lamp_shadows(const Sequence& sequence, std::uint32_t 
 }
 
 void PointTransport::add_mirror() {
-  const Float3& mirror = painted_.mirror();
   const float weight = painted_.mirror_weight();
   if (!(weight > 0)) return;
-  mirror_hit_ = transport_.rays_->closest(spot_.start, painted_.mirrored());
-  const color::Rgb open = transport_.environment_ ? transport_.mirrored_environment(painted_.mirrored()) : color::Rgb{};
-  if (!transport_.lights_.empty()) {
-    color::Rgb lamps = transport_.mirrored_lamps(spot_.start, painted_.mirrored(), mirror_hit_);
-    if (correction_) lamps += -1.0 * transport_.mirrored_lamps(spot_.start, painted_.mirrored(), {});
-    deterministic_ += reflect(mirror, lamps);
-  }
-  if (!mirror_hit_.any()) {
-    if (!correction_) deterministic_ += reflect(mirror, open);
-    return;
-  }
-  if (correction_) deterministic_ += -1.0 * reflect(mirror, open);
-  if (const auto floor = transport_.seen_floor(mirror_hit_, spot_.start, painted_.mirrored())) {
-    deterministic_ += reflect(mirror, floor->direct);
-    if (options_.bounces > 0 && options_.into_lobes) deterministic_ += reflect(mirror, floor->into_diffuse);
-    return;
-  }
-  deterministic_ += reflect(mirror, transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle)));
-  if ((options_.bounces == 0 || !options_.into_lobes) && !transport_.is_projected(mirror_hit_)) return;
+  const Mirrored seen = mirrored();
+  color::Rgb light = seen.fixed;
+  if (correction_) light += -1.0 * transport_.mirrored_lamps(spot_.start, painted_.mirrored(), {});
+  if (transport_.environment_ && mirror_hit_.any() == correction_)
+    light += (correction_ ? -1.0 : 1.0) * transport_.mirrored_environment(painted_.mirrored());
+  if (options_.into_lobes) light += seen.bounced;
+  deterministic_ += reflect(painted_.mirror(), light);
+  if (!samples_mirror() || (!options_.into_lobes && !transport_.is_projected(mirror_hit_))) return;
   const double share = weight / (weight + painted_.lobes_weight());
   mirror_samples_ = static_cast<std::uint32_t>(std::clamp(static_cast<int>(std::lround(kBatch * share)), 1, kBatch));
-}
-
-// The density of a direction that is not drawn from the environment, by the samplers of lights.
-double PointTransport::drawn_pdf(const Float3& direction, const Reflection& reflection) const {
-  if (mesh_disc_) return mesh_disc_->light.meets(rays::vec3(direction)) ? 1 / mesh_disc_->extent_sr() : 0;
-  return (1 - receiver_.chance()) * reflection.pdf;
-}
-
-PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbers) const {
-  Ray ray;
-  if (numbers[0] < light_chance_) {
-    ray.place = transport_.environment_->place(numbers[1], numbers[2]);
-    if (!(ray.place->density > 0)) return ray;
-    ray.direction = ray.place->direction;
-  } else {
-    const double choice = (numbers[0] - light_chance_) / (1 - light_chance_);
-    const double places = receiver_.chance();
-    if (choice < places) {
-      const BrightPlaces::Draw place =
-          transport_.places_->drawn(receiver_, spot_.start, choice / places, numbers[1], numbers[2]);
-      ray.place_triangle = place.triangle, ray.direction = place.direction;
-    } else {
-      ray.direction = mesh_disc_ ? Transport::drawn_from(*mesh_disc_, numbers[1], numbers[2]).direction
-                                 : painted_.direction((choice - places) / (1 - places), numbers[1], numbers[2]);
-    }
-  }
-  ray.above = painted_.faces(ray.direction);
-  return ray;
-}
-
-// The contribution of a drawn direction. One set of directions serves every lobe and the environment: each is weighed
-// by the density that the mixture gives it, which is the balance heuristic.
-LightShares PointTransport::shown(const Ray& ray, bool occluded, const Sequence& sequence, std::uint32_t index) const {
-  const Reflection reflection = painted_.at(ray.direction);
-  LightSample light;
-  if (!(reflection.pdf > 0)) return {};
-  if (ray.place) {
-    light = transport_.environment_->light(*ray.place);
-  } else if (transport_.environment_) {
-    light = transport_.environment_->at(ray.direction);
-  }
-  const bool passes_on = options_.bounces > 0 || !transport_.emitters_.empty() || transport_.ground_;
-  const Hit hit = occluded && passes_on ? transport_.rays_->closest(spot_.start, ray.direction) : Hit();
-  if (ray.place_triangle && hit.triangle != *ray.place_triangle) return {};
-  double pdf = light_chance_ * light.pdf + (1 - light_chance_) * drawn_pdf(ray.direction, reflection);
-  if (receiver_.chance() > 0)
-    pdf += (1 - light_chance_) * receiver_.chance() * transport_.places_->pdf(receiver_, hit, ray.direction);
-  if (!(pdf > 0)) return {};
-  const auto scaled = static_cast<float>(1 / pdf);
-  if (!occluded) return {reflect(scaled * reflection.f_cos, light.radiance), {}, {}};
-
-  color::Rgb arriving = correction_ ? -1.0 * light.radiance : color::Rgb{}, sent;
-  LightShares shares;
-  if (passes_on) {
-    if (transport_.is_projected(hit)) {
-      const Transport::FloorLight floor =
-          transport_.off_floor(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
-      arriving += floor.fixed, sent = floor.bounced;
-    } else if (hit.any()) {
-      const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
-      if (emission != color::Rgb{})
-        arriving += pdf /
-                    (pdf + transport_.emitters_.pdf(lit_point(spot_), hit.triangle, ray.direction, hit.distance)) *
-                    emission;
-      if (options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse))
-        sent = transport_.bounced(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
-    }
-  }
-  add_sent(ray.direction, sent, scaled, shares);
-  shares.direct = reflect(scaled * reflection.f_cos, arriving);
-  return shares;
-}
-
-// Over a floor that shows the environment. In a correction floor_light() and sharp_floor_light() tell the open floor,
-// and rays tell what the mesh takes from there and sends instead.
-LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, const Sequence& sequence,
-                                              std::uint32_t index) const {
-  LightShares shares;
-  const bool meets_floor = transport_.is_projected(hit);
-  if (!ray.above || (correction_ && (!hit.any() || meets_floor))) return shares;
-  const Reflection reflection = painted_.at(ray.direction);
-  if (!(reflection.pdf > 0)) return shares;
-  const LightSample light =
-      ray.place ? transport_.environment_->light(*ray.place) : transport_.environment_->at(ray.direction);
-  const auto scaled = static_cast<float>(1 / (light_chance_ * light.pdf + (1 - light_chance_) * reflection.pdf));
-  const Float3 f_cos = scaled * reflection.f_cos;
-  if (meets_floor) {
-    const Transport::FloorLight floor =
-        transport_.off_floor(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
-    shares.from_floor = reflect(f_cos, floor.fixed);
-    add_sent(ray.direction, floor.bounced, scaled, shares);
-    return shares;
-  }
-  if (correction_ && ray.direction.y < 0) {
-    const Float3 taken = transport_.open_floor_->lit(spot_.start, ray.direction, 0, 0);
-    shares.from_floor = -1.0 * reflect(f_cos, rays::vec3(taken));
-  } else if (hit.any() == correction_) {
-    shares.direct = (correction_ ? -1.0 : 1.0) * reflect(f_cos, light.radiance);
-  }
-  if (hit.any() && options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse))
-    add_sent(ray.direction, transport_.bounced(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4),
-             scaled, shares);
-  return shares;
 }
 
 color::Rgb PointTransport::floor_light() const {
@@ -350,93 +244,22 @@ color::Rgb PointTransport::sharp_floor_light(const Sequence& sequence, std::uint
   return sum;
 }
 
-// Adds the light that surfaces send along a direction, times `scale`: one over the density of the direction.
-void PointTransport::add_sent(const Float3& direction, const color::Rgb& sent, float scale, LightShares& shares) const {
-  if (sent == color::Rgb{}) return;
-  const PaintedPoint::Parts parts = painted_.parts(direction);
-  if (options_.into_lobes) shares.into_lobes = reflect(scale * parts.lobes, sent);
-  if (options_.into_diffuse) shares.into_diffuse = reflect(scale * parts.diffuse, sent);
-}
-
-color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) const {
-  const EmitterSample light = transport_.emitters_.drawn(lit_point(spot_), numbers[0], numbers[1], numbers[2]);
-  if (!(light.pdf > 0)) return {};
-  const Reflection reflection = painted_.at(light.direction);
-  if (!(reflection.pdf > 0) ||
-      transport_.rays_->occluded(spot_.start, light.direction, Transport::kShort * light.distance))
-    return {};
-  const double open_pdf = transport_.environment_ ? transport_.environment_->at(light.direction).pdf : 0;
-  const double pdf =
-      light.pdf + light_chance_ * open_pdf + (1 - light_chance_) * drawn_pdf(light.direction, reflection);
-  return reflect(static_cast<float>(1 / pdf) * reflection.f_cos, light.radiance);
-}
-
-// The light that the mirror lobe sees, summed over these samples.
-LightShares PointTransport::mirrored(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const {
-  color::Rgb fixed, sent;
-  for (std::uint32_t i = begin; i < begin + count; ++i) {
-    if (transport_.is_projected(mirror_hit_)) {
-      const Transport::FloorLight floor =
-          transport_.off_floor(mirror_hit_, spot_.start, painted_.mirrored(), options_.bounces, sequence, i, 4);
-      fixed += floor.fixed, sent += floor.bounced;
-    } else {
-      sent += transport_.bounced(mirror_hit_, spot_.start, painted_.mirrored(), options_.bounces, sequence, i, 4);
-    }
-  }
-  LightShares shares;
-  shares.direct = reflect(painted_.mirror(), fixed);
-  if (options_.into_lobes) shares.into_lobes = reflect(painted_.mirror(), sent);
-  return shares;
-}
-
 LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const {
   if (certain_) return {};
-  LightShares sum;
+  Surface surface(*this);
   if (transport_.spectral_ != nullptr) {
-    sum.direct = transport_.spectral_->shown(transport_, options_, spot_, to_viewer_, sequence, begin, count);
-    return sum;
+    surface.shares.direct =
+        transport_.spectral_->shown(transport_, options_, spot_, painted_.to_viewer(), sequence, begin, count);
+    return surface.shares;
   }
-  sum.direct += lamp_shadows(sequence, begin, count);
+  surface.shares.direct = lamp_shadows(sequence, begin, count);
   if (painted_.lobes_weight() > 0) {
-    const Sequence::Set numbers = sequence.set(0);
-    for (std::uint32_t first = begin; first < begin + count; first += kFan) {
-      Ray rays[kFan];
-      rays::Fan fan;
-      fan.origin = spot_.start;
-      const std::uint32_t traced = std::min<std::uint32_t>(kFan, begin + count - first);
-      std::array<double, 4> drawn[kFan];
-      for (std::uint32_t i = 0; i < traced; ++i) {
-        drawn[i] = numbers.point(first + i);
-        if (drawn[i][0] < light_chance_) transport_.environment_->fetch(drawn[i][1], drawn[i][2]);
-      }
-      for (std::uint32_t i = 0; i < traced; ++i) {
-        rays[i] = drawn_ray(drawn[i]);
-        fan.x[i] = rays[i].direction.x, fan.y[i] = rays[i].direction.y, fan.z[i] = rays[i].direction.z;
-        if (rays[i].above && (!mesh_disc_ || mesh_disc_->light.meets(rays::vec3(rays[i].direction))))
-          fan.wanted |= 1U << i;
-      }
-      if (over_ground_) {
-        Hit hits[kFan];
-        if (fan.wanted != 0) transport_.rays_->closest(fan, hits);
-        if (correction_) sum.from_floor += sharp_floor_light(sequence, first, traced);
-        for (std::uint32_t i = 0; i < traced; ++i) {
-          sum += shown_over_ground(rays[i], hits[i], sequence, first + i);
-        }
-        continue;
-      }
-      const unsigned occluded = fan.wanted != 0 ? transport_.rays_->occluded(fan) : 0;
-      for (std::uint32_t i = 0; i < traced; ++i) {
-        const bool is_occluded = (occluded >> i & 1U) != 0;
-        if (!rays[i].above || (!is_occluded && (correction_ || !transport_.environment_))) continue;
-        sum += shown(rays[i], is_occluded, sequence, first + i);
-      }
-    }
-    if (!transport_.emitters_.empty())
-      for (std::uint32_t i = begin; i < begin + count; ++i) sum.direct += emitter_sample(sequence.point(i, 1));
+    if (correction_ && over_ground_) surface.shares.from_floor = sharp_floor_light(sequence, begin, count);
+    sample(sequence, begin, count, surface);
   }
   const std::uint32_t mirrors = mirror_samples_ > 0 ? std::max(1U, mirror_samples_ * count / kBatch) : 0;
-  if (mirrors > 0) sum += static_cast<double>(count) / mirrors * mirrored(sequence.other(0x4D), begin, mirrors);
-  return (1.0 / count) * sum;
+  if (mirrors > 0) sample_mirror(sequence.other(0x4D), begin, mirrors, static_cast<double>(count) / mirrors, surface);
+  return (1.0 / count) * surface.shares;
 }
 
 }  // namespace goniochrome::render

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/panes.h"
-#include "render/path/transport.h"
+#include "render/path/point_transport.h"
 
 namespace goniochrome::render {
 

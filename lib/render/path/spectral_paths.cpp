@@ -181,16 +181,16 @@ class SpectralPaths::Bands {
   Carrier f_cos(const Transport::Vertex& vertex, const PaintedPoint::Shares& shares) const {
     Carrier sum{};
     if (vertex.is_white) {
-      sum.fill(rays::kInversePi * shares.diffuse);
+      sum.fill(rays::kInversePi * shares.diffuse());
       return sum;
     }
     sum.fill(shares.coat);
     blend(vertex, [&](const View& view, float part) {
-      render::add(sum, part * shares.diffuse, view.diffuse);
+      render::add(sum, part * shares.diffuse(), view.diffuse);
       for (std::size_t j = 0; j < view.gloss.size(); ++j) {
-        if (shares.directional_diffuse[j] > 0)
-          render::add(sum, part * shares.directional_diffuse[j], view.directional_diffuse[j]);
-        if (shares.gloss[j] > 0) render::add(sum, part * shares.gloss[j], view.gloss[j]);
+        if (shares.directional_diffuse(j) > 0)
+          render::add(sum, part * shares.directional_diffuse(j), view.directional_diffuse[j]);
+        if (shares.gloss(j) > 0) render::add(sum, part * shares.gloss(j), view.gloss[j]);
       }
     });
     return sum;

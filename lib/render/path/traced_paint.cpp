@@ -20,6 +20,8 @@ using rays::kFloatPi;
 
 // The share of a color map's mean that directions are drawn in by the cosine.
 constexpr float kCosineShare = 0.25F;
+// cos^E below exp(-kPowerTail) is left out: 4e-18 of the peak.
+constexpr float kPowerTail = 40;
 
 float mean_size(const Float3& c) {
   return (std::abs(c.x) + std::abs(c.y) + std::abs(c.z)) / 3;
@@ -224,9 +226,15 @@ PaintedPoint::Factors PaintedPoint::factors(const Float3& to_light, const Visit&
   const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
   float powers[kMostTracedLobes] = {};
   const auto add = [&](const Float3& axis, float share) {
-    add_powers(
-        axis, to_light, share, static_cast<std::size_t>(count_), [&](std::size_t j) { return lobes_[j].exponent; },
-        powers);
+    const Float3 apart = axis - to_light;
+    const float versine = 0.5F * rays::dot(apart, apart);
+    if (versine >= 1) return;
+    const float log_cos = std::log1p(-versine);
+    for (int j = 0; j < count_; ++j) {  // ascending exponents
+      const float power = lobes_[j].exponent * log_cos;
+      if (power < -kPowerTail) break;
+      powers[j] += share * std::exp(power);
+    }
   };
   if (axes_.empty()) add(mirrored_, 1);
   for (const Axis& axis : axes_) add(axis.direction, axis.share);
@@ -236,6 +244,37 @@ PaintedPoint::Factors PaintedPoint::factors(const Float3& to_light, const Visit&
     factors.pdf += lobes_[j].chance * lobes_[j].normalization * powers[j] / axes_total_;
   }
   return factors;
+}
+
+// Calls visit(lobe, factor of its K_DD, factor of its K_G) for each lobe and axis.
+template <class Visit>
+float PaintedPoint::disc_factors(const Light& light, bool tabled, const Visit& visit) const {
+  const Vec3 n = rays::vec3(normal_), viewer = rays::vec3(viewer_);
+  const double cosine = dot(n, light.direction), radius = light.radius_rad;
+  const double irradiance = brdf::disc_irradiance(cosine, radius), above = brdf::disc_above(cosine, radius);
+  // Through the coat at the mean cosine of what is seen, and for the rest of a lobe at that of its axis.
+  const auto passing =
+      static_cast<float>(above > 0 ? irradiance * let_in(static_cast<float>(std::min(1.0, irradiance / above))) : 0);
+  const auto coat = [&](const Vec3& toward) {
+    return coat_reflectance(static_cast<float>(std::min(1.0, 0.5 * length(toward + viewer))));
+  };
+  const auto coat_l = static_cast<float>(above) * coat(light.direction);
+  const auto visit_lobes = [&](const Float3& axis, float share) {
+    const Vec3 r = rays::vec3(axis);
+    const double chord = length(r - light.direction);
+    const auto cosine_r = static_cast<float>(std::max(0.0, dot(n, r)));
+    const float cos_r = cosine_r * let_in(std::min(1.0F, cosine_r)), coat_r = coat(r);
+    for (int j = 0; j < count_; ++j) {
+      const double exponent = lobes_[j].exponent;
+      const brdf::DiscLobeTable::Node of =
+          tabled ? brdf::disc_lobe(exponent, radius, chord) : brdf::disc_lobe_node(exponent, radius, chord);
+      visit(lobes_[j], share * (of.cosine[0] * passing + of.cosine[1] * cos_r),
+            share * (of.plain[0] * coat_l + of.plain[1] * coat_r));
+    }
+  };
+  if (axes_.empty()) visit_lobes(mirrored_, 1);
+  for (const Axis& axis : axes_) visit_lobes(axis.direction, axis.share);
+  return passing;
 }
 
 // Calls visit(lobe, cos^E).
@@ -275,12 +314,37 @@ PaintedPoint::Shares PaintedPoint::shares(const Float3& to_light) const {
   Shares shares;
   if (!(total_ > 0)) return shares;
   const Factors factors = this->factors(to_light, [&](const Lobe& lobe, float base, float coat) {
-    shares.directional_diffuse[lobe.number] = let_out_ * base;
-    shares.gloss[lobe.number] = coat;
+    shares.of[1 + 2 * lobe.number] = let_out_ * base;
+    shares.of[2 + 2 * lobe.number] = coat;
   });
-  shares.diffuse = let_out_ * factors.base, shares.coat = factors.coat;
+  shares.of[0] = let_out_ * factors.base, shares.coat = factors.coat;
   shares.pdf = factors.pdf / total_;
   return shares;
+}
+
+PaintedPoint::Shares PaintedPoint::disc_shares(const Light& light, bool tabled) const {
+  Shares shares;
+  if (dot(rays::vec3(normal_), light.direction) <= -std::sin(light.radius_rad)) return shares;
+  shares.of[0] = let_out_ * disc_factors(light, tabled, [&](const Lobe& lobe, float base, float coat) {
+                   shares.of[1 + 2 * lobe.number] += let_out_ * base;
+                   shares.of[2 + 2 * lobe.number] += coat;
+                 });
+  return shares;
+}
+
+PaintedPoint PaintedPoint::of_basis(std::span<const double> exponents) const {
+  PaintedPoint basis({1, 1, 1}, normal_, viewer_);
+  const float chance = coat_mirror();
+  basis.coat_index_ = coat_index_, basis.let_out_ = let_out_;
+  basis.diffuse_ = {let_out_, let_out_, let_out_}, basis.mirror_ = {chance, chance, chance};
+  basis.axes_ = axes_, basis.axes_total_ = axes_.empty() ? 1 : axes_total_;
+  basis.diffuse_chance_ = basis.total_ = chance;
+  for (const double exponent : exponents) {
+    const auto e = static_cast<float>(exponent);
+    basis.lobes_[basis.count_] = {e, (e + 1) / (2 * kFloatPi), chance, basis.diffuse_, {1, 1, 1}, basis.count_};
+    ++basis.count_, basis.total_ += chance;
+  }
+  return basis;
 }
 
 std::optional<std::vector<PaintedPoint::WideLobe>> PaintedPoint::wide_lobes(float sharpest, std::size_t most) const {
@@ -302,7 +366,7 @@ PaintedPoint PaintedPoint::without_wide(std::size_t lobes) const {
 }
 
 Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
-  const Vec3 n = rays::vec3(normal_), viewer = rays::vec3(viewer_);
+  const Vec3 n = rays::vec3(normal_);
   const double cosine = dot(n, light.direction), radius = light.radius_rad;
   const auto add_texels = [&](Float3 f) {
     for (const TexelLobe& lobe : texels_) {
@@ -317,10 +381,12 @@ Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
     return f;
   };
   if (cosine <= -std::sin(radius)) return bent_ ? add_texels({}) : Float3{};
-  const double irradiance = brdf::disc_irradiance(cosine, radius), above = brdf::disc_above(cosine, radius);
-  // Through the coat at the mean cosine of what is seen, and for the rest of a lobe at that of its axis.
-  const double passing = above > 0 ? irradiance * let_in(static_cast<float>(std::min(1.0, irradiance / above))) : 0;
-  Float3 f = static_cast<float>(passing) * diffuse_ + static_cast<float>(irradiance) * texel_diffuse_;
+  Float3 lobes;
+  const float base = disc_factors(light, tabled, [&](const Lobe& lobe, float under_coat, float coat) {
+    lobes = lobes + under_coat * lobe.directional_diffuse + coat * lobe.gloss;
+  });
+  const auto irradiance = static_cast<float>(brdf::disc_irradiance(cosine, radius));
+  Float3 f = base * diffuse_ + irradiance * texel_diffuse_ + lobes;
   if (paint_ != nullptr) {
     for (const DiscDirection& part : disc_directions(light))
       if (dot(n, part.direction) > 0) f = f + static_cast<float>(part.weight) * mapped(float3(part.direction));
@@ -330,28 +396,7 @@ Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
     const float gray = bare_ * static_cast<float>(coat_->over_disc(local(viewer_), normalized(middle), radius));
     f = f + Float3{gray, gray, gray};
   }
-  f = add_texels(f);
-  const auto coat = [&](const Vec3& toward) {
-    return coat_reflectance(static_cast<float>(std::min(1.0, 0.5 * length(toward + viewer))));
-  };
-  const auto coat_l = static_cast<float>(above) * coat(light.direction);
-  const auto add_lobes = [&](const Float3& axis, float share) {
-    const Vec3 r = rays::vec3(axis);
-    const double chord = length(r - light.direction);
-    const auto wide = static_cast<float>(passing), cosine_r = static_cast<float>(std::max(0.0, dot(n, r)));
-    const float cos_r = cosine_r * let_in(std::min(1.0F, cosine_r));
-    const float coat_r = coat(r);
-    for (int j = 0; j < count_; ++j) {
-      const double exponent = lobes_[j].exponent;
-      const brdf::DiscLobeTable::Node of =
-          tabled ? brdf::disc_lobe(exponent, radius, chord) : brdf::disc_lobe_node(exponent, radius, chord);
-      f = f + (share * (of.cosine[0] * wide + of.cosine[1] * cos_r)) * lobes_[j].directional_diffuse +
-          (share * (of.plain[0] * coat_l + of.plain[1] * coat_r)) * lobes_[j].gloss;
-    }
-  };
-  if (axes_.empty()) add_lobes(mirrored_, 1);
-  for (const Axis& axis : axes_) add_lobes(axis.direction, axis.share);
-  return f;
+  return add_texels(f);
 }
 
 // cos = u^(1/(E+1)); 1 - cos without cancellation, so that lobes of any sharpness keep their shape.

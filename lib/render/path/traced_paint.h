@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/result.h"
@@ -68,25 +69,6 @@ class TracedPaint {
   bool hidden_ = false;  // whether no place shows the paint
 };
 
-// cos^E below exp(-kPowerTail) is left out: 4e-18 of the peak.
-constexpr float kPowerTail = 40;
-
-// Adds to powers[j] the share of cos^E of the angle between two directions, for exponent(j) = E, j = 0..count-1, in
-// ascending order.
-template <class Exponent>
-void add_powers(const rays::Float3& axis, const rays::Float3& direction, float share, std::size_t count,
-                const Exponent& exponent, float* powers) {
-  const rays::Float3 apart = axis - direction;
-  const float versine = 0.5F * rays::dot(apart, apart);
-  if (versine >= 1) return;
-  const float log_cos = std::log1p(-versine);
-  for (std::size_t j = 0; j < count; ++j) {
-    const float power = exponent(j) * log_cos;
-    if (power < -kPowerTail) break;
-    powers[j] += share * std::exp(power);
-  }
-}
-
 // A direction that light may have come from, with f cos_i and the probability density that drawn() gives it.
 struct Reflection {
   rays::Float3 direction;
@@ -116,15 +98,23 @@ class PaintedPoint {
     return {to_light, all.diffuse + all.lobes, all.pdf};
   }
 
-  // The factor of each weight of the paint in f cos_i: K_D, and of each lobe of the paint, by its number among those
-  // with weight, K_DD and K_G; f cos_i of a rough coat; and the density that drawn() gives the direction. So that other
+  // The factor of each weight of the paint in f cos_i: K_D, then K_DD and K_G of each lobe of the paint, by its number
+  // among those with weight; f cos_i of a rough coat; and the density that drawn() gives the direction. So that other
   // weights than those in three channels can be taken. Not for textures and color maps.
   struct Shares {
     float pdf = 0;  // 1/sr; 0: below the horizon, no light
-    float diffuse = 0, coat = 0;
-    float directional_diffuse[kMostTracedLobes] = {}, gloss[kMostTracedLobes] = {};
+    float coat = 0;
+    float of[2 * kMostTracedLobes + 2] = {};  // the last one is for a mirror, and is 0
+
+    float diffuse() const { return of[0]; }
+    float directional_diffuse(std::size_t lobe) const { return of[1 + 2 * lobe]; }
+    float gloss(std::size_t lobe) const { return of[2 + 2 * lobe]; }
   };
   Shares shares(const rays::Float3& to_light) const;
+  // Those integrated over a disc, as toward_disc() is; the density is 0.
+  Shares disc_shares(const Light& light, bool tabled = true) const;
+  // A point there that has each of these lobes, the cosine and the mirror with weight 1, and draws them evenly.
+  PaintedPoint of_basis(std::span<const double> exponents) const;
   // Between which views of the paint the viewer is, and how far from the first to the second.
   struct Between {
     std::size_t low = 0, high = 0;
@@ -165,18 +155,11 @@ class PaintedPoint {
   const rays::Float3& mirror() const { return mirror_; }      // K_M F
   // K_D T(theta_o), 1/sr
   const rays::Float3& diffuse() const { return diffuse_; }
-  // The transmission of the coat for the base's light from a direction of that cosine, and its reflection to the
-  // viewer; without a coat 1, and the reflection of kCoatIndex.
-  float passages(float cos_i) const { return let_out_ * let_in(cos_i); }
+  // The coat's reflection to the viewer; without a coat that of kCoatIndex.
   float coat_mirror() const;
   double coat_index() const { return coat_index_; }
   const rays::Float3& to_viewer() const { return viewer_; }
-  // The mirror directions about the tilted normals of a brushed paint, with their shares; none: mirrored() alone.
-  struct Axis {
-    rays::Float3 direction;
-    float share;
-  };
-  const std::vector<Axis>& axes() const { return axes_; }
+  bool is_brushed() const { return !axes_.empty(); }
   // A direction drawn with the density (E + 1)/(2 pi) cos^E about an axis, by numbers in [0,1).
   static rays::Float3 drawn_about(const rays::Float3& axis, float exponent, float u, float v);
   // The approximate part of even light that each sends back, mean of the channels: samples are shared out by it.
@@ -188,6 +171,11 @@ class PaintedPoint {
   bool black() const { return !(total_ > 0) && mirror_.x == 0 && mirror_.y == 0 && mirror_.z == 0; }
 
  private:
+  // The mirror directions about the tilted normals of a brushed paint, with their shares; none: mirrored() alone.
+  struct Axis {
+    rays::Float3 direction;
+    float share;
+  };
   struct Lobe {
     float exponent, normalization, chance;
     rays::Float3 directional_diffuse, gloss;
@@ -217,6 +205,9 @@ class PaintedPoint {
   };
   template <class Visit>
   Factors factors(const rays::Float3& to_light, const Visit& visit) const;
+  // Likewise of a disc; returns the factor of what lies under the coat.
+  template <class Visit>
+  float disc_factors(const Light& light, bool tabled, const Visit& visit) const;
   template <class Visit>
   void visit_texels(const rays::Float3& to_light, const Visit& visit) const;
 

@@ -135,6 +135,7 @@ class Transport {
   double open_share(const rays::Spot& spot) const;
 
  private:
+  friend class PointSampler;
   friend class PointTransport;
   friend class LobePoint;
   friend class SpectralPaths;
@@ -172,6 +173,9 @@ class Transport {
   void add_found(const Vertex& vertex, const Next& next, Carrier& carrier) const;
   template <class Carrier>
   Next step(const Vertex& vertex, const std::array<double, 4>& to_light, const std::array<double, 4>& onward,
+            Carrier& carrier) const;
+  template <class Carrier>
+  void send(const Vertex& vertex, int further, const Sequence& sequence, std::uint32_t index, std::uint32_t set,
             Carrier& carrier) const;
   template <class Carrier>
   void follow(rays::Hit hit, rays::Float3 origin, rays::Float3 direction, int bounces, const Sequence& sequence,
@@ -249,75 +253,5 @@ class Transport {
 
 // The point over an open floor, without lobes.
 GroundReceiver ground_receiver(const rays::Spot& spot, const PaintedPoint& painted);
-
-// One visible point.
-class PointTransport {
- public:
-  // `to_viewer` is unit. The transport must outlive the point.
-  PointTransport(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
-                 const rays::Float3& to_viewer);
-
-  // The deterministic part: directional lights, the point's own emission, and the light of the mirror lobe without
-  // bounces.
-  const color::Rgb& deterministic() const { return deterministic_; }
-  // True if that is all: then the shares below are 0.
-  bool certain() const { return certain_; }
-  // The mean by shares of the samples first, first + 1, ... of the rest, drawn from a sequence of this seed; `first`
-  // and `count` are multiples of kHalfFan. Its expectation is the rest, exactly.
-  LightShares batch_shares(std::uint64_t seed, std::uint32_t first = 0, std::uint32_t count = kBatch) const {
-    LightShares shares = shares_of(Sequence(seed, kBatch), first, count);
-    shares.from_floor += floor_light();
-    return shares;
-  }
-  // This draws from any sequence, and leaves floor_light() out.
-  LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count) const;
-  // The part of LightShares::from_floor that is known without samples, from the blocks of the floor: that of the
-  // diffuse part and wide lobes.
-  color::Rgb floor_light() const;
-
- private:
-  struct Ray;
-  void add_lights();
-  void add_mirror();
-  double drawn_pdf(const rays::Float3& direction, const Reflection& reflection) const;
-  Ray drawn_ray(const std::array<double, 4>& numbers) const;
-  // Rays to a lamp, none of which is aimed yet.
-  rays::Fan lamp_fan(const Transport::SeenLamp& lamp) const;
-  // Sends a ray of a fan there if that is above the horizon.
-  void aim(rays::Fan& fan, std::uint32_t ray, const rays::Float3& direction) const;
-  color::Rgb lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
-  LightShares shown(const Ray& ray, bool occluded, const Sequence& sequence, std::uint32_t index) const;
-  LightShares shown_over_ground(const Ray& ray, const rays::Hit& hit, const Sequence& sequence,
-                                std::uint32_t index) const;
-  void add_sent(const rays::Float3& direction, const color::Rgb& sent, float scale, LightShares& shares) const;
-  LightShares mirrored(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
-  color::Rgb sharp_floor_light(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
-  color::Rgb emitter_sample(const std::array<double, 4>& numbers) const;
-  color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
-
-  const Transport& transport_;
-  const PathOptions& options_;
-  rays::Spot spot_;
-  rays::Float3 to_viewer_;
-  PaintedPoint painted_;
-  bool on_projected_;                             // on a floor that shows the environment
-  std::optional<Transport::SeenLamp> mesh_disc_;  // of such a point beside the mesh: only rays within it can meet it
-  bool correction_;         // whether samples tell what the mesh changes: as asked, or of such a floor
-  bool over_ground_;        // over a floor whose ground is shaded
-  float light_chance_ = 0;  // of a direction that is drawn from the environment
-  BrightPlaces::Receiver receiver_;
-  rays::Hit mirror_hit_;
-  std::uint32_t mirror_samples_ = 0;  // in a batch
-  // Lamps that are discs, parts of which the mesh may hide: samples estimate the hidden part, or the free part where
-  // that is less.
-  struct Lamp {
-    Transport::SeenLamp seen;
-    bool hidden = true;
-  };
-  std::vector<Lamp> lamps_;
-  bool open_ = false;  // nothing rises above the horizon
-  color::Rgb deterministic_;
-  bool certain_ = false;
-};
 
 }  // namespace goniochrome::render

@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 #include "math/statistics.h"
-#include "render/path/path_tracer.h"
+#include "render/path/point_transport.h"
 
 namespace goniochrome::render {
 
