@@ -10,34 +10,6 @@
 
 namespace goniochrome::render {
 
-// The plane of a triangle as it is seen from one eye: plane_hit() with the products that all rays share.
-class SeenPlane {
- public:
-  bool is_of(std::uint32_t triangle) const { return triangle_ == triangle; }
-  void look_at(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& eye) {
-    triangle_ = triangle;
-    const auto& corners = mesh.triangles[triangle];
-    const Vec3& p = mesh.positions[corners[0]];
-    const Vec3 a = mesh.positions[corners[1]] - p, b = mesh.positions[corners[2]] - p, from = eye - p;
-    normal_ = cross(b, a), second_ = cross(b, from), third_ = cross(from, a);
-    height_ = dot(b, third_);
-  }
-  PlaneHit hit(const Vec3& direction) const {
-    const double determinant = dot(direction, normal_);
-    PlaneHit hit;
-    if (determinant == 0) return hit;
-    const double scale = 1 / determinant, v = scale * dot(direction, second_), w = scale * dot(direction, third_);
-    hit.shares = {1 - v - w, v, w};
-    hit.ahead = height_ * scale > 0;
-    return hit;
-  }
-
- private:
-  std::uint32_t triangle_ = kNoTriangle;
-  Vec3 normal_, second_, third_;
-  double height_ = 0;
-};
-
 namespace {
 
 using Uv = std::array<double, 2>;
@@ -152,7 +124,7 @@ TexturePlace TextureLayout::place(int part, const MeshPoint& point) const {
 
 // The differences of u and v across a pixel, from the rays through the middles of its sides, which meet the plane of
 // the triangle. Beyond the horizon of that plane the footprint has no end.
-void TextureLayout::add_footprint(const Gbuffer& gbuffer, int x, int y, const MeshPoint& point, const SeenPlane& plane,
+void TextureLayout::add_footprint(const Gbuffer& gbuffer, int x, int y, const MeshPoint& point,
                                   TexturePlace& place) const {
   constexpr float kEndless = 1e3F;
   const auto part = static_cast<std::size_t>(gbuffer.part(x, y));
@@ -160,9 +132,11 @@ void TextureLayout::add_footprint(const Gbuffer& gbuffer, int x, int y, const Me
   const bool own = layings_[part].projection == Projection::kOwn;
   Vec3 normal;
   for (std::size_t k = 0; k < 3; ++k) normal += point.shares[k] * mesh_.normals[corners[k]];
+  const std::array<Vec3, 3> plane{mesh_.positions[corners[0]], mesh_.positions[corners[1]],
+                                  mesh_.positions[corners[2]]};
   // The place toward (x, y), or nothing.
   const auto met = [&](double at_x, double at_y, Uv& uv) {
-    const PlaneHit hit = plane.hit(gbuffer.rays.direction(at_x, at_y));
+    const PlaneHit hit = plane_hit(plane, gbuffer.rays.eye, gbuffer.rays.direction(at_x, at_y));
     if (!hit.ahead) return false;
     if (own) {
       const Corners& corner = faces_[part][point.triangle - mesh_.parts[part].first];
@@ -191,31 +165,22 @@ void TextureLayout::add_footprint(const Gbuffer& gbuffer, int x, int y, const Me
   step(0.5, 0, place.across), step(0, 0.5, place.down);
 }
 
-TexturePlace TextureLayout::place(const Gbuffer& gbuffer, int x, int y, bool footprint, SeenPlane& plane) const {
-  MeshPoint point;
-  point.triangle = gbuffer.triangles[gbuffer.index(x, y)];
-  if (!plane.is_of(point.triangle)) plane.look_at(mesh_, point.triangle, gbuffer.rays.eye);
-  point.shares = within(plane.hit(gbuffer.rays.direction(x + 0.5, y + 0.5)).shares);
+TexturePlace TextureLayout::place(const Gbuffer& gbuffer, int x, int y, bool footprint) const {
+  const MeshPoint point = mesh_point(mesh_, gbuffer, x, y);
   TexturePlace result = place(gbuffer.part(x, y), point, gbuffer.at(x, y)[3] < 0);
-  if (footprint) add_footprint(gbuffer, x, y, point, plane, result);
+  if (footprint) add_footprint(gbuffer, x, y, point, result);
   return result;
-}
-
-TexturePlace TextureLayout::place(const Gbuffer& gbuffer, int x, int y) const {
-  SeenPlane plane;
-  return place(gbuffer, x, y, true, plane);
 }
 
 template <class PlaceAt>
 std::vector<TexturePlace> TextureLayout::each_pixel(const Gbuffer& gbuffer, const PlaceAt& place_at) const {
   std::vector<TexturePlace> places(gbuffer.triangles.size());
   parallel_for(static_cast<std::size_t>(gbuffer.height), kPlaceRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    SeenPlane plane;
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < gbuffer.width; ++x) {
         const int part = gbuffer.part(x, y);
         if (part < 0 || faces_[static_cast<std::size_t>(part)].empty()) continue;
-        places[gbuffer.index(x, y)] = place_at(x, y, plane);
+        places[gbuffer.index(x, y)] = place_at(x, y);
       }
     }
   });
@@ -223,13 +188,13 @@ std::vector<TexturePlace> TextureLayout::each_pixel(const Gbuffer& gbuffer, cons
 }
 
 std::vector<TexturePlace> TextureLayout::places(const Gbuffer& gbuffer) const {
-  return each_pixel(gbuffer, [&](int x, int y, SeenPlane& plane) { return place(gbuffer, x, y, false, plane); });
+  return each_pixel(gbuffer, [&](int x, int y) { return place(gbuffer, x, y, false); });
 }
 
 std::vector<TexturePlace> TextureLayout::filtered_places(const Gbuffer& gbuffer,
                                                          const std::array<double, 2>& middle) const {
-  return each_pixel(gbuffer, [&](int x, int y, SeenPlane& plane) {
-    TexturePlace result = place(gbuffer, x, y, true, plane);
+  return each_pixel(gbuffer, [&](int x, int y) {
+    TexturePlace result = place(gbuffer, x, y);
     result.u += static_cast<float>(middle[0] * result.across[0] + middle[1] * result.down[0]);
     result.v += static_cast<float>(middle[0] * result.across[1] + middle[1] * result.down[1]);
     return result;

@@ -10,8 +10,6 @@
 
 namespace goniochrome::render {
 
-class SeenPlane;
-
 // A mesh laid out for textures. Unless a part is projected, texture coordinates are the mesh's own; where it has none,
 // u runs once around the vertical axis through the middle of the bounding box and v upward in the same measure.
 // Tangents run along u and are the means over the triangles at a vertex, by area, so that a smooth surface has smooth
@@ -28,8 +26,8 @@ class TextureLayout {
   // Places with footprints, which take longer. Their middles, which become the places, lie so far from the points, in
   // pixels to the right and downward.
   std::vector<TexturePlace> filtered_places(const Gbuffer& gbuffer, const std::array<double, 2>& middle = {}) const;
-  // The place of one pixel, which shows one of the parts, with its footprint.
-  TexturePlace place(const Gbuffer& gbuffer, int x, int y) const;
+  // The place of one pixel, which shows one of the parts.
+  TexturePlace place(const Gbuffer& gbuffer, int x, int y, bool footprint = true) const;
 
   // The place of a point of the mesh, of which the triangle and the shares are read. The triangle is one of a part that
   // the layout was made for. `inside`: whether it is seen from its back.
@@ -41,9 +39,7 @@ class TextureLayout {
   TexturePlace place(int part, const MeshPoint& point) const;
   template <class PlaceAt>
   std::vector<TexturePlace> each_pixel(const Gbuffer& gbuffer, const PlaceAt& place_at) const;
-  TexturePlace place(const Gbuffer& gbuffer, int x, int y, bool footprint, SeenPlane& plane) const;
-  void add_footprint(const Gbuffer& gbuffer, int x, int y, const MeshPoint& point, const SeenPlane& plane,
-                     TexturePlace& place) const;
+  void add_footprint(const Gbuffer& gbuffer, int x, int y, const MeshPoint& point, TexturePlace& place) const;
 
   const mesh::Mesh& mesh_;
   std::vector<TextureLaying> layings_;       // of each part
