@@ -112,6 +112,30 @@ TEST(LobeTransport, ARectangleHidesItsFormFactorFromTheDiffuseColumn) {
   }
 }
 
+// A lamp that hardly any ray meets shines on a point all the same: from right above with its area over the squared
+// distance.
+TEST(LobeTransport, ASmallEmitterIsNotMissed) {
+  mesh::Mesh mesh;
+  add_rectangle(mesh, "floor", {-3, 0, -3}, {0, 0, 6}, {6, 0, 0});
+  add_rectangle(mesh, "lamp", {-0.02, 1, -0.02}, {0.04, 0, 0}, {0, 0, 0.04});
+  PathStage stage(std::move(mesh), {matt({0.5, 0.5, 0.5}), matt({0, 0, 0})});
+  stage.emission = {{}, {1000, 1000, 1000}};
+  const Transport& transport = stage.build();
+  const LobeColumns columns{kExponents};
+  PathScene scene;
+  scene.scene = &stage.scene;
+  const WornPaints worn = *worn_paints(columns, scene);
+  const rays::Float3 eye = transport.rays().local({-1, 1.5, -1});
+  const rays::Float3 toward = rays::normalized(transport.rays().local({0, 0, 0}) - eye);
+  const rays::Spot spot = transport.rays().spot(transport.rays().closest(eye, toward), eye, toward);
+  const LobePoint point(transport, columns, worn.groups, 0, spot, -toward);
+  constexpr int kSeeds = 100;
+  double mean = 0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed)
+    mean += point.estimate(nullptr, 2, 8, seed).direct[LobeColumns::diffuse()].y / kSeeds;
+  EXPECT_NEAR(mean, 1000 * 0.04 * 0.04, 0.01 * 1000 * 0.04 * 0.04);
+}
+
 // Ten paints on one basis, each shown by one transport and traced by itself, without bounces. The control is what maps
 // alone show.
 TEST(LobeTransport, ShowsEveryPaintAsTracingItAnewDoes) {
