@@ -23,6 +23,16 @@ double luminance(const color::Rgb& rgb) {
 
 }  // namespace
 
+Ground ground_below(const mesh::Mesh& mesh, const std::optional<double>& height, double eye_height) {
+  const mesh::Box box = mesh::bounding_box(mesh);
+  const Vec3 size = box.high - box.low, middle = 0.5 * (box.low + box.high);
+  Ground ground;
+  ground.height = height.value_or(box.low.y);
+  const double eye = eye_height > 0 ? eye_height : std::max({size.x, size.y, size.z}) / 3;
+  ground.probe_eye = {middle.x, ground.height + eye, middle.z};
+  return ground;
+}
+
 bool needs_rays(const Scene& scene) {
   return scene.ground || std::ranges::any_of(scene.emission, [](const color::Rgb& e) { return e != color::Rgb{}; });
 }

@@ -68,6 +68,9 @@ struct Ground {
   paint::LobeFit paint = {};   // with kPaint
   Vec3 probe_eye = {0, 1, 0};  // with kShadow: where the environment was seen from, above the floor
 };
+// The ground of an environment at this height, by default the lowest of the mesh; the eye is above the middle of the
+// mesh, by default at a third of its longest side, 0.
+Ground ground_below(const mesh::Mesh& mesh, const std::optional<double>& height = {}, double eye_height = 0);
 
 struct Scene {
   const mesh::Mesh* mesh = nullptr;

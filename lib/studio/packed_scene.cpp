@@ -81,9 +81,7 @@ Json packed_mesh(const mesh::Mesh& mesh, PackedNumbers& numbers) {
     const std::size_t row = kind ? kFirstTrimRow + static_cast<std::size_t>(*kind) : 0;
     parts.push_back({{"name", shown(part.name)}, {"first", part.first}, {"count", part.count}, {"row", row}});
   }
-  // The ground as render-osmesa lays it: seen from a third of the longest side above the middle.
-  const double eye_height = std::max({size.x, size.y, size.z}) / 3;
-  const Vec3 middle = 0.5 * (box.low + box.high);
+  const render::Ground ground = render::ground_below(mesh);
   const render::Camera camera = render::Camera::orbit(mesh, kAzimuth_deg, kElevation_deg, 1, kFov_deg, 16.0 / 9);
   const Vec3 origin = mesh::float_origin(box);  // the page computes in floats
   return {
@@ -94,8 +92,7 @@ Json packed_mesh(const mesh::Mesh& mesh, PackedNumbers& numbers) {
       {"corners", numbers.add(corners)},
       {"parts", std::move(parts)},
       {"unit_m", mesh::length_unit(mesh).meters},
-      {"ground",
-       {{"seen_from", vector_json(Vec3{middle.x, box.low.y + eye_height, middle.z} - origin)}, {"drop", eye_height}}},
+      {"ground", {{"seen_from", vector_json(ground.probe_eye - origin)}, {"drop", ground.probe_eye.y - ground.height}}},
       {"view",
        {{"azimuth", kAzimuth_deg},
         {"elevation", kElevation_deg},

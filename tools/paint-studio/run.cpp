@@ -7,10 +7,10 @@
 #include "compressed.h"
 #include "formats/default_basis.h"
 #include "formats/reference.h"
-#include "ground.h"
 #include "image/icc.h"
 #include "pack.h"
 #include "paint_stream.h"
+#include "render/page_ground.h"
 #include "render/page_stage.h"
 #include "starter.h"
 #include "studio/display_program.h"
@@ -121,7 +121,6 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(const PackedLibrary paints, packed_paints(options, session));
   GONIO_ASSIGN(const std::string index, paints.index());
   studio::PackedNumbers numbers;
-  GONIO_ASSIGN(const rays::RayScene scene, rays::RayScene::create(mesh));
   const render::PagePrograms programs = render::page_programs();
   const std::string title = !options.title.empty() ? plain_utf8(options.title)
                             : options.mesh.empty() ? "Goniochrome"
@@ -162,8 +161,14 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     const std::size_t before = numbers.bytes().size();
     auto environment = studio::packed_environment(name_of(path), *env, basis, numbers);
     if (!environment.ok()) return input_error("{}: {}", path, environment.error().message);
-    if (Json ground = packed_ground(scene, mesh, *env, numbers); !ground.is_null())
-      (*environment)["ground_light"] = std::move(ground);
+    if (env->mirror.map.size > 0) {
+      GONIO_ASSIGN(const render::PageGroundLight ground,
+                   render::page_ground_light(mesh, envmap::Environment::from_cube(env->mirror.map, path)));
+      (*environment)["ground_light"] = {{"size", ground.size},
+                                        {"turns", ground.turns},
+                                        {"reach", ground.reach},
+                                        {"texels", numbers.add(ground.texels)}};
+    }
     results["environments"].push_back(
         {{"name", name_of(path)}, {"bytes", environment->dump().size() + numbers.bytes().size() - before}});
     data["environments"].push_back(std::move(*environment));

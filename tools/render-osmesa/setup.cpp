@@ -275,17 +275,12 @@ Result<std::vector<Emission>> parse_emissions(const std::vector<std::string>& te
 
 Result<void> set_ground(const FloorRequest& request, const std::optional<paint::Paint>& paint, render::Scene& scene) {
   if (request.kind == FloorRequest::Kind::kNone) return {};
-  const mesh::Box box = mesh::bounding_box(*scene.mesh);
-  const Vec3 size = box.high - box.low, middle = 0.5 * (box.low + box.high);
-  render::Ground ground;
-  ground.height = request.height.value_or(box.low.y);
+  render::Ground ground = render::ground_below(*scene.mesh, request.height, request.eye);
   if (request.kind == FloorRequest::Kind::kPaint) {
     ground.kind = render::Ground::Kind::kPaint;
     ground.paint = *paint->lobes;
-  } else {
-    if (scene.env == nullptr) return usage_error("--floor shadow shows the ground of an environment: give --env");
-    const double eye = request.eye > 0 ? request.eye : std::max({size.x, size.y, size.z}) / 3;
-    ground.probe_eye = {middle.x, ground.height + eye, middle.z};
+  } else if (scene.env == nullptr) {
+    return usage_error("--floor shadow shows the ground of an environment: give --env");
   }
   scene.ground = std::move(ground);
   return {};

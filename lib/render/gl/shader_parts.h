@@ -46,12 +46,12 @@ vec3 on_ground(vec3 from, vec3 ray) { return from - max(from.y + ground_drop, 0.
 // mesh sends there. WebGL 2 promises 16 textures, so that there is no room for it beside more lobes.
 inline constexpr std::size_t kMostLobesOverShade = 8;
 inline constexpr const char* kKeptLight = R"(uniform sampler2D ground_light;
-uniform vec3 ground_place;  // where its square begins, in x and z, and squares to a unit of length; 0 for none
+uniform float ground_scale;  // 1 over its reach, see PageGroundLight; 0 for none
 uniform vec2 ground_turn;  // cosine and sine by which the environment was turned
 vec4 kept_light(vec3 at) {
-  if (ground_place.z == 0.0) return vec4(1.0, 1.0, 1.0, 0.0);
-  vec2 place = ground_place.z * (vec2(dot(ground_turn, at.xz), ground_turn.x * at.z - ground_turn.y * at.x) - ground_place.xy);
-  return place == clamp(place, 0.0, 1.0) ? texture(ground_light, place) : vec4(1.0, 1.0, 1.0, 0.0);
+  if (ground_scale == 0.0) return vec4(1.0, 1.0, 1.0, 0.0);
+  vec2 p = clamp(ground_scale * vec2(dot(ground_turn, at.xz), ground_turn.x * at.z - ground_turn.y * at.x), -1e3, 1e3);
+  return texture(ground_light, 0.5 + 0.5 * p * inversesqrt(1.0 + p * p));
 }
 )";
 inline constexpr const char* kMeshColor = "uniform vec3 mesh_color;  // reflectance of the paint in even light\n";

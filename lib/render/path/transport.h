@@ -121,7 +121,8 @@ class Transport {
   // noise they had from there, and are no longer exact: ShadedGround says by how much. Not for scenes with emitters.
   // Without such a floor it does nothing.
   void shade_ground(GroundRequest request, int bounces);
-  // The light of the floor then.
+  // The grid, null without one, and the light of the floor then.
+  const ShadedGround* shaded() const { return shaded_.get(); }
   LightShares shaded_ground(const rays::Spot& spot) const;
   // The places that surfaces get most of the light from that they pass on, each of which so many bounces may light;
   // null where directions toward them are not worth while, as in all scenes without emitters. Bit-identical for any

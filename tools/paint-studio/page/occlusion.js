@@ -70,9 +70,10 @@ uniform vec3 around[${aroundCount}];
 uniform usampler2D seen;
 uniform samplerCube light;
 uniform vec2 turn;
-vec3 shine(vec3 d) {
-  return textureLod(light, vec3(turn.x * d.x - turn.y * d.z, d.y, turn.y * d.x + turn.x * d.z), 0.0).rgb;
+vec3 of_map(samplerCube map, vec3 d) {
+  return textureLod(map, vec3(turn.x * d.x - turn.y * d.z, d.y, turn.y * d.x + turn.x * d.z), 0.0).rgb;
 }
+vec3 shine(vec3 d) { return of_map(light, d); }
 `;
 const ofLamps = `
 uniform int lamps;
@@ -80,8 +81,8 @@ uniform vec3 lamp_toward[${atOnce}], lamp_white[${atOnce}];
 `;
 const lossVertex = `${occlusionHead}${inTiles}${ofLight}${ofLamps}
 uniform sampler2D ground_light;
-uniform vec3 ground_place, seen_from;
-uniform float ground_height;
+uniform vec3 seen_from;
+uniform float ground_height, ground_scale;
 flat out vec4 first, second;
 flat out vec3 third;
 void main() {
@@ -96,9 +97,8 @@ ${inTexel}
       lost = dot(luminance, shine(d));
     } else if (d.y < 0.0) {
       vec3 met = position - max(position.y - ground_height, 0.0) / d.y * d;
-      vec2 place = ground_place.z * ((met - seen_from).xz - ground_place.xy);
-      bool inside = ground_place.z > 0.0 && place == clamp(place, 0.0, 1.0);
-      vec3 kept = inside ? texture(ground_light, place).rgb : vec3(1.0);
+      vec2 p = clamp(ground_scale * (met - seen_from).xz, -1e3, 1e3);
+      vec3 kept = ground_scale > 0.0 ? texture(ground_light, 0.5 + 0.5 * p * inversesqrt(1.0 + p * p)).rgb : vec3(1.0);
       lost = dot(luminance, shine(d) - kept * shine(met - seen_from));
     }
     // On a back the diffuse part stands for all lobes.
@@ -131,13 +131,20 @@ layout(location = 1) out vec4 moments_1;
 layout(location = 2) out vec4 moments_2;
 void main() { moments_0 = first, moments_1 = second, moments_2 = vec4(third, 0); }
 `;
-// The part of its light that a place of the ground keeps. Neighbors smooth the few directions; lamps are looked up by themselves.
+// The part of its light that a place of the ground keeps, and the light from a white matt mesh, which faces the place and is as open
+// as that. Neighbors smooth the few directions; lamps are looked up by themselves.
 const groundVertex = `${occlusionHead}${inTiles}${ofLight}${ofLamps}
-flat out vec3 kept;
+uniform samplerCube diffuse;
+flat out vec4 kept;
+vec3 white(vec3 n) {
+  vec3 sum = of_map(diffuse, n);
+  for (int i = 0; i < lamps; ++i) sum += max(dot(lamp_toward[i], n), 0.0) * lamp_white[i];
+  return sum;
+}
 void main() {
 ${inTexel}
   vec3 all = vec3(0.0);
-  kept = vec3(0.0);
+  kept = vec4(0.0);
   for (int i = 0; i < ${aroundCount}; ++i) {
     vec3 whole = 2.0 / ${aroundCount}.0 * around[i].y * shine(around[i]);
     float hidden = 0.0;
@@ -146,24 +153,26 @@ ${inTexel}
       hidden += float(texelFetch(seen, at, 0)[i >> 5] >> (i & 31) & 1u) / 9.0;
     }
     all += whole;
-    kept += (1.0 - hidden) * whole;
+    kept.rgb += (1.0 - hidden) * whole;
+    kept.a += hidden * 2.0 / ${aroundCount}.0 * around[i].y * dot(luminance, white(-around[i]));
   }
   for (int i = 0; i < lamps; ++i) {
     vec3 whole = max(lamp_toward[i].y, 0.0) * lamp_white[i];
     all += whole;
     for (int k = 0; k < 9; ++k) {
       vec3 p = position + vec3(k % 3 - 1, 0, k / 3 - 1) / (${tile}.0 * ball.w);
-      if (!is_hidden(p, lamp_toward[i], i)) kept += whole / 9.0;
+      if (!is_hidden(p, lamp_toward[i], i)) kept.rgb += whole / 9.0;
     }
   }
-  kept /= max(all, vec3(1e-9));
+  kept /= max(vec4(all, dot(luminance, all)), vec4(1e-9));
+  kept.a *= dot(luminance, kept.rgb);
 }
 `;
 const groundFragment = `#version 300 es
 precision highp float;
-flat in vec3 kept;
+flat in vec4 kept;
 layout(location = 0) out vec4 color;
-void main() { color = vec4(kept, 0.0); }  // light that the mesh sends is not found
+void main() { color = kept; }
 `;
 
 class Occlusion {
@@ -235,12 +244,13 @@ class Occlusion {
       this.changed();
     }
     if (this.ground || stage.data.environments.every((one) => one.ground_light)) return;
-    const side = Math.max(size[0], size[2]) + 3 * size[1], corner = [0, 2].map((i) => (low[i] + high[i] - side) / 2), places = new Float32Array(3 * groundSize ** 2);
+    const reach = 0.6 * Math.max(size[0], size[2]) + 2 * size[1], places = new Float32Array(3 * groundSize ** 2);
+    const line = (i) => { const u = (2 * i + 1) / groundSize - 1; return (reach * u) / Math.sqrt(1 - u * u); };  // as the tool lays its texels
     for (let i = 0; i < places.length; i += 3)
-      places.set([corner[0] + (side * (((i / 3) % groundSize) + 0.5)) / groundSize, low[1], corner[1] + (side * (Math.floor(i / 3 / groundSize) + 0.5)) / groundSize], i);
+      places.set([(low[0] + high[0]) / 2 + line((i / 3) % groundSize), low[1], (low[2] + high[2]) / 2 + line(Math.floor(i / 3 / groundSize))], i);
     const ground = this.points(groundSize, places, places.map((_, i) => (i % 3 === 1 ? 1 : 0)));
     yield* this.look(ground, above);
-    this.ground = { ...ground, low: corner, side, shade: this.picture(ground, stage.gl.RGBA8, 1) };
+    this.ground = { ...ground, reach, shade: this.picture(ground, stage.gl.RGBA8, 1) };
     this.changed();
   }
   changed() {
@@ -290,8 +300,8 @@ class Occlusion {
   take(what, environment, program, points, picture, directions, textures, set) {
     const { stage } = this, { gl } = stage;
     if (this.has(what, environment)) return this.keys[what].join();
-    const { texture } = stage.environment(environment).cubes.find(({ sampler }) => sampler === this.sampler);
-    this.draw(program, points, picture, [["seen", gl.TEXTURE_2D, points.bits.textures[0]], ["light", gl.TEXTURE_CUBE_MAP, texture], ...textures], () => {
+    const cubes = [["light", this.sampler], ["diffuse", "diffuse"]].map(([name, of]) => [name, gl.TEXTURE_CUBE_MAP, stage.environment(environment).cubes.find(({ sampler }) => sampler === of).texture]);
+    this.draw(program, points, picture, [["seen", gl.TEXTURE_2D, points.bits.textures[0]], ...cubes, ...textures], () => {
       gl.uniform3fv(program.at("around[0]"), directions.flat());
       gl.uniform2fv(program.at("turn"), stage.turnVector);
       set();
@@ -313,20 +323,20 @@ class Occlusion {
   takeLoss(environment) {
     const { stage } = this, { gl } = stage;
     if (this.columns === 0 || !stage.ground || !stage.data.environments[environment].cubes.some(({ sampler }) => sampler === this.sampler)) return "none";
-    const { texture, place } = stage.groundShade(environment), program = (this.lossProgram ??= stage.program(lossVertex, lossFragment));
+    const { texture, scale } = stage.groundShade(environment), program = (this.lossProgram ??= stage.program(lossVertex, lossFragment));
     this.moments ??= this.picture(this.mesh, gl.RGBA16F, 3);
     const setLamps = this.lamps("mesh", environment, program);
     return this.take("mesh", environment, program, this.mesh, this.moments, around, [["ground_light", gl.TEXTURE_2D, texture ?? this.depths.texture], ["depths", gl.TEXTURE_2D, this.depths.depth]], () => {
       setLamps();
-      gl.uniform3fv(program.at("ground_place"), place);
+      gl.uniform1f(program.at("ground_scale"), scale);
       gl.uniform3fv(program.at("seen_from"), stage.data.mesh.ground.seen_from);
       gl.uniform1f(program.at("ground_height"), stage.mesh.low[1]);
     });
   }
-  // The shadow on the ground, which is known: {texture, low, side}.
+  // The shadow on the ground, which is known: {texture, reach}.
   groundLight(environment) {
     const { stage, ground } = this, { gl } = stage, program = (this.groundProgram ??= stage.program(groundVertex, groundFragment));
     this.take("ground", environment, program, ground, ground.shade, above, [["depths", gl.TEXTURE_2D, this.depths.depth]], this.lamps("ground", environment, program));
-    return { texture: ground.shade.textures[0], low: ground.low, side: ground.side };
+    return { texture: ground.shade.textures[0], reach: ground.reach };
   }
 }

@@ -247,12 +247,11 @@ class Stage {
     made.groundTurn = this.turn;
     return made.ground;
   }
-  // The shadow on the ground: its texture, and where its square begins from the point that saw the environment, in x and z, and squares to a
-  // unit of length.
+  // The shadow on the ground: its texture, null where it is not known, and 1 over its reach.
   groundShade(environment) {
-    const packed = this.data.environments[environment].ground_light, { seen_from } = this.data.mesh.ground;
+    const packed = this.data.environments[environment].ground_light;
     const shade = packed ? { ...packed, texture: this.groundLight(environment, packed) } : this.occlusion.ground ? this.occlusion.groundLight(environment) : null;
-    return { texture: shade?.texture ?? null, place: shade ? [shade.low[0] - seen_from[0], shade.low[1] - seen_from[2], 1 / shade.side] : [0, 0, 0] };
+    return { texture: shade?.texture ?? null, scale: shade ? 1 / shade.reach : 0 };
   }
   // The program and the textures of an environment, made when it is first shown.
   environment(number) {
@@ -463,7 +462,7 @@ class Stage {
     gl.uniform1f(program.at("reach"), gbuffer.view.reach);
     gl.uniform1i(program.at("own_lamps"), this.lamp ? 1 : 0);
     bind("ground_light", gl.TEXTURE_2D, shade.texture ?? gbuffer.texture);
-    gl.uniform3fv(program.at("ground_place"), shade.place);
+    gl.uniform1f(program.at("ground_scale"), shade.scale);
     gl.uniform3fv(program.at("mesh_color"), meshColor);
     gl.uniform2fv(program.at("ground_turn"), this.turnVector);
     for (const [uniform, member] of [["light_direction", "direction"], ["light_white", "white"], ["light_disc", "disc"]])

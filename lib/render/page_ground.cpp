@@ -1,0 +1,74 @@
+#include "render/page_ground.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angles.h"
+#include "base/parallel.h"
+#include "render/path/transport.h"
+#include "render/trim.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+constexpr int kSize = 512, kTurns = 8;
+constexpr int kBouncedDirections = 64;
+
+// The mesh as the environment sees it when it is turned about the vertical axis through the middle.
+mesh::Mesh turned(mesh::Mesh mesh, const Vec3& middle, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const auto turn = [&](const Vec3& d) { return Vec3{c * d.x - s * d.z, d.y, s * d.x + c * d.z}; };
+  for (Vec3& p : mesh.positions) p = middle + turn(p - middle);
+  for (Vec3& n : mesh.normals) n = turn(n);
+  return mesh;
+}
+
+}  // namespace
+
+Result<PageGroundLight> page_ground_light(const mesh::Mesh& mesh, const envmap::Environment& environment) {
+  const mesh::Box box = mesh::bounding_box(mesh);
+  const Vec3 size = box.high - box.low;
+  PageGroundLight light{kSize, kTurns, 0.6 * std::max(size.x, size.z) + 2 * size.y, {}};
+  Scene scene;
+  for (const mesh::MeshPart& part : mesh.parts) {
+    paint::LobeFit& paint = scene.paints.emplace_back();
+    if (!trim_kind(part)) paint.diffuse = {1 / kPi, 1 / kPi, 1 / kPi};
+  }
+  PathScene paths{.scene = &scene, .environment = &environment, .ground = ground_below(mesh)};
+  paths.table = std::make_shared<const EnvironmentTable>(environment);
+  const Vec3 eye = paths.ground->probe_eye;
+  std::vector<double> lines;  // two in each texel
+  for (int i = 0; i < 2 * kSize; ++i) {
+    const double u = (i + 0.5) / kSize - 1;
+    lines.push_back(light.reach * u / std::sqrt(1 - u * u));
+  }
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const double angle = 2 * kPi * turn / kTurns, c = std::cos(angle), s = std::sin(angle);
+    const mesh::Mesh seen = turned(mesh, eye, angle);
+    scene.mesh = &seen;
+    GONIO_ASSIGN(Transport transport, Transport::create(paths));
+    transport.shade_ground({.directions = kFewestGroundDirections, .bounced_directions = kBouncedDirections}, 1);
+    const std::size_t first = light.texels.size();
+    light.texels.resize(first + 4UL * kSize * kSize);
+    parallel_for(kSize, 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) {
+        for (std::size_t column = 0; column < kSize; ++column) {
+          GroundLight at{{}, {}};  // the mean of two places
+          for (const std::size_t i : {0, 1}) {
+            const double x = lines[2 * column + i], z = lines[2 * row + 1 - i];
+            const Vec3 place{eye.x + c * x - s * z, box.low.y, eye.z + s * x + c * z};
+            const GroundLight one = transport.shaded()->seen(transport.rays().local(place));
+            at.left += 0.5 * one.left, at.bounced += 0.5 * one.bounced;
+          }
+          std::uint8_t* texel = &light.texels[first + 4 * (row * kSize + column)];
+          for (const double share : {at.left.x, at.left.y, at.left.z, color::xyz_d65_from_rgb(at.bounced).Y})
+            *texel++ = static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
+        }
+      }
+    });
+  }
+  return Result(std::move(light));
+}
+
+}  // namespace goniochrome::render
