@@ -112,7 +112,7 @@ ${inTexel}
     second += lost * vec4(d.yz * d.yz + other.yz * other.yz, d.x * d.y + other.x * other.y, d.y * d.z + other.y * other.z);
     third.x += lost * (d.z * d.x + other.z * other.x);
   }
-  vec3 p = position + 6.0 / (${tile}.0 * ball.w) * normal;
+  vec3 p = position + 1.5 / (${tile}.0 * ball.w) * normal;
   float whole = 0.0;
   for (int i = 0; i < lamps; ++i) {
     float given = max(dot(lamp_toward[i], normal), 0.0) * dot(luminance, lamp_white[i]);
