@@ -84,6 +84,7 @@ needs_browser() {
   [ "$(jq '.layers_drawn > 8 and .layer_bytes <= 96e6' pictures.json)" = true ]
   [ "$(jq -r .refused pictures.json)" = "There is no room for the layers of this picture." ]
   [ "$(jq '.smooth | .strided and .off < 0.25 * .off_plain' pictures.json)" = true ]
+  [ "$(jq .timers pictures.json)" -eq 1 ]  # steps to the sharp picture wait for what is drawn, and for no more
 }
 
 # Most of the ground is so far from the mesh that nothing takes its light away.

@@ -188,8 +188,17 @@ async function main() {
     const late = all.slice(6).sort((a, b) => a - b);
     return { dragged_ms: late[3], dragged_size: [view.canvas.width, view.canvas.height] };
   })()`);
+  // How many timers eight steps take.
+  const timers = await browser.evaluate(`(async () => {
+    const set = window.setTimeout;
+    let count = 0;
+    window.setTimeout = (action, ms, ...more) => { count += ms === 0; return set(action, ms, ...more); };
+    await new Promise((done) => studio.stageView.rest((function* () { for (let i = 0; i < 8; ++i) yield; done(); })()));
+    window.setTimeout = set;
+    return count;
+  })()`);
   await browser.close();
-  console.log(JSON.stringify({ ...times, ...settled, ...dragged, environments, layers, smooth, ...moved, problems: browser.problems }));
+  console.log(JSON.stringify({ timers, ...times, ...settled, ...dragged, environments, layers, smooth, ...moved, problems: browser.problems }));
   if (browser.problems.length > 0) process.exit(1);
 }
 

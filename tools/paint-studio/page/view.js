@@ -480,8 +480,8 @@ class StageView {
     const next = async (took_ms) => {
       const begin = performance.now();
       if (this.steps !== steps || steps.next(took_ms).done) return;
-      await this.stage.drawn();
-      if (this.steps === steps) this.resting = setTimeout(next, 0, performance.now() - begin);
+      await this.stage.drawn();  // which is known after the page has answered
+      next(performance.now() - begin);
     };
     if (steps) this.resting = setTimeout(next, 0, 0);
   }
