@@ -21,6 +21,8 @@ namespace {
 // An error of so many tolerances is a speck. Its point gets at most so many times its samples, and all of these points
 // such a part of all samples or, where few points have any, as many for each point.
 constexpr double kSpeck = 2, kMostOfSpeck = 15, kSpecksShare = 0.5;
+// An error of samples of so many tolerances is seen when it is spread.
+constexpr double kBlotch = 10;
 // Most points need no more than a few samples: the first round takes as many fours as tell a variance.
 constexpr int kFirstFours = 2;
 // A round draws no less than this part of all fours so far: after each the noise of every point is judged anew, which
@@ -148,9 +150,9 @@ class Picture {
 
   // The first samples of a point are of all shares.
   const PathOptions& options_of(std::size_t i) const {
-    const bool first = states_[i].sums.fours() == 0;
-    if (states_[i].hidden) return first ? first_whole_ : whole_;
-    return first ? request_.options : options_;
+    const bool all = states_[i].sums.fours() == 0 || states_[i].all_shares;
+    if (states_[i].hidden) return all ? first_whole_ : whole_;
+    return all ? request_.options : options_;
   }
 
   // Light that samples tell, of which there are none yet.
@@ -175,6 +177,7 @@ class Picture {
     std::optional<color::Rgb> floor_light;  // of any sample of the pixel; none: not known, or of each another
     double needed = 0;                      // fours that bring the noise of the neighborhood to the tolerance
     bool certain = false;
+    bool all_shares = false;      // Its first samples differ too much for any share to stop.
     bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
     std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
     unsigned step = 1;            // from one sample of the pixel that rays look at to the next
@@ -209,7 +212,8 @@ class Picture {
 
   void add_round(std::size_t i, const Round& round, const LightShares (&means)[Round::kSequences]) {
     color::Rgb drawn[Round::kSequences];
-    for (std::size_t k = 0; k < Round::kSequences; ++k) drawn[k] = sum_of(means[k], drawn_);
+    const unsigned shares = states_[i].all_shares ? kAllShares : drawn_;
+    for (std::size_t k = 0; k < Round::kSequences; ++k) drawn[k] = sum_of(means[k], shares);
     if (!kept_.empty() && states_[i].sums.fours() == 0)
       for (std::size_t k = 0; k < Round::kSequences; ++k) kept_[i][k] = sum_of(means[k], kAllShares & ~drawn_);
     states_[i].sums.add(round, drawn);
@@ -261,15 +265,22 @@ class Picture {
     whole_ = options_, whole_.correction = false;
     kept_.resize(points_.size());
     const Round round(kFirstFours);
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      if (states_[i].sums.fours() == 0) continue;
+    each_point([&](std::size_t i) {
+      State& state = states_[i];
+      if (state.sums.fours() == 0) return;
       color::Rgb drawn[Round::kSequences];
-      for (std::size_t k = 0; k < Round::kSequences; ++k) {
-        drawn[k] = sum_of(first_[i][k], drawn_), kept_[i][k] = sum_of(first_[i][k], stopped);
-      }
-      states_[i].sums = {};
-      states_[i].sums.add(round, drawn);
-    }
+      Halves kept;
+      for (std::size_t k = 0; k < Round::kSequences; ++k)
+        drawn[k] = sum_of(first_[i][k], drawn_), kept[k] = sum_of(first_[i][k], stopped);
+      const color::Rgb shown = (base_ != nullptr ? base_at(points_[i]) : color::Rgb{}) + first_shares(i).sum(),
+                       error = 0.5 * (kept[0] - kept[1]);
+      state.all_shares =
+          seen_difference(shown, shown + error, request_.white_luminance) > kSpeck * request_.tolerance_de00;
+      if (state.all_shares) return;
+      state.sums = {};
+      state.sums.add(round, drawn);
+      kept_[i] = kept;
+    });
   }
 
   struct Look {
@@ -413,7 +424,8 @@ class Picture {
       points_[i].radiance = states_[i].sharp + (certain ? halves[i][0] : found.light[i]);
       points_[i].noise_de00 = certain ? 0 : found.error_de00[i];
       const double excess = kDeviations * points_[i].noise_de00 / tolerance();
-      states_[i].needed = certain ? 0 : counted(i) * excess * excess;
+      const double speck = found.spike_de00[i] > kBlotch * tolerance() ? kSpeck * kSpeck * (1 + kMostOfSpeck) : 0;
+      states_[i].needed = certain ? 0 : counted(i) * std::max(excess * excess, speck);
     });
   }
 

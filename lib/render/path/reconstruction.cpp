@@ -33,6 +33,8 @@ constexpr std::size_t kChoices = kFilters.size() + 1;
 constexpr Filter kErrorMean = {2, {3, 0.25F, 0.5F, kNoSlopes}};
 // A squared difference of a filter from its reference above this multiple of their common variance counts as bias.
 constexpr float kSurprise = 25;
+// Samples with so many times the variance of their neighborhood have a large part of it: a hundred count in its mean.
+constexpr float kLargePart = 16;
 // The own variance of a point, divided by this, bounds its error from below: the mean over a neighborhood dilutes rare
 // bright samples.
 constexpr float kSpike = 4;
@@ -357,10 +359,13 @@ Reconstruction reconstruction(const std::vector<ShownPoint>& points, const std::
   const Measured errors = measured(width, height, points, predicted, beside, white_luminance);
   Reconstruction result;
   result.light.resize(points.size()), result.error_de00.resize(points.size());
+  result.spike_de00.resize(points.size());
   each_point(points.size(), [&](std::size_t n) {
     Values error{};
     for (std::size_t k = 0; k < kChoices; ++k)
       error[k] = std::isnan(predicted[k][n][0]) ? HUGE_VALF : squared_error(predicted, errors, n, k);
+    if (const float own = errors.variances[n][0]; own > kLargePart * errors.mean_variances[n][0])
+      result.spike_de00[n] = std::sqrt(own);
     const float least = *std::ranges::min_element(error);
     if (std::isinf(least)) {
       result.error_de00[n] = HUGE_VALF;

@@ -39,6 +39,9 @@ constexpr color::Rgb kUnknown{std::numeric_limits<double>::quiet_NaN(), std::num
 struct Reconstruction {
   std::vector<color::Rgb> light;  // of each point
   std::vector<float> error_de00;  // its standard error, over the neighborhood; infinite where nothing tells a point
+  // The error of samples that have a large part of the variance of their neighborhood, over which filters spread it as
+  // a blotch; 0 of all other points.
+  std::vector<float> spike_de00;
 };
 
 // `beside` is what each point shows beside the light that is reconstructed; with it, errors are seen before a white of

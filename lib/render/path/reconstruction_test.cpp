@@ -153,8 +153,19 @@ TEST(Reconstruction, KeepsLightWithoutNoise) {
   for (const Light& light : {Light(smooth), Light(edge), Light(parted)}) EXPECT_LT(told(sheet(light, 0)).error, 0.05);
 }
 
-// Beside the edge no point has as much as half of the difference between the parts, and their error is below that of
-// the samples.
+// One bright sample among many is told; of noise that all have, no more than its largest values are.
+TEST(Reconstruction, TellsASampleThatFiltersSpread) {
+  Stage stage = sheet(smooth, 0.01);
+  const std::size_t place = 30UL * kWidth + 70;
+  constexpr float kOfNoise = 10;
+  EXPECT_LT(std::ranges::max(stage.reconstructed().spike_de00), kOfNoise) << "control: no such sample";
+  stage.halves[place][0] += color::Rgb{20, 20, 20};
+  std::vector<float> spikes = stage.reconstructed().spike_de00;
+  EXPECT_GT(spikes[place], 10 * kOfNoise);
+  spikes[place] = 0;
+  EXPECT_LT(std::ranges::max(spikes), kOfNoise);
+}
+
 TEST(Reconstruction, NeverMixesParts) {
   const Stage stage = sheet(parted, 0.05);
   const Reconstruction found = stage.reconstructed();
