@@ -22,7 +22,7 @@ refused() {
 }
 
 @test "options are checked" {
-  refused 2 'there is no study serch: choose of prefilter' serch
+  refused 2 'there is no study serch: choose of paths' serch
   refused 2 'expected one argument' --bin
   refused 3 'nowhere: the tools are not there' --bin nowhere
   for option in --paints --probe --mesh; do
