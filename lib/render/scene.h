@@ -68,8 +68,8 @@ struct Ground {
   paint::LobeFit paint = {};   // with kPaint
   Vec3 probe_eye = {0, 1, 0};  // with kShadow: where the environment was seen from, above the floor
 };
-// The ground of an environment at this height, by default the lowest of the mesh; the eye is above the middle of the
-// mesh, by default at a third of its longest side, 0.
+// The ground of an environment at this height, by default that of the lowest vertex. The environment was seen from this
+// height above it, over the middle of the mesh; an eye height of 0 stands for a third of the mesh's longest side.
 Ground ground_below(const mesh::Mesh& mesh, const std::optional<double>& height = {}, double eye_height = 0);
 
 struct Scene {

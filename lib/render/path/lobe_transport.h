@@ -88,7 +88,8 @@ struct TracedLobes {
   // white_luminance, one standard deviation. That of a point is the largest over its columns.
   double noise_p95_de00 = 0, noise_mean_de00 = 0;
   double shown_p95_de00 = 0;  // what 5 of 100 errors exceed in the paints that are worn
-  // Errors of columns cancel in part in a paint: a single column may have the noise of four tolerances.
+  // A single column may have the noise of four tolerances: errors of columns cancel in part in a paint, and on a car
+  // the noisiest column had three times the error of the paint.
   static constexpr double kColumnTolerances = 4;
   double error_de00() const { return std::max(shown_p95_de00, noise_p95_de00 / kColumnTolerances); }
   double samples_mean = 0, free_share = 0;  // directions of a point; points that nothing rises above

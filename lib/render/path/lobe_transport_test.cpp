@@ -47,6 +47,12 @@ TEST(LobeTransport, OfAConvexShapeIsThatOfTheMapsAndWithoutNoise) {
   }
 }
 
+// The point in the middle, seen from aside and above, and the direction to it.
+std::pair<rays::Spot, rays::Float3> seen_aside(const rays::RayScene& scene) {
+  const rays::Float3 eye = scene.local({-1, 1.5, -1}), toward = rays::normalized(scene.local({0, 0, 0}) - eye);
+  return {scene.spot(scene.closest(eye, toward), eye, toward), toward};
+}
+
 // A rectangle above an element hides a form factor in closed form from the cosine. The other columns are held against
 // a sum over a fine grid of directions, which that closed form holds to account.
 TEST(LobeTransport, ARectangleHidesItsFormFactorFromTheDiffuseColumn) {
@@ -62,9 +68,7 @@ TEST(LobeTransport, ARectangleHidesItsFormFactorFromTheDiffuseColumn) {
   PathScene scene;
   scene.scene = &stage.scene;
   const WornPaints worn = *worn_paints(columns, scene);
-  const rays::Float3 eye = transport.rays().local({-1, 1.5, -1});
-  const rays::Float3 toward = rays::normalized(transport.rays().local({0, 0, 0}) - eye);
-  const rays::Spot spot = transport.rays().spot(transport.rays().closest(eye, toward), eye, toward);
+  const auto [spot, toward] = seen_aside(transport.rays());
   const LobePoint point(transport, columns, worn.groups, 0, spot, -toward);
   std::vector<color::Rgb> free(columns.count());
   open.at({0, 1, 0}, rays::vec3(-toward), 0, free.data());
@@ -125,9 +129,7 @@ TEST(LobeTransport, ASmallEmitterIsNotMissed) {
   PathScene scene;
   scene.scene = &stage.scene;
   const WornPaints worn = *worn_paints(columns, scene);
-  const rays::Float3 eye = transport.rays().local({-1, 1.5, -1});
-  const rays::Float3 toward = rays::normalized(transport.rays().local({0, 0, 0}) - eye);
-  const rays::Spot spot = transport.rays().spot(transport.rays().closest(eye, toward), eye, toward);
+  const auto [spot, toward] = seen_aside(transport.rays());
   const LobePoint point(transport, columns, worn.groups, 0, spot, -toward);
   constexpr int kSeeds = 100;
   double mean = 0;

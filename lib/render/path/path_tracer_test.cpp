@@ -349,6 +349,27 @@ TEST(PathPicture, PointsWithoutSamplesAreToldByTheirNeighbors) {
   EXPECT_LT(sparse.noise_p95_de00, 1.25 * error);
 }
 
+// Groups of any size are drawn together, by the memory that samples take.
+TEST(PathPicture, TakesAnyNumberOfSamplesOfAPixel) {
+  const auto stage = ball_in_a_cup();
+  Camera camera;
+  camera.eye = {0.5, 4, 2};
+  camera.fov_deg = 36;
+  const std::vector<Gbuffer> samples = four_samples(*stage, camera, 32, 24);
+  const std::vector<const Gbuffer*> all = pointers(samples);
+  PathRequest request;
+  request.options.bounces = 2;
+  request.tolerance_de00 = 3, request.reconstruct = true;
+  std::vector<double> sums;
+  for (std::size_t count = 1; count <= all.size(); ++count) {
+    color::Rgb sum;
+    const PathPicture picture = path_picture(*stage->transport, PixelSamples(all.data(), count), nullptr, request);
+    for (const PathPoint& point : picture.points) sum += point.radiance;
+    sums.push_back(color::xyz_d65_from_rgb(sum).Y);
+  }
+  for (const double one : sums) EXPECT_NEAR(one, sums.back(), 0.03 * sums.back());
+}
+
 // Two boxes with a gap between them that a few pixels show, under a bright lamp. The first round is within the
 // tolerance at 95 of 100 points, and one more mends the worst of the others. Control: the first round alone.
 TEST(PathPicture, TheWorstPointsGetOneRoundMore) {
@@ -396,6 +417,12 @@ TEST(PathPicture, TheWorstPointsGetOneRoundMore) {
   EXPECT_TRUE(mended.reached);
   EXPECT_LE(mended.samples_mean, first.samples_mean + 2);
   EXPECT_LT(worst(mended), 0.6 * worst(first));
+  // Nor do they stay where no share changes much at most points, so that all stop.
+  request.stop_de00 = 0.35;
+  const PathPicture stopped = path_picture(*stage.transport, pointers(samples), &base, request);
+  ASSERT_TRUE(std::ranges::all_of(std::span(stopped.found).first(3), &FoundShare::stopped));
+  EXPECT_LT(worst(stopped), 0.7 * worst(first));
+  request.stop_de00 = 0;
   request.most_samples = 8;
   EXPECT_EQ(path_picture(*stage.transport, pointers(samples), &base, request).samples_mean, first.samples_mean)
       << "no point gets more than it may";

@@ -33,7 +33,8 @@ constexpr std::size_t kChoices = kFilters.size() + 1;
 constexpr Filter kErrorMean = {2, {3, 0.25F, 0.5F, kNoSlopes}};
 // A squared difference of a filter from its reference above this multiple of their common variance counts as bias.
 constexpr float kSurprise = 25;
-// Samples with so many times the variance of their neighborhood have a large part of it: a hundred count in its mean.
+// Samples with so many times the variance of their neighborhood have a large part of it: some hundred points count in
+// its mean.
 constexpr float kLargePart = 16;
 // The own variance of a point, divided by this, bounds its error from below: the mean over a neighborhood dilutes rare
 // bright samples.
