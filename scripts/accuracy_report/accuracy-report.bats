@@ -15,14 +15,14 @@ setup() {
 refused() {
   local wanted=$1 message=$2
   shift 2
-  run --separate-stderr report search --quick -o none "$@"
+  run --separate-stderr report basis --quick -o none "$@"
   [ "$status" -eq "$wanted" ] || { echo "status $status: $stderr"; return 1; }
   [[ "$stderr" == *"$message"* ]] || { echo "$stderr"; return 1; }
   [ ! -e none ]
 }
 
 @test "options are checked" {
-  refused 2 'there is no study serch: choose of paths' serch
+  refused 2 'there is no study bases: choose of paths' bases
   refused 2 'expected one argument' --bin
   refused 3 'nowhere: the tools are not there' --bin nowhere
   for option in --paints --probe --mesh; do
@@ -37,7 +37,7 @@ refused() {
   refused 2 '--scene goes with --target-de00' --scene signal_red
   refused 2 'expected one argument' --output
   echo kept >file
-  run --separate-stderr report search --quick -o file
+  run --separate-stderr report basis --quick -o file
   [ "$status" -eq 3 ]
   [[ "$stderr" == *'file: is a file: --output names the folder of the page'* ]]
   [ "$(cat file)" = kept ]
@@ -48,7 +48,7 @@ refused() {
 }
 
 @test "two studies make a consistent page with the time of every run" {
-  run report search basis --quick --bin "$(dirname "$(command -v draw-plot)")" -o out
+  run report fit basis --quick --bin "$(dirname "$(command -v draw-plot)")" -o out
   echo "$output"
   [ "$status" -eq 0 ]
   /usr/bin/python3 - out <<'PY'
@@ -86,10 +86,10 @@ assert not page.open, page.open
 for link in page.links:
     assert link == "readings.csv" or link[1:] in page.ids, link
 assert "url(" not in text and "@import" not in text
-assert {"Nearest paint", "Choosing a basis"} <= {w.strip() for w in page.words}
+assert {"Fitting", "Choosing a basis"} <= {w.strip() for w in page.words}
 
 rows = list(csv.DictReader((out / "readings.csv").open()))
-assert {row["study"] for row in rows} == {"Nearest paint", "Choosing a basis"}
+assert {row["study"] for row in rows} == {"Fitting", "Choosing a basis"}
 for row in rows:
     times = [float(s) for s in row["all_times_s"].split()]
     assert times and abs(min(times) / float(row["time_s"]) - 1) < 1e-4, row

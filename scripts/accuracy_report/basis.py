@@ -1,5 +1,7 @@
 """Choosing a basis: the starts and the method of fit-basis against the fits that its lobes allow, and the basis made by hand."""
 
+from .fit import bases
+from .page import number
 from .study import Figure, Reading, Study
 
 LOBES = 5
@@ -12,19 +14,17 @@ def reading(run, method, starts):
     found, best, raw = run.repeated(*words)
     fits, _ = run.tool("fit-paint", run.paints, "--basis", basis, "--method", "deltae", "-o", run.work / "fitted.xml")
     chosen = found["sets"][-1]
-    return Reading(f"{method}, {starts} starts", best, chosen["objective"], method, (method, starts) == (METHOD, STARTS), raw,
+    return Reading(f"{method}, {starts} start{'s' * (starts > 1)}", best, chosen["objective"], method,
+                   (method, starts) == (METHOD, STARTS), raw,
                    {"de00": fits["de00_mean"], "evaluations": chosen["evaluations"]}, again=lambda: run.tool(*words)[1])
 
 
 def by_number(run):
-    """Rows (basis, lobes, exponents, largest and mean error, mean dE00) of the sets of 1 to 11 lobes and of the one made by hand."""
-    most = 7 if run.quick else 11
-    found, _ = run.tool("fit-basis", run.paints, "--lobes", f"1..{most}", "--each", run.work / "each-", "-o",
-                        run.work / "most.basis.xml")
-    for each in found["sets"]:
-        fits, _ = run.tool("fit-paint", run.paints, "--basis", run.work / f"each-{each['lobes']}.basis.xml", "-o",
-                           run.work / "fitted.xml")
-        yield ("found", each["lobes"], " ".join(f"{e:.3g}" for e in each["exponents"]), each["max_error"], each["mean_error"],
+    """Rows (basis, lobes, exponents, largest and mean error, mean dE00) of sets of each number and of the one made by hand."""
+    files, sets = bases(run)
+    for each in sets:
+        fits, _ = run.tool("fit-paint", run.paints, "--basis", files[each["lobes"]], "-o", run.work / "fitted.xml")
+        yield ("found", each["lobes"], " ".join(map(number, each["exponents"])), each["max_error"], each["mean_error"],
                fits["de00_mean"])
     fits, _ = run.tool("fit-paint", run.paints, "--basis", run.data / "b7.basis.xml", "-o", run.work / "fitted.xml")
     yield "by hand (b7)", 7, "1.3 6 20 70 250 900 3000", float("nan"), float("nan"), fits["de00_mean"]
@@ -32,12 +32,12 @@ def by_number(run):
 
 def study(run):
     starts = [reading(run, method, n) for method in ("power-mean", "lm")
-              for n in ((1, STARTS) if run.quick or method == "lm" else (1, 2, 4, STARTS, 12))]
+              for n in (1, STARTS)]
     aim = "RMS error, largest + mean of a paint (L*)"
     figures = [Figure("basis-starts", f"{LOBES} lobes: error of the library against the time of finding them, by the starts",
                       starts, "time of fit-basis (s)", aim, front=False,
-                      note="There is no dashed line here: more starts are a precaution against a poor local minimum. That two "
-                      "of them are enough for this library does not mean that they are enough for another one.")]
+                      note="There is no dashed line here: more starts are a precaution against a poor local minimum. That one "
+                      "is enough for this library does not mean that they are enough for another one.")]
     rows = [(r.setting, r.time_s, r.numbers["evaluations"], r.error, r.numbers["de00"]) for r in starts]
     return Study("Choosing a basis", f"fit-basis looks for {LOBES} exponents for the whole library; one of its settings is "
                  "varied at a time. Its error is the figure that fit-basis minimizes, beyond the floor of each paint. The mean "

@@ -16,23 +16,19 @@ from .study import Run
 # The studies in the order of the page. Each is a module beside this one with study(run) -> Study.
 STUDIES = {
     "paths": "pictures and paths: error against time for tolerances, limits, engines and bounces, and growth",
+    "chain": "the whole chain: where the error of a picture comes from, and what it costs to lower it",
+    "edges": "edges: few samples in a pixel against hundreds",
+    "render": "rendering: effects, engine, textures and brushes against the reference integrator",
+    "spots": "bright spots of an environment that each horizon cuts by itself: their number against the exact sum",
+    "interference": "paints with a color map in image light: sets of tilted lobes against the integral of the map",
+    "isolines": "color maps under a lamp: treatments of the critical angle, with and without the projection factor",
     "prefilter": "prefiltering: tolerance and size against the exact sum",
     "basis": "choosing a basis: starts, method and number of lobes against what its lobes can do",
     "fit": "fitting: method, lobes and target against the measured colors",
     "lobes": "fewer lobes: smaller bases, the best lobes of a basis, and pruning, against the time of shading",
-    "render": "rendering: effects, engine, textures and brushes against the reference integrator",
-    "spots": "bright spots of an environment that each horizon cuts by itself: their number against the exact sum",
-    "edges": "edges: few samples in a pixel against hundreds",
-    "interference": "paints with a color map in image light: sets of tilted lobes against the integral of the map",
-    "isolines": "color maps under a lamp: treatments of the critical angle, with and without the projection factor",
-    "scenes": "ten scenes: what the plan leaves out, and what it says that each effect is worth",
     "inverse": "paints that are searched for: sketches by their size, and panels that hide a misalignment",
-    "sketches": "round trips of sketch-fit: paints, meshes, sizes and lights, and whether each error has a warning",
-    "search": "search: library size, tree and scan against brute force",
     "growth": "growth of times with probes, maps, paints, pixels and lights, and where it is steepest",
     "frames": "frame rates: lights, lobes and engines, of paints and of lobes in each texel, and the cost of the operator",
-    "rays": "effects of rays: what each changes in ten scenes, by the first pass and in truth",
-    "chain": "the whole chain: where the error of a picture comes from, and what it costs to lower it",
 }
 
 
@@ -45,10 +41,10 @@ MANUAL = Manual(
         "which takes root or sudo."],
     "0: the work is done. 1: a default setting is dominated, or --target-de00 is not reached. 2: the command line is wrong. 3: an "
     "input is wrong, a file cannot be read or written, or a tool failed.",
-    [("Compare ways to search a library, in a few seconds", "accuracy-report --quick search -o accuracy"),
+    [("Compare ways to fit the paints of a library, in a few seconds", "accuracy-report --quick fit -o accuracy"),
      ("Do the same for the metallics of a library of your own",
       "paint-stats -w 'class==metallic' -f paints testdata/paints.paints.xml -o own.paints.xml && accuracy-report --quick --paints "
-      "own.paints.xml search -o own"),
+      "own.paints.xml fit -o own"),
      ("List the studies", "accuracy-report --help | head -n 20")],
     ["goniochrome-accuracy(7)", "render-osmesa(1)", "paint-batch(1)"])
 
@@ -59,7 +55,7 @@ def parse(arguments):
     parser.add_argument("studies", nargs="*", metavar="STUDY", help="the studies to run, by default all: " + listed)
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("accuracy"), metavar="DIR",
                         help="the folder to write to [accuracy]")
-    parser.add_argument("--quick", action="store_true", help="try fewer settings, which takes about a minute")
+    parser.add_argument("--quick", action="store_true", help="try fewer settings, which takes about a minute on two cores")
     parser.add_argument("--bin", type=pathlib.Path, metavar="DIR",
                         help="the folder of the tools [that of the installed command, then PATH, then build/release/bin]")
     parser.add_argument("--paints", type=pathlib.Path, default=DATA / "paints.paints.xml", metavar="FILE[#NAME]",

@@ -70,7 +70,7 @@ def readings_of(run, paint):
             errors = de2000(reference, labs(channels, white))
             edge = errors[outline].tolist()
             times = run.timed(lambda drawn=drawn: 1e-3 * drawn()["frame_ms"], 1e-3 * results["frame_ms"])
-            yield Reading(f"{engine}, {samples} samples", error=statistics.mean(edge), method=engine,
+            yield Reading(f"{engine}, {samples} sample{'s' * (samples > 1)}", error=statistics.mean(edge), method=engine,
                           default=(engine, samples) == DEFAULT, **times,
                           numbers={"paint": paint, "p95": quantile(edge, 0.95), "inside": float(errors[inside].mean()),
                                    "pixels": len(edge)})

@@ -1,12 +1,12 @@
 """How times grow with the size of the job: the exponents, and the steps that are steeper than the others."""
 
+import csv
 import math
+import random
 import statistics
 
-from .inverse import sketches
 from .prefilter import EXPONENTS
 from .scene import CAMERA
-from .search import write_library
 from .study import Figure, Reading, Study
 
 
@@ -21,6 +21,18 @@ def write_probe(path, height):
             file.write(sky * (height - wide) + lamp * wide + sky * height)
 
 
+def write_library(path, count, seed):
+    """Writes a table of random metallics with three angles each."""
+    draw = random.Random(seed)
+    with path.open("w", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(("sample", "geometry", "illuminant", "observer", "L", "a", "b"))
+        for i in range(count):
+            face = draw.uniform(20, 110), draw.uniform(-50, 50), draw.uniform(-50, 50)
+            for angle, part in ((15, 1), (45, 0.5), (110, 0.3)):
+                rows.writerow((f"p{i}", f"45as{angle}", "D65", 10, *(f"{v * part:.3f}" for v in face)))
+
+
 def curve(readings):
     """(the exponent over the larger half of the sizes, the steepest step, its exponent) of times against sizes."""
     points = [(math.log(r.numbers["n"]), math.log(r.time_s)) for r in readings]
@@ -31,7 +43,7 @@ def curve(readings):
 
 
 def prefiltering(run):
-    heights, sizes = ((64, 128, 256), (32, 64, 128)) if run.quick else ((64, 128, 256, 512, 1024), (32, 64, 128, 256))
+    heights, sizes = ((128, 256), (64, 128)) if run.quick else ((256, 512, 1024), (64, 128, 256))
     probe, out = run.work / "probe.hdr", run.work / "growth.env.exr"
     for height in heights:
         write_probe(probe, height)
@@ -44,8 +56,10 @@ def prefiltering(run):
 
 
 def fitting(run):
-    table, library = run.work / "growth.csv", run.work / "growth.xml"
-    for count in (100, 1000) if run.quick else (100, 1000, 10_000):
+    table, library, queries = run.work / "growth.csv", run.work / "growth.xml", run.work / "queries.xml"
+    write_library(table, 200, seed=1)
+    run.tool("paint-convert", table, "-o", queries)
+    for count in (100, 1000) if run.quick else (100, 1000, 4000):
         write_library(table, count, seed=count)
         run.tool("paint-convert", table, "-o", library)
         for method in ("l2", "deltae"):
@@ -54,6 +68,8 @@ def fitting(run):
             yield f"fit-paint {method}: paints", count, best, raw
         _, best, raw = run.repeated("goniogeom-index", library, "--worst", "-o", run.work / "index.tsv")
         yield "goniogeom-index: paints", count, best, raw
+        _, best, raw = run.repeated("colorsnap", queries, "--library", library, "-o", run.work / "match.tsv")
+        yield "colorsnap: paints of the library", count, best, raw
 
 
 def rendering(run):
@@ -64,7 +80,7 @@ def rendering(run):
     words = ("--mesh", run.mesh, "--paint", f"{fitted}#silver_black_flop", "--effects", "all,-rays", *CAMERA[2:],
              "-o", run.work / "p.exr")
     def frame(*more):
-        frames = [run.tool("render-osmesa", *words, *more)[0]["frame_ms"] * 1e-3 for _ in range(1 if run.quick else 3)]
+        frames = [run.tool("render-osmesa", *words, *more)[0]["frame_ms"] * 1e-3 for _ in range(run.repeats)]
         return min(frames), tuple(frames)
     for width in (160, 320, 640) if run.quick else (160, 320, 640, 1280):
         yield "render-osmesa: pixels", width * width * 9 // 16, *frame("--env", env, "--size", f"{width}x{width * 9 // 16}")
@@ -73,15 +89,9 @@ def rendering(run):
         yield "render-osmesa: lights", lights, *frame(*directions, "--size", "640x360")
 
 
-def sketching(run):
-    for reading in sketches(run):
-        if reading.method.startswith("steel"):
-            yield f"sketch-fit: pixels, {reading.numbers['light']}", reading.numbers["n"], reading.time_s, reading.raw_s
-
-
 def study(run):
     kinds = {}
-    for part in (prefiltering, fitting, rendering, sketching):
+    for part in (prefiltering, fitting, rendering):
         for kind, n, best, raw in part(run):
             reading = Reading(setting=f"{kind} {n}", time_s=best, error=0.0, method=kind, raw_s=raw, numbers={"n": n})
             kinds.setdefault(kind, []).append(reading)

@@ -47,6 +47,8 @@ class Figure:
     logarithmic: str = "both"
     joined: bool = True  # A line joins the readings of a method.
 
+    SMALLER = 0.99  # An error that is smaller by less than 1 % is the same one.
+
     def point(self, reading):
         return (self.x(reading) if self.x else reading.time_s, self.y(reading) if self.y else reading.error)
 
@@ -66,7 +68,7 @@ class Figure:
         """The readings that no other reading beats in both time and error, in the order of their times."""
         best, front = float("inf"), []
         for reading in sorted(self.readings, key=lambda r: (r.time_s, r.error)):
-            if reading.error < best:
+            if reading.error < self.SMALLER * best:
                 best = reading.error
                 front.append(reading)
         return front
@@ -84,7 +86,7 @@ class Study:
     # A default is dominated if another reading is better by more than this factor in time or error and not worse in the other.
     # The times of one machine scatter by about as much.
     SCATTER = 1.25
-    ROUNDS = 12
+    ROUNDS = 6
 
     def settle(self):
         """Measures the times of defaults that seem dominated, and of what dominates them, again and in turn.
@@ -113,7 +115,7 @@ def processor_s():
 class Run:
     """The tools, a folder to work in, and what the user asked for."""
 
-    SHORT_S, ENOUGH_S = 0.2, 4  # Runs below SHORT_S are repeated more often; after ENOUGH_S seconds no run is repeated.
+    SHORT_S, ENOUGH_S = 0.2, 2  # Runs below SHORT_S are repeated more often; after ENOUGH_S seconds no run is repeated.
 
     def __init__(self, folder, options):
         self.folder, self.options = folder, options
@@ -143,14 +145,21 @@ class Run:
         """Runs a tool and returns (the results of its report, the seconds of processor time of the whole process)."""
         report = self.work / "report.json"
         before = processor_s()
-        run_tool(self.folder / name, *words, "--report", report, "--quiet", cwd=self.work,
+        # Status 4 is that of a picture whose time ended before its tolerance was met.
+        run_tool(self.folder / name, *words, "--report", report, "--quiet", cwd=self.work, done=(0, 1, 4),
                  command=" ".join(map(str, (name, *words))))
         return json.loads(report.read_text())["results"], processor_s() - before
 
+    def wanted(self, all_s):
+        """The number of repetitions, of which these are known."""
+        return self.repeats * (2 if not self.quick and min(all_s, default=0) < self.SHORT_S else 1)
+
     def timed(self, once, *seconds):
-        """The times of a Reading, as its arguments: the seconds that are known, and those of several calls of `once`."""
-        all_s = (*seconds, *(once() for _ in range(self.repeats)))
-        return {"time_s": min(all_s), "raw_s": all_s, "again": once}
+        """The times of a Reading, as its arguments: the seconds that are known, and those of calls of `once`."""
+        all_s = list(seconds)
+        while len(all_s) < self.wanted(all_s) and sum(all_s) < self.ENOUGH_S:
+            all_s.append(once())
+        return {"time_s": min(all_s), "raw_s": tuple(all_s), "again": once}
 
     def shading(self, *words):
         """The seconds that render-osmesa takes to shade every pixel once."""
@@ -159,7 +168,7 @@ class Run:
     def repeated(self, name, *words):
         """Runs a tool several times, a short one more often: (the results of the last run, the least seconds, all seconds)."""
         all_s = []
-        while len(all_s) < self.repeats * (2 if min(all_s, default=0) < self.SHORT_S else 1) and sum(all_s) < self.ENOUGH_S:
+        while len(all_s) < self.wanted(all_s) and sum(all_s) < self.ENOUGH_S:
             results, seconds = self.tool(name, *words)
             all_s.append(seconds)
         return results, min(all_s), tuple(all_s)
