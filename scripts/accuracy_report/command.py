@@ -25,7 +25,7 @@ STUDIES = {
     "prefilter": "prefiltering: tolerance and size against the exact sum",
     "basis": "choosing a basis: starts, method and number of lobes against what its lobes can do",
     "fit": "fitting: method, lobes and target against the measured colors",
-    "lobes": "fewer lobes: smaller bases, the best lobes of a basis, and pruning, against the time of shading",
+    "lobes": "fewer lobes: smaller bases, the best lobes of a basis, and pruning, against the time of drawing",
     "inverse": "paints that are searched for: sketches by their size, and panels that hide a misalignment",
     "growth": "growth of times with probes, maps, paints, pixels and lights, and where it is steepest",
     "frames": "frame rates: lights, lobes and engines, of paints and of lobes in each texel, and the cost of the operator",

@@ -116,6 +116,6 @@ def write(run, studies, seconds):
         f"<meta name=\"viewport\" content=\"width=device-width\"><style>{STYLE}</style></head>\n"
         "<body><h1>What accuracy costs</h1>\n"
         f"<p>Measured with {html.escape(inputs)} on {html.escape(machine())}, "
-        f"in {seconds:.0f} s, {processor_s():.0f} s of them of processors{', quick' if run.quick else ''}. "
+        f"in {seconds:.0f} s with {processor_s():.0f} s of processor time{', quick' if run.quick else ''}. "
         f"Every reading, with every repetition, is in <a href=\"readings.csv\">readings.csv</a>.</p>\n<p>{READING}</p>\n"
         f"<nav>{contents}</nav>\n{''.join(parts)}</body></html>\n")
