@@ -31,6 +31,8 @@ class Front(unittest.TestCase):
         f = figure(("slow", 9, 1), ("good", 3, 2), ("worse", 4, 3), ("fast", 1, 8),
                    ("equal error, slower", 5, 2), ("equal time, worse", 3, 4))
         self.assertEqual([r.setting for r in f.pareto()], ["fast", "good", "slow"])
+        self.assertEqual([r.setting for r in figure(("fast", 1, 2), ("hardly better", 2, 1.99), ("better", 3, 1.9)).pareto()],
+                         ["fast", "better"])
         self.assertEqual(figure().pareto(), [])
 
     def dominated(self, *rows, **more):

@@ -181,6 +181,7 @@ E: Unable to locate package libbad-dev" 'check the network, the mirror and the p
 }
 
 @test "a script has the version of the tools, and says where it finds none" {
+  export GONIOCHROME_BUILD_FOLDER=$PWD/none
   for script in paint-book batch/paint-batch accuracy-report; do
     ends 3 "its version is that of the tools, of which none is in PATH: add their folder to it" "$scripts/$script" --version
     program fit-paint 'echo fit-paint 1.2.3'
