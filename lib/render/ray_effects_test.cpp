@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/internal/bands.h"
 #include "render/internal/seen.h"
 #include "render/path/scenes_for_paths_for_test.h"
 #include "render/plan/ray_plan.h"
@@ -189,6 +190,34 @@ TEST(RayEffects, SeveralSamplesAreCorrectedEach) {
   }
   EXPECT_NEAR(sum_four, sum_one, 0.01 * sum_one);
   EXPECT_GT(least, -0.02);
+}
+
+// A picture of bands shows what a smaller one shows as a whole, at their seams as elsewhere.
+TEST(RayEffects, BandsHaveNoSeams) {
+  World world(ball_in_a_cup());
+  constexpr int kSmall = 370;
+  world.view = {Camera::orbit(world.mesh, 30, 60, 0.5, 30, 1), kSmall, kSmall};
+  const Drawn small = drawn(world, {}, true, 1, 4);
+  world.view.width = world.view.height = 2 * kSmall;
+  const Drawn large = drawn(world, {}, true, 1, 4);
+  const std::vector<Band> bands = bands_of(*large.frame.gbuffer, 1, true);
+  ASSERT_EQ(bands.size(), 2U);
+  EXPECT_TRUE(large.frame.rays.reached);
+  double at_seam = 0, elsewhere = 0;
+  int seams = 0, others = 0;
+  for (int y = 0; y < kSmall; ++y) {
+    for (int x = 0; x < kSmall; ++x) {
+      color::Rgb mean, whole;
+      for (int c = 0; c < 3; ++c) {
+        for (int k = 0; k < 4; ++k) mean[c] += 0.25 * large.frame.picture.pixel(2 * x + k % 2, 2 * y + k / 2)[c];
+        whole[c] = small.frame.picture.pixel(x, y)[c];
+      }
+      const bool near = std::abs(2 * y - bands[0].last_kept) <= 8;
+      (near ? at_seam : elsewhere) += seen_difference(mean, whole, 1), ++(near ? seams : others);
+    }
+  }
+  EXPECT_LT(at_seam / seams, 1.5 * elsewhere / others);
+  EXPECT_LT(elsewhere / others, 1);
 }
 
 TEST(RayEffects, SelfAndBounceNeedShadow) {

@@ -9,6 +9,7 @@
 #include "render/gl/gl.h"
 #include "render/gl/shader.h"
 #include "render/glints.h"
+#include "render/internal/bands.h"
 #include "render/internal/samples.h"
 #include "render/internal/seen_through.h"
 #include "render/internal/sparkle.h"
@@ -25,10 +26,7 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr std::size_t kMostKept = std::size_t{320} << 20;  // bytes of all G-buffers: 16 samples of 1280 x 720
-constexpr std::size_t kMostSeen = std::size_t{128} << 20;  // bytes of what they show of textures
-constexpr std::size_t kPixelBytes = 4 * sizeof(float) + sizeof(std::uint32_t);
-
+constexpr std::size_t kMostSeen = std::size_t{128} << 20;  // bytes of what G-buffers show of textures
 using Rayed = std::shared_ptr<const rays::RayScene>;
 
 Result<Rayed> rayed(const mesh::Mesh& mesh, const std::optional<Ground>& ground, const std::vector<bool>& passed = {}) {
@@ -76,7 +74,8 @@ struct Renderer::State : Sight {
   };
   std::optional<View> view;
   Rays rays;
-  std::vector<Kept> kept;
+  Band band;                     // of that view
+  std::vector<Kept> kept;        // of that band, sample by sample
   std::uint64_t placed_for = 0;  // the layer
   bool placed_footprints = false;
   double gbuffer_ms = 0;  // of the last one of this view, which a plan may have made
@@ -88,11 +87,14 @@ struct Renderer::State : Sight {
   Result<void> can_shade(const Scene& wanted, const Engine& by) const;
   Result<void> show(const mesh::Mesh& mesh);
   Result<void> look_at(const View& wanted);
+  void turn_to(const Band& wanted);
+  Result<void> draw_band(Frame& frame);
   Result<void> take(int first, int count, image::Image& picture);
-  FoundMaps audit(int sample);
+  FoundMaps audit(const std::shared_ptr<const Gbuffer>& seen) const;
   Result<void> meet(const Scene& whole_scene);
   Result<void> add_seen_through(int sample, float gain, image::Image& picture);
-  CorrectionNoise correct(int first, int count, image::Image& picture);
+  void correct(int first, int count, image::Image& picture, CorrectionNoise& noise);
+  Backdrop backdrop() const { return {effects.background, scene.background_color, ray_setup->environment}; }
   Result<RaySetup> ray_context(const Scene& whole_scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers);
   Result<void> trace(const Scene& whole_scene, bool rough_coats);
   Scene completed(const Scene& scene) const;
@@ -174,22 +176,26 @@ Result<void> Renderer::State::look_at(const View& wanted) {
     kept.clear();
   }
   view = wanted;
+  turn_to(whole_band(wanted.height));
   return {};
 }
 
-// A sample, kept or found anew. Where not all can be kept, those after the first share a place.
+void Renderer::State::turn_to(const Band& wanted) {
+  if (band != wanted) kept.clear();
+  band = wanted;
+}
+
+// A sample, kept or found anew.
 Renderer::State::Kept& Renderer::State::keep(int sample) {
-  const std::size_t bytes =
-      static_cast<std::size_t>(view->width) * static_cast<std::size_t>(view->height) * kPixelBytes;
-  const bool room = bytes * (static_cast<std::size_t>(view->samples) + 1) <= kMostKept;
-  const std::size_t place = room || sample == 0 ? static_cast<std::size_t>(sample) : 1;
+  const auto place = static_cast<std::size_t>(sample);
   if (kept.size() <= place) kept.resize(place + 1);
   Kept& one = kept[place];
   if (one.sample == sample) return one;
   const Stopwatch clock;
   const auto [x, y] = shift_of(sample, view->samples);
   one.sample = sample, one.places.clear(), one.seen.forget();
-  one.gbuffer = std::make_shared<const Gbuffer>(mesh_gbuffer(*traced, rays.shifted(x, y), view->width, view->height));
+  one.gbuffer = std::make_shared<const Gbuffer>(
+      mesh_gbuffer(*traced, rays.shifted(x, y + band.first), view->width, band.height()));
   gbuffer_ms = 1000 * clock.elapsed_s();
   return one;
 }
@@ -224,7 +230,6 @@ SeenPixels* Renderer::State::seen_pixels(int sample) {
 Result<void> Renderer::State::take(int first, int count, image::Image& picture) {
   const float gain = 1.0F / static_cast<float>(count);
   GONIO_TRY(take_samples(*this, *engine, scene, effects, first, count, picture));
-  if (!maps_found) maps_found = audit(first);
   for (int i = first; summed() != nullptr && i < first + count; ++i) summed()->add(*gbuffer(i), gain, picture);
   for (int i = first; effects.panes && !engine->info().traces_rays && i < first + count; ++i)
     GONIO_TRY(add_seen_through(i, gain, picture));
@@ -232,14 +237,13 @@ Result<void> Renderer::State::take(int first, int count, image::Image& picture) 
 }
 
 // Nothing is found of an engine without maps, nor of one that was loaded without a plan.
-FoundMaps Renderer::State::audit(int sample) {
+FoundMaps Renderer::State::audit(const std::shared_ptr<const Gbuffer>& seen) const {
   const auto* own = dynamic_cast<const CpuEngine*>(engine);
   const CpuEngine* maps = own != nullptr ? own : audited.get();
   if (!engine->info().is_planned || maps == nullptr || !effects.environment) return {};
-  const std::shared_ptr<const Gbuffer> drawn = gbuffer(sample);
   return MapAudit{scene,         effects,        *maps,          summed(), ray_texels ? &*ray_texels : nullptr,
                   sums_may_stop, tolerance_de00, white_luminance}
-      .found(drawn, view->samples);
+      .found(seen, view->samples);
 }
 
 // Surfaces behind the panes of a sample are shaded as those that are seen without panes.
@@ -258,45 +262,35 @@ Result<void> Renderer::State::add_seen_through(int sample, float gain, image::Im
     if (!effects.rays.floor || !transport) continue;
     std::fill(shown.data.begin(), shown.data.end(), 0.0F);
     const Gbuffer* one = &behind.gbuffer;
-    add_surroundings(*transport, {&one, 1}, {effects.background, scene.background_color, ray_setup->environment},
-                     effects.rays, 1, shown);
+    add_surroundings(*transport, {&one, 1}, backdrop(), effects.rays, 1, shown);
     add_behind(behind, shown, gain, picture);
   }
   return {};
 }
 
-// Each sample of a pixel is corrected as the surface that it shows, as many together as there is memory for.
-CorrectionNoise Renderer::State::correct(int first, int count, image::Image& picture) {
-  CorrectionNoise all;
-  if (!effects.rays.any() || !transport) return all;
-  const int together = corrected_together(picture.width, picture.height), groups = (count + together - 1) / together;
-  PathRequest request = correction_request(effects.rays, effort_asked.bounces, tolerance_de00 * std::sqrt(groups));
-  for (const double de00 : maps_found ? maps_found->errors_de00 : std::vector<double>())
-    request.beside_de00.push_back(de00 * std::sqrt(groups));
+// Each sample of a pixel is corrected as the surface that it shows.
+void Renderer::State::correct(int first, int count, image::Image& picture, CorrectionNoise& noise) {
+  if (!effects.rays.any() || !transport) return;
+  PathRequest request = correction_request(effects.rays, effort_asked.bounces, tolerance_de00);
+  if (maps_found) request.beside_de00 = maps_found->errors_de00;
   request.white_luminance = white_luminance > 0 ? white_luminance : 1;
-  request.most_samples = std::max(2 * kBatch, effects.most_ray_samples / groups);
+  request.most_samples = std::max(2 * kBatch, effects.most_ray_samples);
   request.progress = effort_asked.progress;
-  const Backdrop backdrop{effects.background, scene.background_color, ray_setup->environment};
+  request.first_points =
+      request.first_points * static_cast<std::size_t>(band.height()) / static_cast<std::size_t>(view->height);
+  // The rows that remain share the remaining time.
+  if (effort_asked.time_limit_s > 0)
+    request.time_limit_s =
+        std::max(1e-3, deadline->left_s()) * (band.last_kept - band.first_kept) / (view->height - band.first_kept);
+  request.seed =
+      mixed(effort_asked.seed, static_cast<std::uint64_t>(first) + (static_cast<std::uint64_t>(band.first) << 8));
   const image::Image before = picture;
-  for (int group = 0; group < groups; ++group) {
-    // The samples of the remaining pixels share the remaining time.
-    if (effort_asked.time_limit_s > 0) request.time_limit_s = std::max(1e-3, deadline->left_s()) / (groups - group);
-    const int begin = first + group * together, end = std::min(first + count, begin + together);
-    request.seed = mixed(effort_asked.seed, static_cast<std::uint64_t>(begin));
-    std::vector<std::shared_ptr<const Gbuffer>> seen;
-    std::vector<const Gbuffer*> samples;
-    for (int i = begin; i < end; ++i) samples.push_back(seen.emplace_back(gbuffer(i)).get());
-    if (effects.rays.floor)
-      add_surroundings(*transport, samples, backdrop, effects.rays, 1.0F / static_cast<float>(count), picture);
-    const float gain = static_cast<float>(end - begin) / static_cast<float>(count);
-    const PathPicture one = add_correction(*transport, samples, request, before, gain, picture);
-    if (group == 0) all.dark = true, all.found = one.found;
-    all.add(one, groups);
-  }
+  std::vector<std::shared_ptr<const Gbuffer>> seen;
+  std::vector<const Gbuffer*> samples;
+  for (int i = first; i < first + count; ++i) samples.push_back(seen.emplace_back(gbuffer(i)).get());
   if (effects.rays.floor)
-    all.found.back().de00_p95 = std::max(
-        all.found.back().de00_p95, floor_change(*transport, *gbuffer(first), backdrop, effects.rays, white_luminance));
-  return all;
+    add_surroundings(*transport, samples, backdrop(), effects.rays, 1.0F / static_cast<float>(count), picture);
+  noise.add(add_correction(*transport, samples, request, before, picture));
 }
 
 Result<void> Renderer::State::trace(const Scene& whole_scene, bool rough_coats) {
@@ -495,6 +489,22 @@ Result<std::shared_ptr<const Gbuffer>> Renderer::look(const mesh::Mesh& mesh, co
   return std::shared_ptr<const Gbuffer>(s.gbuffer(0));
 }
 
+Result<void> Renderer::State::draw_band(Frame& frame) {
+  frame.open_centers = {};
+  if (view->with_centers || view->samples == 1) {
+    GONIO_TRY(take(0, 1, frame.picture));
+    frame.open_centers = view->with_centers ? frame.picture : image::Image{};
+    CorrectionNoise of_centers;
+    correct(0, 1, frame.picture, view->samples > 1 ? of_centers : frame.rays);
+    frame.centers = view->with_centers ? frame.picture : image::Image{};
+  }
+  if (view->samples > 1) {
+    GONIO_TRY(take(1, view->samples, frame.picture));
+    correct(1, view->samples, frame.picture, frame.rays);
+  }
+  return {};
+}
+
 Result<void> Renderer::draw(const View& view, Frame& frame) {
   State& s = *state_;
   if (s.engine == nullptr) return usage_error("nothing was loaded that could be drawn");
@@ -506,17 +516,28 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   GONIO_TRY(s.look_at(view));
   frame.gbuffer = s.gbuffer(0);
   frame.gbuffer_ms = s.gbuffer_ms;
-  frame.open_centers = {};
-  if (view.with_centers || view.samples == 1) {
-    GONIO_TRY(s.take(0, 1, frame.picture));
-    frame.open_centers = view.with_centers ? frame.picture : image::Image{};
-    frame.rays = s.correct(0, 1, frame.picture);
-    frame.centers = view.with_centers ? frame.picture : image::Image{};
+  if (!s.maps_found) s.maps_found = s.audit(frame.gbuffer);
+  frame.rays = {};
+  std::vector<Band> bands = {whole_band(view.height)};
+  if (!s.given && !s.engine->info().traces_rays)
+    bands = bands_of(*frame.gbuffer, view.samples, s.effects.rays.any() && s.transport);
+  if (bands.size() == 1) {
+    GONIO_TRY(s.draw_band(frame));
+  } else {
+    Frame part;
+    for (const Band& band : bands) {
+      s.turn_to(band);
+      GONIO_TRY(s.draw_band(part));
+      put_band(part.picture, band, view.height, frame.picture);
+      put_band(part.centers, band, view.height, frame.centers);
+      put_band(part.open_centers, band, view.height, frame.open_centers);
+    }
+    frame.rays = part.rays;
   }
-  if (view.samples > 1) {
-    GONIO_TRY(s.take(1, view.samples, frame.picture));
-    frame.rays = s.correct(1, view.samples, frame.picture);
-  }
+  if (s.effects.rays.floor && s.transport)
+    frame.rays.found.back().de00_p95 =
+        std::max(frame.rays.found.back().de00_p95,
+                 floor_change(*s.transport, *frame.gbuffer, s.backdrop(), s.effects.rays, s.white_luminance));
   if (s.effects.sparkle && s.engine->info().is_planned && !frame.gbuffer->triangles.empty())
     Sparkle(s.scene, s.effects).add(*frame.gbuffer, s.effects.rays.any() ? s.ray_mesh.get() : nullptr, frame.picture);
   if (s.maps_found) frame.maps = *s.maps_found;

@@ -67,7 +67,6 @@ class Picture {
     std::vector<int> more = first_fours();
     Errors errors;
     bool reached = false, mended = false;
-    if (request_.stop_de00 > 0) first_.resize(points_.size());
     while (true) {
       const double before = drawn();
       pace_.start();
@@ -143,21 +142,21 @@ class Picture {
     each_point([&](std::size_t i) {
       if (more[i] == 0) return;
       show_own(i);
-      Covariance covariance = states_[i].sums.of_four();
-      for (double& element : covariance) element /= std::max(1, states_[i].sums.fours());
+      Covariance covariance = sums(i).of_four();
+      for (double& element : covariance) element /= std::max(1, sums(i).fours());
       points_[i].noise_de00 = noise_of(i, points_[i].radiance, covariance);
     });
   }
 
   // The first samples of a point are of all shares.
   const PathOptions& options_of(std::size_t i) const {
-    const bool all = states_[i].sums.fours() == 0 || states_[i].all_shares;
+    const bool all = sums(i).fours() == 0 || states_[i].all_shares;
     if (states_[i].hidden) return all ? first_whole_ : whole_;
     return all ? request_.options : options_;
   }
 
   // Light that samples tell, of which there are none yet.
-  bool is_unknown(std::size_t i) const { return !states_[i].certain && states_[i].sums.fours() == 0; }
+  bool is_unknown(std::size_t i) const { return !states_[i].certain && sums(i).fours() == 0; }
 
   void add_point(int x, int y) {
     const std::size_t at = place(x, y);
@@ -171,12 +170,12 @@ class Picture {
     points_.push_back(point);
   }
 
+  static constexpr std::uint32_t kNotSampled = ~0U;
   struct State {
-    Gathered sums;
     color::Rgb deterministic;
-    color::Rgb sharp;                       // what is known without samples of the light that the mesh takes and adds
-    std::optional<color::Rgb> floor_light;  // of any sample of the pixel; none: not known, or of each another
-    double needed = 0;                      // fours that bring the noise of the neighborhood to the tolerance
+    color::Rgb sharp;   // what is known without samples of the light that the mesh takes and adds
+    double needed = 0;  // fours that bring the noise of the neighborhood to the tolerance
+    std::uint32_t sampled = kNotSampled;
     bool certain = false;
     bool all_shares = false;      // Its first samples differ too much for any share to stop.
     bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
@@ -184,6 +183,20 @@ class Picture {
     unsigned step = 1;            // from one sample of the pixel that rays look at to the next
     bool looked = false;          // what is seen and known without samples is known
   };
+
+  // A point that gets samples; most points of a large picture get none.
+  struct Sampled {
+    Gathered sums;
+    std::optional<color::Rgb> floor_light;  // of any sample of the pixel; none: not known, or of each another
+    Halves kept{};                          // of shares that stopped
+  };
+  const Gathered& sums(std::size_t i) const {
+    static const Gathered none;
+    return states_[i].sampled == kNotSampled ? none : sampled_[states_[i].sampled].sums;
+  }
+  Halves kept(std::size_t i) const {
+    return states_[i].sampled == kNotSampled ? Halves{} : sampled_[states_[i].sampled].kept;
+  }
 
   std::size_t place(const PathPoint& point) const { return place(point.x, point.y); }
   std::size_t place(int x, int y) const {
@@ -193,8 +206,13 @@ class Picture {
   // No clock ends a round that is needed.
   void sample(const std::vector<int>& more, bool is_needed) {
     std::vector<std::uint32_t> wanted;
-    for (std::size_t i = 0; i < more.size(); ++i)
+    std::uint32_t count = static_cast<std::uint32_t>(sampled_.size());
+    for (std::size_t i = 0; i < more.size(); ++i) {
       if (more[i] > 0 || !states_[i].looked) wanted.push_back(static_cast<std::uint32_t>(i));
+      if (more[i] > 0 && states_[i].sampled == kNotSampled) states_[i].sampled = count++;
+    }
+    sampled_.resize(count);
+    if (first_round_ && request_.stop_de00 > 0) first_.resize(count);
     draw_round(wanted, is_needed ? nullptr : &deadline_, [&](std::size_t i) { sample(i, more[i]); });
   }
 
@@ -213,18 +231,20 @@ class Picture {
 
   void add_round(std::size_t i, const Round& round, const LightShares (&means)[Round::kSequences]) {
     color::Rgb drawn[Round::kSequences];
+    Sampled& sampled = sampled_[states_[i].sampled];
     const unsigned shares = states_[i].all_shares ? kAllShares : drawn_;
     for (std::size_t k = 0; k < Round::kSequences; ++k) drawn[k] = sum_of(means[k], shares);
-    if (!kept_.empty() && states_[i].sums.fours() == 0)
-      for (std::size_t k = 0; k < Round::kSequences; ++k) kept_[i][k] = sum_of(means[k], kAllShares & ~drawn_);
-    states_[i].sums.add(round, drawn);
-    if (!first_.empty()) std::ranges::copy(means, first_[i].begin());
+    if (sampled.sums.fours() == 0)
+      for (std::size_t k = 0; k < Round::kSequences; ++k) sampled.kept[k] = sum_of(means[k], kAllShares & ~drawn_);
+    sampled.sums.add(round, drawn);
+    if (!first_.empty()) std::ranges::copy(means, first_[states_[i].sampled].begin());
   }
 
   // The shares of a point in the first round, with the light that is known without samples.
   LightShares first_shares(std::size_t i) const {
-    LightShares shares = 0.5 * first_[i][0];
-    shares += 0.5 * first_[i][1];
+    LightShares shares;
+    if (const std::uint32_t n = states_[i].sampled; n != kNotSampled)
+      shares = 0.5 * first_[n][0], shares += 0.5 * first_[n][1];
     shares.direct += states_[i].deterministic;
     if (states_[i].hidden) shares.direct += -1.0 * base_at(points_[i]);
     return shares;
@@ -264,23 +284,23 @@ class Picture {
     options_.into_diffuse = options_.into_diffuse && (drawn_ & 4U) != 0;
     if (!options_.into_lobes && !options_.into_diffuse) options_.bounces = 0;
     whole_ = options_, whole_.correction = false;
-    kept_.resize(points_.size());
     const Round round(kFirstFours);
     each_point([&](std::size_t i) {
       State& state = states_[i];
-      if (state.sums.fours() == 0) return;
+      if (sums(i).fours() == 0) return;
       color::Rgb drawn[Round::kSequences];
       Halves kept;
       for (std::size_t k = 0; k < Round::kSequences; ++k)
-        drawn[k] = sum_of(first_[i][k], drawn_), kept[k] = sum_of(first_[i][k], stopped);
+        drawn[k] = sum_of(first_[state.sampled][k], drawn_), kept[k] = sum_of(first_[state.sampled][k], stopped);
       const color::Rgb shown = (base_ != nullptr ? base_at(points_[i]) : color::Rgb{}) + first_shares(i).sum(),
                        error = 0.5 * (kept[0] - kept[1]);
       state.all_shares =
           seen_difference(shown, shown + error, request_.white_luminance) > kSpeck * request_.tolerance_de00;
       if (state.all_shares) return;
-      state.sums = {};
-      state.sums.add(round, drawn);
-      kept_[i] = kept;
+      Sampled& sampled = sampled_[state.sampled];
+      sampled.sums = {};
+      sampled.sums.add(round, drawn);
+      sampled.kept = kept;
     });
   }
 
@@ -317,11 +337,11 @@ class Picture {
   void add_fan(const SeenPoint& at, std::size_t i, const Round& round, int fan,
                LightShares (&means)[Round::kSequences]) {
     const int which = round.sequence_of(fan);
-    const Sequence sequence(seed_of(request_.seed, i, states_[i].sums.fours() + which),
+    const Sequence sequence(seed_of(request_.seed, i, sums(i).fours() + which),
                             static_cast<std::uint32_t>(kOfFour * round.length));
     LightShares shares =
         at.shares_of(sequence, round.first_of(fan), static_cast<std::uint32_t>(kOfFour * round.together()));
-    std::optional<color::Rgb>& known = states_[i].floor_light;
+    std::optional<color::Rgb>& known = sampled_[states_[i].sampled].floor_light;
     const color::Rgb floor_light = known ? *known : at.floor_light();
     if (count_ == 1 || (!even_.empty() && even_[place(points_[i])] != 0)) known = floor_light;
     shares.from_floor += floor_light;
@@ -345,7 +365,7 @@ class Picture {
     state.looked = true;
     if (first_time) state.uncertain = 0, state.deterministic = {};
     const unsigned first =
-        (static_cast<unsigned>(mixed(request_.seed, i) >> 32) + static_cast<unsigned>(state.sums.fours())) % count;
+        (static_cast<unsigned>(mixed(request_.seed, i) >> 32) + static_cast<unsigned>(sums(i).fours())) % count;
     LightShares means[Round::kSequences];
     for (unsigned k = 0; k < count; ++k) {
       const unsigned sample = k * step;
@@ -374,10 +394,9 @@ class Picture {
 
   // By its own samples.
   void show_own(std::size_t i) {
-    points_[i].radiance = states_[i].deterministic + states_[i].sums.mean();
+    points_[i].radiance = states_[i].deterministic + sums(i).mean() + 0.5 * (kept(i)[0] + kept(i)[1]);
     if (states_[i].hidden) points_[i].radiance += -1.0 * base_at(points_[i]);
-    if (!kept_.empty()) points_[i].radiance += 0.5 * (kept_[i][0] + kept_[i][1]);
-    points_[i].samples = kOfFour * states_[i].sums.fours();
+    points_[i].samples = kOfFour * sums(i).fours();
   }
 
   // 95th percentiles.
@@ -413,15 +432,14 @@ class Picture {
       const color::Rgb base = base_ != nullptr ? base_at(points_[i]) : color::Rgb{};
       beside[i] = base + state.sharp;
       for (std::size_t k = 0; k < 2; ++k) {
-        halves[i][k] = state.sums.halves()[k];
+        halves[i][k] = sums(i).halves()[k] + kept(i)[k];
         if (state.hidden) halves[i][k] += state.deterministic - base - state.sharp;
-        if (!kept_.empty()) halves[i][k] += kept_[i][k];
         if (is_unknown(i)) halves[i][k] = kUnknown;
       }
     });
     const Reconstruction found = reconstruction(shown_, halves, beside, request_.white_luminance);
     each_point([&](std::size_t i) {
-      const bool certain = states_[i].certain && states_[i].sums.fours() == 0;
+      const bool certain = states_[i].certain && sums(i).fours() == 0;
       points_[i].radiance = states_[i].sharp + (certain ? halves[i][0] : found.light[i]);
       points_[i].noise_de00 = certain ? 0 : found.error_de00[i];
       const double excess = kDeviations * points_[i].noise_de00 / tolerance();
@@ -443,19 +461,19 @@ class Picture {
     State& state = states_[i];
     point.covariance = {};
     point.noise_de00 = state.needed = 0;
-    const int fours = state.sums.fours();
+    const int fours = sums(i).fours();
     if (fours == 0) return;
-    const Covariance& own = state.sums.of_four();
+    const Covariance& own = sums(i).of_four();
     Covariance around{};
     color::Rgb light;
     int count = 0;
     by_pixel_.visit_around(point.x, point.y, [&](std::size_t other) {
-      if (other == i || states_[other].sums.fours() == 0) return;
+      if (other == i || sums(other).fours() == 0) return;
       ++count;
       light += points_[other].radiance;
-      for (std::size_t k = 0; k < 6; ++k) around[k] += states_[other].sums.of_four()[k];
+      for (std::size_t k = 0; k < 6; ++k) around[k] += sums(other).of_four()[k];
     });
-    const double freedom = state.sums.freedom();
+    const double freedom = sums(i).freedom();
     for (std::size_t k = 0; k < 6; ++k)
       point.covariance[k] = smoothed_variance(own[k], freedom, around[k], count) / fours;
     point.noise_de00 = noise_of(i, point.radiance, point.covariance);
@@ -468,7 +486,7 @@ class Picture {
   }
 
   // The fours of a point. Where its neighbors tell its light, it has as many as they got at first.
-  int counted(std::size_t i) const { return is_unknown(i) ? kFirstFours : states_[i].sums.fours(); }
+  int counted(std::size_t i) const { return is_unknown(i) ? kFirstFours : sums(i).fours(); }
 
   double noise_of(std::size_t i, color::Rgb radiance, const Covariance& covariance) const {
     if (base_ != nullptr) radiance += base_at(points_[i]);
@@ -498,7 +516,7 @@ class Picture {
     limits.least = std::max(1.0, kLeastRound * drawn());
     limits.in_vain =
         request_.tolerance_de00 > 0 && tolerance() < worse_percentile([&](std::size_t i) {
-                                         return states_[i].sums.fours() >= limits.of_point ? points_[i].noise_de00 : 0;
+                                         return sums(i).fours() >= limits.of_point ? points_[i].noise_de00 : 0;
                                        });
     return plan_round(
         limits, [&](std::size_t i) { return states_[i].needed; }, [&](std::size_t i) { return counted(i); }, more);
@@ -523,7 +541,7 @@ class Picture {
 
   double drawn() const {
     double fours = 0;
-    for (const State& state : states_) fours += state.sums.fours();
+    for (const Sampled& sampled : sampled_) fours += sampled.sums.fours();
     return fours;
   }
 
@@ -550,10 +568,10 @@ class Picture {
   PixelPoints by_pixel_;
   std::vector<PathPoint> points_;
   std::vector<State> states_;
+  std::vector<Sampled> sampled_;
   unsigned drawn_ = kAllShares;  // the shares that are drawn on
   FoundShares found_;
-  std::vector<std::array<LightShares, Round::kSequences>> first_;  // of the first round; empty: not kept
-  std::vector<Halves> kept_;                                       // of shares that stopped
+  std::vector<std::array<LightShares, Round::kSequences>> first_;  // of those sampled first; empty: not kept
   const double beside_ = percentile_95(request_.beside_de00);      // of the errors that are no noise
   int left_ = 0;                                                   // the least x of a point
   std::vector<ShownPoint> shown_;                                  // by the points; empty: nothing is reconstructed

@@ -17,11 +17,6 @@ constexpr double kStopShare = 0.35;
 
 }  // namespace
 
-int corrected_together(int width, int height) {
-  constexpr double kMostBytes = 4e8, kBytesOfPixel = 4 * sizeof(float) + sizeof(std::uint32_t);
-  return std::clamp(static_cast<int>(kMostBytes / (kBytesOfPixel * width * height)), 4, 16);
-}
-
 color::Rgb Backdrop::at(const rays::Float3& direction) const {
   if (background == Background::kColor) return color;
   if (background == Background::kNone || environment == nullptr) return {};
@@ -38,12 +33,22 @@ double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Ba
   return percentile_95(std::move(de00));
 }
 
-void CorrectionNoise::add(const PathPicture& one, int groups) {
-  const double of_mean = 1 / (std::sqrt(groups) * groups);
-  de00_p95 += of_mean * one.noise_p95_de00, error_de00_p95 += of_mean * one.error_p95_de00;
-  free_share += one.free_share / groups;
-  samples += one.samples_mean, ms += 1000 * one.time_s;
+void CorrectionNoise::add(const PathPicture& one) {
+  const double before = points, added = static_cast<double>(one.points.size()), all = before + added;
+  if (before == 0) dark = true, found = one.found;
+  points = all, ms += 1000 * one.time_s;
   reached = reached && one.reached, dark = dark && one.dark;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    found[i].de00_p95 = std::max(found[i].de00_p95, one.found[i].de00_p95);
+    found[i].stopped = found[i].stopped && one.found[i].stopped;
+  }
+  if (added == 0) return;
+  const auto take_in = [&](double& mean, double value) { mean += added / all * (value - mean); };
+  const auto take_in_squared = [&](double& mean, double value) {
+    mean = std::sqrt((before * mean * mean + added * value * value) / all);
+  };
+  take_in_squared(de00_p95, one.noise_p95_de00), take_in_squared(error_de00_p95, one.error_p95_de00);
+  take_in(free_share, one.free_share), take_in(samples, one.samples_mean);
 }
 
 void add_surroundings(const Transport& transport, PixelSamples samples, const Backdrop& backdrop,
@@ -86,11 +91,11 @@ PathRequest correction_request(const RayEffects& effects, int bounces, double to
 }
 
 PathPicture add_correction(const Transport& transport, PixelSamples samples, const PathRequest& request,
-                           const image::Image& before, float gain, image::Image& picture) {
+                           const image::Image& before, image::Image& picture) {
   PathPicture drawn = path_picture(transport, samples, &before, request);
   for (const PathPoint& point : drawn.points) {
     float* pixel = &picture.data[samples.front()->index(point.x, point.y) * static_cast<std::size_t>(picture.channels)];
-    for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>(point.radiance[c]);
+    for (int c = 0; c < 3; ++c) pixel[c] += static_cast<float>(point.radiance[c]);
   }
   return drawn;
 }

@@ -10,13 +10,10 @@
 
 namespace goniochrome::render {
 
-// Samples of a pixel are corrected together, as many as there is memory for: 4 to 16.
-int corrected_together(int width, int height);
-
 // The paths that find what these effects change, reconstructed. Effects that change little stop after the first round.
 PathRequest correction_request(const RayEffects& effects, int bounces, double tolerance_de00);
 
-// How the effects were drawn; of several samples the means.
+// How the effects were drawn; of several bands of a picture the means over their points.
 struct CorrectionNoise {
   double de00_p95 = 0;        // of the size of the errors that rays leave
   double error_de00_p95 = 0;  // and of all errors of the picture
@@ -28,8 +25,10 @@ struct CorrectionNoise {
   // The change by each of the effects, in the order of plans, and whether the first pass was its last.
   std::array<FoundShare, kShareCount> found;
 
-  // Adds one of so many groups of a pixel's samples; begin with `dark`.
-  void add(const PathPicture& one, int groups);
+  double points = 0;
+
+  // Adds a band.
+  void add(const PathPicture& one);
 };
 
 // The background around the mesh of a picture with a floor that shows the environment.
@@ -50,10 +49,10 @@ double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Ba
 void add_surroundings(const Transport& transport, PixelSamples samples, const Backdrop& backdrop,
                       const RayEffects& effects, float gain, image::Image& picture);
 
-// Adds `gain` times the correction, the mean over these samples of each pixel, to the first three channels of the
-// picture, which holds radiance times coverage.
+// Adds the correction, the mean over these samples of each pixel, to the first three channels of the picture, which
+// holds radiance times coverage.
 // `before` is the picture without corrections; it tells how visible noise is. Bit-identical for any number of threads.
 PathPicture add_correction(const Transport& transport, PixelSamples samples, const PathRequest& request,
-                           const image::Image& before, float gain, image::Image& picture);
+                           const image::Image& before, image::Image& picture);
 
 }  // namespace goniochrome::render

@@ -285,28 +285,26 @@ Predictions all_predictions(int width, int height, const std::vector<ShownPoint>
   return predicted;
 }
 
-// Means over the neighborhoods of points. Errors at edges are no mean of those beside them, so that each kind has an
-// image of its own, in which the few points at edges are not lost among the others.
-std::vector<Values> neighborhood_means(int width, int height, const std::vector<ShownPoint>& points,
-                                       const std::vector<Values>& of) {
-  std::vector<Values> result = of;
+// Values at points become means over their neighborhoods. Errors at edges are no mean of those beside them, so that
+// each kind has an image of its own, in which the few points at edges are not lost among the others.
+void take_neighborhood_means(int width, int height, const std::vector<ShownPoint>& points,
+                             std::vector<Values>& values) {
   for (const bool at_edges : {false, true}) {
-    SurfaceImage image = image_of(width, height, points, of, at_edges);
+    SurfaceImage image = image_of(width, height, points, values, at_edges);
     for (int level = 0; level < kErrorMean.level; ++level) image = coarser(image);
     each_fit(kErrorMean, image, points, [&](const Fits& fits, std::size_t n) {
       if (at_edge(points[n]) != at_edges) return;
-      if (const Values mean = fits.of_piece(points[n]); !std::isnan(mean[0])) result[n] = mean;
+      if (const Values mean = fits.of_piece(points[n]); !std::isnan(mean[0])) values[n] = mean;
     });
   }
-  return result;
 }
 
 // Measures all choices. The visibility of an error is taken at filtered light, which has less noise than its samples.
 Measured measured(int width, int height, const std::vector<ShownPoint>& points, const Predictions& predicted,
                   const std::vector<color::Rgb>& beside, double white_luminance) {
   Measured result;
-  result.seen.resize(points.size()), result.variances.resize(points.size());
-  std::vector<Values> biases(points.size());
+  result.seen.resize(points.size()), result.variances.resize(points.size()), result.mean_biases.resize(points.size());
+  std::vector<Values>& biases = result.mean_biases;
   each_point(points.size(), [&](std::size_t n) {
     std::size_t finest = 2;  // of the filters that tell this point
     while (finest < kChoices && std::isnan(predicted[finest][n][0])) ++finest;
@@ -328,8 +326,9 @@ Measured measured(int width, int height, const std::vector<ShownPoint>& points, 
     }
     result.seen[n] = seen;
   });
-  result.mean_variances = neighborhood_means(width, height, points, result.variances);
-  result.mean_biases = neighborhood_means(width, height, points, biases);
+  take_neighborhood_means(width, height, points, biases);
+  result.mean_variances = result.variances;
+  take_neighborhood_means(width, height, points, result.mean_variances);
   return result;
 }
 
