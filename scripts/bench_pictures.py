@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+"""Default pictures of meshes, probes and paints: what each costs, and how far it is from a long reference by the same effects.
+
+scripts/bench pictures runs this.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.dont_write_bytecode = True
+
+import numpy
+
+from shared import pictures
+from shared.colors import de2000, lab
+from shared.tools import DATA, put_tools_into_path, run_tool
+
+XYZ_FROM_REC2020 = ((0.636958, 0.144617, 0.168881), (0.262700, 0.677998, 0.059302), (0.0, 0.028073, 1.060985))
+PAINTS = {"silver_fine": "paints", "candy_red": "paints", "film_green_violet": "travel"}
+REFERENCE = ("--tolerance", "0.3", "--time-limit", "30", "--seed", "7")
+FLAT = 1.25  # A pixel that is no brighter than this many times its neighbors is no highlight.
+BLACK = 0.005  # of the white
+SAME_PIECE = 0.96  # cosine of the normals
+MOST_RATIO = 1.25  # of the true noise to that which is told
+
+
+def scene_files():
+    """({name: mesh and its words}, {name: image}): of testdata, and those of GONIOCHROME_DATA where that is set."""
+    meshes = {"speed-shape": (DATA / "speed-shape.obj",)}
+    probes = {name: DATA / f"{name}.exr" for name in ("studio", "outdoor")}
+    folder = os.environ.get("GONIOCHROME_DATA")
+    if folder:
+        meshes |= {"vehicle": (f"{folder}/mesh/vehicle.obj", "--trim"), "teapot": (f"{folder}/mesh/teapot.obj",)}
+        probes = {path.stem: path for path in sorted(pathlib.Path(folder, "probes").glob("*.hdr"))}
+    return meshes, probes
+
+
+class Picture:
+    """A picture that render-osmesa drew: its colors, its report, and what the process took."""
+
+    def __init__(self, out, *words):
+        report, begin = out.with_suffix(".json"), time.monotonic()
+        process = subprocess.Popen(["render-osmesa", "-q", *map(str, words), "--background", "env", "--aov", "part,normal", "-o", out,
+                                    "--report", report], stderr=subprocess.DEVNULL)
+        _, status, used = os.wait4(process.pid, 0)
+        self.seconds, self.cpu_s, self.peak_mb = time.monotonic() - begin, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode not in (0, 4):
+            sys.exit(f"render-osmesa {' '.join(map(str, words))} ended with exit status {process.returncode}")
+        planes = pictures.channels(out)
+        self.rgb = numpy.stack([planes[name] for name in "RGB"], -1).astype(float)
+        self.part = planes["part"]
+        self.seen = self.part > 0
+        self.normal = numpy.stack([planes[f"normal.{axis}"] for axis in "XYZ"], -1)
+        self.report = json.loads(report.read_text())["results"]
+
+    def de00(self, reference):
+        """CIEDE2000 to the reference at each pixel that shows the mesh, before the white of the reference."""
+        xyz = [numpy.maximum(p.rgb[reference.seen] @ numpy.transpose(XYZ_FROM_REC2020), 0) / reference.report["white_luminance"]
+               for p in (self, reference)]
+        return de2000(lab(xyz[0]), lab(xyz[1]))
+
+    def isolated(self, reference):
+        """The number of pixels over twice all their neighbors, on one even piece of surface with these, that are no highlights of
+        the reference."""
+        height, width = self.part.shape
+        middle = (slice(1, -1), slice(1, -1))
+        neighbors = [(slice(v, height - 2 + v), slice(u, width - 2 + u))
+                     for v in range(3) for u in range(3) if (u, v) != (1, 1)]
+        flat = self.seen[middle] & numpy.all([(self.part[at] == self.part[middle]) &
+                                              ((self.normal[at] * self.normal[middle]).sum(-1) > SAME_PIECE)
+                                              for at in neighbors], 0)
+        light, true = self.rgb.mean(-1), reference.rgb.mean(-1)
+        flat &= light[middle] > BLACK * reference.report["white_luminance"]
+        return int((flat & (light[middle] > 2 * numpy.max([light[at] for at in neighbors], 0)) &
+                    (true[middle] < FLAT * numpy.max([true[at] for at in neighbors], 0))).sum())
+
+
+def row(name, words, work, size):
+    """Draws a default picture and its reference; returns the text of both and whether what is told of the noise is true."""
+    out = Picture(work / "picture.exr", *words, "--size", size)
+    reference = Picture(work / "reference.exr", *words, "--size", size, *REFERENCE)
+    error, rays = out.de00(reference), out.report.get("rays", {})
+    told, p95 = rays.get("noise_de00_p95", 0.0), float(numpy.quantile(error, 0.95))
+    left = reference.report.get("rays", {}).get("noise_de00_p95", 0.0)
+    per_1e5 = 1e5 * out.isolated(reference) / out.seen.size
+    print(f"{name:58} {size:>9} {out.seconds:6.2f} {out.cpu_s:6.2f} {out.peak_mb:6.0f}  {error.mean():5.2f} {p95:5.2f}"
+          f"  {told:5.2f} {rays.get('error_de00_p95', 0.0):5.2f} {left:5.2f} {per_1e5:6.1f}", flush=True)
+    return p95 <= MOST_RATIO * (told ** 2 + left ** 2) ** 0.5
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="bench pictures", description=__doc__)
+    parser.add_argument("--size", default="1280x720", help="size of the pictures [%(default)s]")
+    parser.add_argument("--only", default="", metavar="WORD", help="draw only pictures whose name has this word")
+    chosen = parser.parse_args()
+    put_tools_into_path()
+    meshes, probes = scene_files()
+    print(f"{'mesh, probe, paint':58} {'size':>9} {'s':>6} {'cpu s':>6} {'MB':>6}  {'mean':>5} {'p95':>5}  {'noise':>5} {'error':>5} {'ref.':>5}"
+          f" {'specks':>6}")
+    true = True
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        for library in sorted(set(PAINTS.values())):
+            run_tool("fit-paint", "--basis", DATA / "b7.basis.xml", DATA / f"{library}.paints.xml", "-o", work / f"{library}.xml")
+        for probe, image in probes.items():
+            env = work / f"{probe}.env.exr"
+            for mesh, (obj, *more) in meshes.items():
+                for paint, library in PAINTS.items():
+                    name = f"{mesh} {probe} {paint}"
+                    if chosen.only not in name:
+                        continue
+                    if not env.exists():
+                        run_tool("prefilter-envmap", image, "--basis", DATA / "b7.basis.xml", "-o", env)
+                    words = ("--mesh", obj, *more, "--env", env, "--paint", f"{work / library}.xml#{paint}")
+                    true &= row(name, words, work, chosen.size)
+    return 0 if true else 1
+
+
+sys.exit(main())
