@@ -15,6 +15,17 @@ namespace {
 constexpr int kSize = 512, kTurns = 8;
 constexpr int kBouncedDirections = 64;
 
+// In even light a lobe a cos^E reflects about a 2 pi/(E + 1) c to a view of cosine c, and 2/3 of that on average.
+paint::LobeFit white_metallic() {
+  constexpr double kDiffuse = 0.3;
+  const auto gray = [](double value) { return color::Rgb{value, value, value}; };
+  paint::LobeFit paint;
+  paint.diffuse = gray(kDiffuse / kPi);
+  for (const double exponent : {12.0, 60.0})
+    paint.lobes.push_back({exponent, gray(0.5 * (1 - kDiffuse) * 1.5 * (exponent + 1) / (2 * kPi)), {}});
+  return paint;
+}
+
 // The mesh as the environment sees it when it is turned about the vertical axis through the middle.
 mesh::Mesh turned(mesh::Mesh mesh, const Vec3& middle, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
@@ -33,7 +44,7 @@ Result<PageGroundLight> page_ground_light(const mesh::Mesh& mesh, const envmap::
   Scene scene;
   for (const mesh::MeshPart& part : mesh.parts) {
     paint::LobeFit& paint = scene.paints.emplace_back();
-    if (!trim_kind(part)) paint.diffuse = {1 / kPi, 1 / kPi, 1 / kPi};
+    if (!trim_kind(part)) paint = white_metallic();
   }
   PathScene paths{.scene = &scene, .environment = &environment, .ground = ground_below(mesh)};
   paths.table = std::make_shared<const EnvironmentTable>(environment);
@@ -61,9 +72,9 @@ Result<PageGroundLight> page_ground_light(const mesh::Mesh& mesh, const envmap::
             const GroundLight one = transport.shaded()->seen(transport.rays().local(place));
             at.left += 0.5 * one.left, at.bounced += 0.5 * one.bounced;
           }
-          std::uint8_t* texel = &light.texels[first + 4 * (row * kSize + column)];
+          std::uint16_t* texel = &light.texels[first + 4 * (row * kSize + column)];
           for (const double share : {at.left.x, at.left.y, at.left.z, color::xyz_d65_from_rgb(at.bounced).Y})
-            *texel++ = static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
+            *texel++ = static_cast<std::uint16_t>(std::lround(kGroundSteps * std::clamp(share, 0.0, 1.0)));
         }
       }
     });

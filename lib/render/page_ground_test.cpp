@@ -31,7 +31,8 @@ Texel at(const PageGroundLight& light, int turn, double x, double z) {
   };
   const auto size = static_cast<std::size_t>(light.size);
   const std::size_t first = 4 * ((static_cast<std::size_t>(turn) * size + line(z)) * size + line(x));
-  return {light.texels[first + 1], light.texels[first + 3]};
+  const auto byte = [&](std::size_t channel) { return 255 * light.texels[first + channel] / kGroundSteps; };
+  return {byte(1), byte(3)};
 }
 
 // A sun at 45 degrees above +X throws the shadow toward -X, and lights the side at +X, which lights the ground there.

@@ -9,10 +9,10 @@ Json PackedNumbers::add_bytes(std::string_view bytes, std::size_t count) {
   return Json::array({at, count});
 }
 
-Json PackedNumbers::add_smooth(const std::vector<std::uint16_t>& numbers) {
+Json PackedNumbers::add_smooth(const std::vector<std::uint16_t>& numbers, std::size_t channels) {
   std::string planes(2 * numbers.size(), '\0');
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto difference = static_cast<std::uint16_t>(numbers[i] - (i >= 3 ? numbers[i - 3] : 0));
+    const auto difference = static_cast<std::uint16_t>(numbers[i] - (i >= channels ? numbers[i - channels] : 0));
     planes[i] = static_cast<char>(difference & 255);
     planes[numbers.size() + i] = static_cast<char>(difference >> 8);
   }

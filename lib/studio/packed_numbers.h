@@ -23,9 +23,9 @@ class PackedNumbers {
   Json add(const std::vector<Number>& numbers) {
     return add_bytes({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)}, numbers.size());
   }
-  // Adds the RGB texels of a smooth map. Each number is replaced by its difference from that of the
+  // Adds the texels of a smooth map of so many channels. Each number is replaced by its difference from that of the
   // texel before, and all low bytes go before all high bytes, so that the map compresses well.
-  Json add_smooth(const std::vector<std::uint16_t>& numbers);
+  Json add_smooth(const std::vector<std::uint16_t>& numbers, std::size_t channels = 3);
 
   const std::string& bytes() const { return bytes_; }
 

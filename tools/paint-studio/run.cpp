@@ -167,7 +167,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
       (*environment)["ground_light"] = {{"size", ground.size},
                                         {"turns", ground.turns},
                                         {"reach", ground.reach},
-                                        {"texels", numbers.add(ground.texels)}};
+                                        {"steps", render::kGroundSteps},
+                                        {"texels", numbers.add_smooth(ground.texels, 4)}};
     }
     results["environments"].push_back(
         {{"name", name_of(path)}, {"bytes", environment->dump().size() + numbers.bytes().size() - before}});

@@ -40,11 +40,11 @@ let pageNumbers = null;  // the bytes of all of them
 // Numbers at a place, [first byte, count], of the page or, as the third of the place, of what was opened.
 const numbersOf = ([at, count, bytes = pageNumbers], Kind) => new Kind(bytes.buffer, at, count);
 
-// The RGB texels of a smooth map of 16 bits: each is told by its difference from that of the texel before, and the low bytes
+// The texels of a smooth map of 16 bits and so many channels: each is told by its difference from that of the texel before, and the low bytes
 // of all stand before the high bytes.
-function smoothNumbersOf([at, count, of]) {
+function smoothNumbersOf([at, count, of], channels = 3) {
   const bytes = numbersOf([at, 2 * count, of], Uint8Array), values = new Uint16Array(count);
-  for (let i = 0; i < count; ++i) values[i] = (i >= 3 ? values[i - 3] : 0) + bytes[i] + (bytes[count + i] << 8);
+  for (let i = 0; i < count; ++i) values[i] = (i >= channels ? values[i - channels] : 0) + bytes[i] + (bytes[count + i] << 8);
   return values;
 }
 

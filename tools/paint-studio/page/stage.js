@@ -45,7 +45,6 @@ int part(float w) { return w < 0.0 ? -(int(-w) & 7) : int(w) & 7; }
 bool differ(vec4 a, float light, ivec2 at) {
   at = clamp(at, ivec2(0), last);
   vec4 b = texelFetch(gbuffer, at, 0);
-  if (a.w == 0.0 && b.w == 0.0) return false;
   float other = min(gain * dot(texelFetch(picture, at, 0).rgb, vec3(0.2627, 0.678, 0.0593)), 2.0);
   return part(a.w) != part(b.w) || abs(light - other) > ${edgeContrast} * (min(light, other) + 0.02);
 }
@@ -235,15 +234,16 @@ class Stage {
   }
 
   // The part of its light that the ground keeps beside the mesh, between the two turns of the environment for which it is known.
-  groundLight(number, { size, turns, texels }) {
+  groundLight(number, { size, turns, steps, texels }) {
     const gl = this.gl, made = this.environment(number), at = ((((this.turn % 360) + 360) % 360) / 360) * turns, first = Math.floor(at) % turns, share = at - Math.floor(at);
     if (made.groundTurn === this.turn) return made.ground;
-    const all = numbersOf(texels, Uint8Array), length = 4 * size * size, one = all.subarray(first * length, (first + 1) * length), next = ((first + 1) % turns) * length;
-    const mixed = share === 0 ? one : one.map((value, i) => Math.round((1 - share) * value + share * all[next + i]));
+    const all = (made.groundTexels ??= smoothNumbersOf(texels, 4)), length = 4 * size * size, one = all.subarray(first * length, (first + 1) * length), next = ((first + 1) % turns) * length;
+    const mixed = Float32Array.from(one, (value, i) => ((1 - share) * value + share * all[next + i]) / steps);
     made.ground ??= gl.createTexture();
     gl.bindTexture(gl.TEXTURE_2D, made.ground);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, size, size, 0, gl.RGBA, gl.UNSIGNED_BYTE, mixed);
-    for (const [what, how] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_MAG_FILTER, gl.LINEAR], [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]]) gl.texParameteri(gl.TEXTURE_2D, what, how);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, size, size, 0, gl.RGBA, gl.FLOAT, mixed);
+    for (const [what, how] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR], [gl.TEXTURE_MAG_FILTER, gl.LINEAR], [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]]) gl.texParameteri(gl.TEXTURE_2D, what, how);
+    gl.generateMipmap(gl.TEXTURE_2D);
     made.groundTurn = this.turn;
     return made.ground;
   }
