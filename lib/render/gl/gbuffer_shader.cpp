@@ -4,8 +4,8 @@ namespace goniochrome::render {
 
 namespace {
 
-// The light that a vertex loses, as moments: sums of d and of d d^T over directions, each times its luminance and its
-// part of the sphere. They are those of both sides, as if the surface were a mirror.
+// The light that a vertex loses, as moments: sums of d and of d d^T over directions, each times its luminance, its
+// cosine and its part of the sphere. They are those of both sides, as if the surface were a mirror.
 constexpr const char* kMoments = R"(invariant gl_Position;
 uniform sampler2D moments_0, moments_1, moments_2;
 uniform int moment_columns;  // of these pictures, which have a texel for each vertex; 0: nothing is lost
@@ -64,8 +64,7 @@ void main() {
   if (cos_o < 1e-3) n = normalize(n + (1e-3 - cos_o) * wo);
   float hidden = float(part + 1 + 8 * int(15.0 * clamp(third.z, 0.0, 1.0) + 0.5));
   gbuffer = vec4(n, side * (hidden + reach / gl_FragCoord.w));
-  occlusion = vec4(dot(bands(n), vec3(1.0, 2.0 / 3.0, 0.25)), bands(2.0 * dot(n, wo) * n - wo));
-  if (!gl_FrontFacing) occlusion = vec4(third.yy, 0.0, 0.0);
+  occlusion = gl_FrontFacing ? vec4(bands(2.0 * dot(n, wo) * n - wo), 0.0) : vec4(third.y, vec3(0.0));
 }
 )";
 }

@@ -13,11 +13,10 @@ std::string map_light_function(const Effects& effects, bool shaded) {
   std::string text = "\nvec4 map_light(vec3 r, int slot, vec3 n) {\n  vec3 light = vec3(0.0);\n";
   for (const LightLayer& layer : light_layers(effects)) {
     if (layer.of_lamps) continue;
-    std::string toward = layer.exponent == kDiffusePart ? "n" : looking(shaded, layer.exponent);
+    std::string toward = layer.exponent == kDiffusePart ? "n" : "r";
     if (layer.shift_slot >= 0) toward += fmt::format(" + W({}).{} * n", layer.shift_slot, "rgba"[layer.shift_channel]);
-    text += fmt::format(
-        "  if (slot == {}) light = {};\n", layer.slot,
-        light_left(shaded, layer.exponent, fmt::format("textureLod({}, {}, 0.0).rgb", layer.sampler, toward)));
+    text += fmt::format("  if (slot == {}) light = {};\n", layer.slot,
+                        lobe_light(shaded, layer.exponent, layer.sampler, toward));
   }
   return text + "  return vec4(light, 0.0);\n}\n";
 }
@@ -99,13 +98,12 @@ std::string gathering_fragment_shader(const Effects& effects, bool on_page) {
   text +=
       fmt::format("uniform int slots[{0}];\nuniform float scales[{0}];\nlayout(location = 0) out vec4 layers[{0}];\n",
                   kLayersAtOnce);
-  text += kWeight + (shaded ? occlusion_functions() : "");
+  text += kWeight + page_functions(effects, on_page);
   if (lit_gloss(effects)) text += fresnel_function();
   if (effects.coat && lamps) text += kLetIn;
   if (lamps) text += disc_functions(effects.lobes.size()) + "float index2;  // of the coat, squared\n";
   if (effects.environment) text += map_light_function(effects, shaded);
   if (lamps && !effects.lobes.empty()) text += lamp_light_function(effects);
-  if (projected_ground) text += ground_functions(effects);
   std::string beside, sums, written;
   for (int o = 0; o < kLayersAtOnce; ++o) {
     beside += fmt::format(

@@ -24,8 +24,7 @@ float cos_power(float versine, float exponent) {
 // One term of what the environment shows.
 std::string product_with_map(const Effects& effects, int slot, const std::string& map, const std::string& direction,
                              double exponent, bool shaded) {
-  return product(effects, fmt::format("W({}).rgb", slot),
-                 light_left(shaded, exponent, fmt::format("textureLod({}, {}, 0.0).rgb", map, direction)));
+  return product(effects, fmt::format("W({}).rgb", slot), lobe_light(shaded, exponent, map, direction));
 }
 
 // The weights that discs meet are fetched once for a point, and not again for each of its discs.
@@ -78,8 +77,7 @@ std::string lobe_functions(const Effects& effects, bool shaded) {
       const std::string shift = shifted ? fmt::format(" + W({}).{} * n", slots.shift_slot(j), "rgba"[j % 4]) : "";
       text +=
           fmt::format("  sum += {};\n", product_with_map(effects, WeightTable::lobe_slot(j), fmt::format("lobe_{}", j),
-                                                         looking(shaded, effects.lobes[j].exponent) + shift,
-                                                         effects.lobes[j].exponent, shaded));
+                                                         "r" + shift, effects.lobes[j].exponent, shaded));
     }
     text += "  return sum;\n}\n";
   }
@@ -107,8 +105,7 @@ std::string environment_terms(const Effects& effects, bool tilted, bool shaded) 
   if (effects.diffuse) term(WeightTable::diffuse_slot(), "diffuse", "n", kDiffusePart);
   if (effects.diffuse && effects.coat) term(slots_of(effects).coat_diffuse_slot(), "coat_diffuse", "n", kDiffusePart);
   if (!effects.lobes.empty()) text += over_tilts(effects, "products", "lobes", ", n");
-  if (effects.mirror)
-    term(slots_of(effects).mirror_slot(), "mirror", looking(shaded, paint::kMirrorExponent), paint::kMirrorExponent);
+  if (effects.mirror) term(slots_of(effects).mirror_slot(), "mirror", "r", paint::kMirrorExponent);
   if (tilted) text += "  products += tilted_lobes(r, n, wo);\n";
   return text;
 }
@@ -177,7 +174,7 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   // 1. What the program is given, and the functions that it needs.
   std::string text = std::string(kHead) + "// goniochrome-rendering(7), \"RENDERING\"\n";
   text += uniforms(effects) + tilt_uniforms(effects, tilted) + kPixel + kRays +
-          "layout(location = 0) out vec4 color;\n" + kWeight + (shaded ? occlusion_functions() : "") +
+          "layout(location = 0) out vec4 color;\n" + kWeight + page_functions(effects, on_page) +
           placed_lamp_functions(effects);
   if (effects.reflection) text += reflection_function(op);
   if (lit_gloss(effects)) text += fresnel_function();
@@ -188,7 +185,6 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   if (!effects.lobes.empty()) text += lobe_functions(effects, shaded);
   text += tilt_function(effects, tilted);
   const bool projected_ground = on_page && effects.background == Background::kEnvironment;
-  if (projected_ground) text += ground_functions(effects);
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
   if (projected_ground) text += kMeshColor;
   text += start_of_main(

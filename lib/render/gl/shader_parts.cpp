@@ -14,6 +14,7 @@ namespace goniochrome::render {
 namespace {
 
 constexpr double kSharpestBands = 8;  // exponent
+constexpr double kAsMirror = 20;      // times the sharpest exponent, which shows what the mirror shows
 
 bool is_sharp(double exponent) {
   return exponent > 2 * kSharpestBands;
@@ -145,44 +146,50 @@ std::string luminance_constant() {
   return fmt::format("const vec3 luminance = vec3({});\n", luminance);
 }
 
-std::string occlusion_functions() {
-  return luminance_constant() + kOcclusion;
-}
-
 std::string occlusion_start(const Effects& effects) {
   std::string text =
-      "  occluded = texelFetch(occlusion, ivec2(gl_FragCoord.xy), 0);\n"
+      "  tilted = 0.9375 * c * c - 0.3125;\n  occluded = texelFetch(occlusion, ivec2(gl_FragCoord.xy), 0);\n"
       "  lit = 1.0 - float(int(abs(point.w)) >> 3) / 15.0;\n";
   const auto off = [](const Effects::LobeUse& lobe) { return std::abs(std::log(lobe.exponent / kSharpestBands)); };
   const auto wide = std::ranges::min_element(effects.lobes, {}, off);
   if (wide == effects.lobes.end()) return text;
-  const std::string map = fmt::format("textureLod(lobe_{}, r, 0.0).rgb", wide - effects.lobes.begin());
-  text += fmt::format("  vec3 wide = {};\n  sharp = vec3(dot(luminance, {}) / max(dot(luminance, wide), 1e-6));\n", map,
-                      light_left(true, wide->exponent, "wide"));
-  return text + R"(  float depth = fract(abs(point.w)) / reach;  // 0 where no light is lost
-  vec3 from = ground_eye + depth * (corner + gl_FragCoord.x * right + gl_FragCoord.y * down);
-  if (depth > 0.0 && meets_ground(from, r)) {
-    vec3 at = on_ground(from, r);
-    sharp = kept_light(at).rgb;
-    ground_shift = normalize(at) - r;
-  }
+  const std::string map = fmt::format("lobe_{}", wide - effects.lobes.begin());
+  text += fmt::format("  share = dot(luminance, {}) / max(dot(luminance, {}), 1e-6);\n",
+                      lobe_light(true, wide->exponent, map, "r"), lobe_light(false, 0, map, "r"));
+  return text + R"(  depth = fract(abs(point.w)) / reach;
+  from = ground_eye + depth * (corner + gl_FragCoord.x * right + gl_FragCoord.y * down);
 )";
 }
 
-std::string light_left(bool shaded, double exponent, const std::string& look_up) {
+std::string lobe_light(bool shaded, double exponent, const std::string& map, const std::string& axis) {
+  const std::string look_up = fmt::format("textureLod({}, {}, 0.0).rgb", map, axis);
   if (!shaded) return look_up;
-  if (exponent == kDiffusePart) return fmt::format("left({}, occluded.x)", look_up);
-  if (is_sharp(exponent)) return "sharp * " + look_up;
+  if (exponent == kDiffusePart) return fmt::format("left({}, 2.0 * occluded.x)", look_up);
+  if (is_sharp(exponent))
+    return fmt::format("sharp({}, {}, {})", map, axis, glsl(1 / std::sqrt(std::min(exponent, 1e6))));
   return fmt::format("left({}, vec2({}, {}))", look_up, glsl((exponent + 1) / (exponent + 2)),
                      glsl(exponent / (exponent + 3)));
 }
 
-std::string looking(bool shaded, double exponent) {
-  return shaded && is_sharp(exponent) ? "r + ground_shift" : "r";
+// The environment as a lobe of any exponent shows it, between the maps of two lobes.
+std::string ground_map_function(const Effects& effects) {
+  std::string text = "vec3 ground_map(vec3 at, float exponent) {\n";
+  for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
+    const bool last = j + 1 == effects.lobes.size();
+    const double from = effects.lobes[j].exponent, to = last ? kAsMirror * from : effects.lobes[j + 1].exponent;
+    if (!last && !is_sharp(to)) continue;
+    const auto map = [&](const std::string& name) { return fmt::format("textureLod({}, at, 0.0).rgb", name); };
+    text += fmt::format("  if (exponent < {}) return mix({}, {}, clamp(log(exponent / {}) / {}, 0.0, 1.0));\n",
+                        glsl(to), map(fmt::format("lobe_{}", j)), map(last ? "mirror" : fmt::format("lobe_{}", j + 1)),
+                        glsl(from), glsl(std::log(to / from)));
+  }
+  return text + "  return textureLod(mirror, at, 0.0).rgb;\n}\n";
 }
 
-std::string ground_functions(const Effects& effects) {
-  return std::string(kProjectedGround) + (effects.lobes.size() <= kMostLobesOverShade ? kKeptLight : "");
+std::string page_functions(const Effects& effects, bool on_page) {
+  if (!on_page || effects.background != Background::kEnvironment) return {};
+  return std::string(kProjectedGround) + (effects.lobes.size() <= kMostLobesOverShade ? kKeptLight : "") +
+         (is_shaded(effects, on_page) ? luminance_constant() + ground_map_function(effects) + kOcclusion : "");
 }
 
 std::string background_colors(const Effects& effects, bool projected_ground) {
@@ -195,7 +202,7 @@ std::string background_colors(const Effects& effects, bool projected_ground) {
     before = fmt::format(
         "    bool ground = meets_ground(ground_eye, -wo);\n"
         "    vec3 at = ground ? on_ground(ground_eye, -wo) : -wo, seen = textureLod(mirror, at, 0.0).rgb;\n{}",
-        kept ? "    vec4 kept = ground ? kept_light(at) : vec4(1.0, 1.0, 1.0, 0.0);\n" : "");
+        kept ? "    vec4 kept = ground ? kept_light(at, 0.0) : vec4(1.0, 1.0, 1.0, 0.0);\n" : "");
     shown = kept ? "vec4(kept.rgb * seen, 1.0)" : "vec4(seen, 1.0)";
     if (kept) sent = "kept.a * seen";
   }

@@ -42,48 +42,65 @@ bool meets_ground(vec3 from, vec3 ray) {
 vec3 on_ground(vec3 from, vec3 ray) { return from - max(from.y + ground_drop, 0.0) / ray.y * ray; }
 )";
 
-// The part of its light that the ground keeps beside the mesh, where a ray meets it, and the light that a white matt
-// mesh sends there. WebGL 2 promises 16 textures, so that there is no room for it beside more lobes.
+// The part of its light that the ground keeps beside the mesh, where a ray meets it, and the light that a white mesh
+// sends there. WebGL 2 promises 16 textures, so that there is no room for it beside more lobes.
 inline constexpr std::size_t kMostLobesOverShade = 8;
 inline constexpr const char* kKeptLight = R"(uniform sampler2D ground_light;
 uniform float ground_scale;  // 1 over its reach, see PageGroundLight; 0 for none
 uniform vec2 ground_turn;  // cosine and sine by which the environment was turned
-vec4 kept_light(vec3 at) {
+vec4 kept_light(vec3 at, float width) {  // the mean over about so much of the ground
   if (ground_scale == 0.0) return vec4(1.0, 1.0, 1.0, 0.0);
   vec2 p = clamp(ground_scale * vec2(dot(ground_turn, at.xz), ground_turn.x * at.z - ground_turn.y * at.x), -1e3, 1e3);
-  return texture(ground_light, 0.5 + 0.5 * p * inversesqrt(1.0 + p * p));
+  float squared = 1.0 + dot(p, p), size = 0.5 * float(textureSize(ground_light, 0).x) * ground_scale * width;
+  float texels = size / (squared * sqrt(squared));
+  return textureLod(ground_light, 0.5 + 0.5 * p * inversesqrt(1.0 + p * p), log2(max(texels, 1.0)));
 }
 )";
 inline constexpr const char* kMeshColor = "uniform vec3 mesh_color;  // reflectance of the paint in even light\n";
-// The share of a lobe's light that the mesh and its ground leave on a page. `bands` are the bands 1 and 2 of the lobe
-// itself, about whose axis `occluded` holds the bands of the luminance that is lost; of the diffuse part it holds the
-// sum. Bands tell little of sharp lobes: they see the ground where their axis meets it, and else keep the share of a
-// wider lobe.
+// The light of a lobe that the mesh and its ground leave on a page. `bands` are the bands 1 and 2 of the lobe itself;
+// `occluded` holds those of the luminance that is lost, times the cosine toward it, about the mirror direction. The
+// light itself has the mean cosine of the lobe. Bands tell little of sharp lobes. Their part that looks down sees the
+// ground, and the rest keeps the share of a wider lobe. The maps show the ground as the eye of the environment saw it:
+// seen from nearer by, a lobe covers less of it, as a sharper lobe did there.
 inline constexpr const char* kOcclusion = R"(uniform sampler2D occlusion;
 vec4 occluded;
-vec3 sharp = vec3(1.0), ground_shift = vec3(0.0);  // by which sharp lobes look beside r
+float tilted;  // 5/8 P_2(c), the band 2 of the cosine; its mean is 1/2
+float depth = 0.0;  // of the point; 0 where no light is lost
+float share = 1.0;  // of light that sharp lobes keep beside the ground
+vec3 from;  // the point, as the eye of the environment has it
 uniform int own_lamps;  // the first, which no shadow dims
 float lit = 1.0;  // of the light of other lamps
-vec3 left(vec3 light, float lost) { return light * clamp(1.0 - lost / max(dot(luminance, light), 1e-6), 0.0, 1.5); }
-vec3 left(vec3 light, vec2 bands) { return left(light, occluded.y + dot(bands, occluded.zw)); }
+vec3 left(vec3 light, float lost) { return light * clamp(1.0 - lost / max(dot(luminance, light), 1e-6), 0.0, 4.0); }
+vec3 sharp(samplerCube map, vec3 axis, float deviation) {
+  float below = 1.0 / (1.0 + exp(min(1.7 * axis.y / deviation, 80.0)));  // its part that looks down
+  vec3 up = vec3(axis.x, max(axis.y, 0.7 * deviation), axis.z);
+  vec3 down = normalize(vec3(axis.x, min(axis.y, -0.7 * deviation), axis.z));
+  if (depth == 0.0 || below < 0.01 || !meets_ground(from, down)) return share * textureLod(map, axis, 0.0).rgb;
+  vec3 met = on_ground(from, down);
+  // Solid angles of the ground are as cos/distance^2, where cos is height/distance.
+  float away = distance(met, from), part = away / length(met);
+  float exponent = (from.y + ground_drop) / (deviation * deviation * part * part * part * ground_drop);
+  vec3 ground = kept_light(met, 2.4 * deviation * away * inversesqrt(-down.y)).rgb * ground_map(met, exponent);
+  return below > 0.99 ? ground : mix(share * textureLod(map, up, 0.0).rgb, ground, below);
+}
+vec3 left(vec3 light, vec2 bands) {
+  return left(light, (occluded.x + dot(bands, occluded.yz)) / (0.5 + bands.y * tilted));
+}
 )";
-std::string occlusion_functions();
 std::string luminance_constant();
 // Statements that take the occlusion of a point, where r is known.
 std::string occlusion_start(const Effects& effects);
-// A look-up of the light of a lobe cos^E, whose bands are (E+1)/(E+2) and E/(E+3), of the mirror (infinite), or of the
-// diffuse part (kDiffusePart), less what is lost where the program is `shaded`.
-std::string light_left(bool shaded, double exponent, const std::string& look_up);
-// The direction in which a lobe about r looks.
-std::string looking(bool shaded, double exponent);
+// The light of a lobe cos^E about an axis, by its map; its bands are (E+1)/(E+2) and E/(E+3). Of the mirror E is
+// infinite, of the diffuse part kDiffusePart. Where the program is `shaded`, it is less what is lost.
+std::string lobe_light(bool shaded, double exponent, const std::string& map, const std::string& axis);
 constexpr double kDiffusePart = 0;
 // True if a page has room for the texture of occlusion too.
 inline bool is_shaded(const Effects& effects, bool on_page) {
   return on_page && effects.background == Background::kEnvironment && effects.lobes.size() < kMostLobesOverShade;
 }
 
-// The functions of a ground on which the environment may lie.
-std::string ground_functions(const Effects& effects);
+// The functions of a page: of a ground on which the environment may lie, and of what the mesh occludes.
+std::string page_functions(const Effects& effects, bool on_page);
 
 // The samplers and uniforms of the G-buffer, the weights, the maps and the lights.
 std::string uniforms(const Effects& effects);

@@ -4,7 +4,8 @@
 // direction, from which the light of any environment is taken. goniochrome-transport(7), "Shadows of a page".
 
 const tile = 512, tilesAcross = 8, tilesDown = 4, atOnce = 32, aroundCount = 128, vertexColumns = 1024, groundSize = 192;
-const lightExponent = 60;  // a lobe about as wide as the part of the sphere that one of the directions stands for
+const lightExponent = 60;   // a lobe about as wide as the part of the sphere that one of the directions stands for
+const fineExponent = 1000;  // that lobe, where it looks at ground near by, as the eye of the environment saw it
 
 // Directions that lie evenly on the sphere, or on its part above `low`, in a spiral.
 const evenly = (low) => Array.from({ length: aroundCount }, (_, i) => {
@@ -68,7 +69,7 @@ const ofLight = `
 const vec3 luminance = vec3(0.2627, 0.678, 0.0593);  // of Rec.2020
 uniform vec3 around[${aroundCount}];
 uniform usampler2D seen;
-uniform samplerCube light;
+uniform samplerCube light, fine;  // of lobes of lightExponent and fineExponent
 uniform vec2 turn;
 vec3 of_map(samplerCube map, vec3 d) {
   return textureLod(map, vec3(turn.x * d.x - turn.y * d.z, d.y, turn.y * d.x + turn.x * d.z), 0.0).rgb;
@@ -82,7 +83,7 @@ uniform vec3 lamp_toward[${atOnce}], lamp_white[${atOnce}];
 const lossVertex = `${occlusionHead}${inTiles}${ofLight}${ofLamps}
 uniform sampler2D ground_light;
 uniform vec3 seen_from;
-uniform float ground_height, ground_scale;
+uniform float ground_height, ground_scale, fine_part;  // 1 over the logarithm of how much sharper the fine one is
 flat out vec4 first, second;
 flat out vec3 third;
 void main() {
@@ -98,16 +99,18 @@ ${inTexel}
     } else if (d.y < 0.0) {
       vec3 met = position - max(position.y - ground_height, 0.0) / d.y * d;
       vec2 p = clamp(ground_scale * (met - seen_from).xz, -1e3, 1e3);
-      vec3 kept = ground_scale > 0.0 ? texture(ground_light, 0.5 + 0.5 * p * inversesqrt(1.0 + p * p)).rgb : vec3(1.0);
-      lost = dot(luminance, shine(d) - kept * shine(met - seen_from));
+      vec3 at = met - seen_from, kept = ground_scale > 0.0 ? texture(ground_light, 0.5 + 0.5 * p * inversesqrt(1.0 + p * p)).rgb : vec3(1.0);
+      float nearer = length(at) / max(distance(met, position), 1e-5), sharper = nearer * nearer * nearer * (ground_height - position.y) / at.y;
+      vec3 shown = mix(shine(at), of_map(fine, at), clamp(log(max(sharper, 1e-9)) * fine_part, 0.0, 1.0));
+      lost = dot(luminance, shine(d) - kept * shown);
     }
     // On a back the diffuse part stands for all lobes.
     if (cosine <= 0.0) {
-      third.y -= 4.0 * cosine * lost / ${aroundCount}.0;
+      third.y -= 2.0 * cosine * lost / ${aroundCount}.0;
       continue;
     }
     vec3 other = d - 2.0 * cosine * normal;
-    lost *= min(8.0 * cosine, 1.0) / ${aroundCount}.0;
+    lost *= cosine / ${aroundCount}.0;
     first += lost * vec4(d + other, d.x * d.x + other.x * other.x);
     second += lost * vec4(d.yz * d.yz + other.yz * other.yz, d.x * d.y + other.x * other.y, d.y * d.z + other.y * other.z);
     third.x += lost * (d.z * d.x + other.z * other.x);
@@ -182,8 +185,9 @@ class Occlusion {
     this.busy = false;
     this.held = false;  // whether the light that was taken stays, as while it is turned
     this.keys = { mesh: [], ground: [] };  // environment and turn of the light that is taken
-    const exponents = stage.data.basis.exponents, off = (exponent) => Math.abs(Math.log(exponent / lightExponent));
-    this.sampler = `lobe_${exponents.indexOf([...exponents].sort((a, b) => off(a) - off(b))[0])}`;
+    const { exponents } = stage.data.basis, nearest = (wanted) => [...exponents].sort((a, b) => Math.abs(Math.log(a / wanted)) - Math.abs(Math.log(b / wanted)))[0];
+    const [light, fine] = [lightExponent, fineExponent].map(nearest), sampler = (exponent) => `lobe_${exponents.indexOf(exponent)}`;
+    Object.assign(this, { sampler: sampler(light), fine: sampler(fine), finePart: fine > light ? 1 / Math.log(fine / light) : 0 });
   }
 
   // A picture of points, of so many textures.
@@ -300,7 +304,7 @@ class Occlusion {
   take(what, environment, program, points, picture, directions, textures, set) {
     const { stage } = this, { gl } = stage;
     if (this.has(what, environment)) return this.keys[what].join();
-    const cubes = [["light", this.sampler], ["diffuse", "diffuse"]].map(([name, of]) => [name, gl.TEXTURE_CUBE_MAP, stage.environment(environment).cubes.find(({ sampler }) => sampler === of).texture]);
+    const cubes = [["light", this.sampler], ["fine", this.fine], ["diffuse", "diffuse"]].map(([name, of]) => [name, gl.TEXTURE_CUBE_MAP, stage.environment(environment).cubes.find(({ sampler }) => sampler === of).texture]);
     this.draw(program, points, picture, [["seen", gl.TEXTURE_2D, points.bits.textures[0]], ...cubes, ...textures], () => {
       gl.uniform3fv(program.at("around[0]"), directions.flat());
       gl.uniform2fv(program.at("turn"), stage.turnVector);
@@ -329,6 +333,7 @@ class Occlusion {
     return this.take("mesh", environment, program, this.mesh, this.moments, around, [["ground_light", gl.TEXTURE_2D, texture ?? this.depths.texture], ["depths", gl.TEXTURE_2D, this.depths.depth]], () => {
       setLamps();
       gl.uniform1f(program.at("ground_scale"), scale);
+      gl.uniform1f(program.at("fine_part"), this.finePart);
       gl.uniform3fv(program.at("seen_from"), stage.data.mesh.ground.seen_from);
       gl.uniform1f(program.at("ground_height"), stage.mesh.low[1]);
     });
