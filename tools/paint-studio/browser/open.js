@@ -87,6 +87,7 @@ drive("files of every kind are opened", { width: 1400, height: 900 }, async ({ b
   const ofDoors = await open(path.join(data, "doors.glb"));
   check(`the doors are there: ${ofDoors}`, (await parts()).map(([name]) => name).join() === "Closet,Left.Panel,Left.Pane,Right.Panel,Right.Pane");
   await browser.until("studio.stageView.full_ms > 0", 30).catch(() => {});
+  await browser.until("!studio.stage.occlusion.busy", 120);
   const covered = "studio.stage.radiance(studio.stageView.camera, 64, 36, studio.weights, 0)";
   check("the mesh is seen", (await value(`new Set(${covered}).size`)) > 100);
   await shot("open-mesh");
