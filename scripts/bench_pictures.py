@@ -46,13 +46,16 @@ class Picture:
 
     def __init__(self, out, *words):
         report, begin = out.with_suffix(".json"), time.monotonic()
-        process = subprocess.Popen(["render-osmesa", "-q", *map(str, words), "--background", "env", "--aov", "part,normal", "-o", out,
-                                    "--report", report], stderr=subprocess.DEVNULL)
-        _, status, used = os.wait4(process.pid, 0)
-        self.seconds, self.cpu_s, self.peak_mb = time.monotonic() - begin, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
-        process.returncode = os.waitstatus_to_exitcode(status)
+        # A child of this process would count its memory before it becomes another program.
+        used = out.with_suffix(".used")
+        process = subprocess.run(["time", "--quiet", "-f", "%U %S %M", "-o", used, "render-osmesa", "-q", *map(str, words),
+                                  "--background", "env", "--aov", "part,normal", "-o", out, "--report", report],
+                                 stderr=subprocess.DEVNULL, check=False)
+        self.seconds = time.monotonic() - begin
         if process.returncode not in (0, 4):
             sys.exit(f"render-osmesa {' '.join(map(str, words))} ended with exit status {process.returncode}")
+        user_s, system_s, peak_kb = map(float, used.read_text().split())
+        self.cpu_s, self.peak_mb = user_s + system_s, peak_kb / 1024
         planes = pictures.channels(out)
         self.rgb = numpy.stack([planes[name] for name in "RGB"], -1).astype(float)
         self.part = planes["part"]
