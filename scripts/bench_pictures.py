@@ -8,7 +8,6 @@ import argparse
 import json
 import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 import time
@@ -18,10 +17,9 @@ sys.dont_write_bytecode = True
 import numpy
 
 from shared import pictures
-from shared.colors import de2000, lab
-from shared.tools import DATA, put_tools_into_path, run_tool
+from shared.colors import de2000, lab_of_rec2020
+from shared.tools import DATA, Failed, put_tools_into_path, run_tool
 
-XYZ_FROM_REC2020 = ((0.636958, 0.144617, 0.168881), (0.262700, 0.677998, 0.059302), (0.0, 0.028073, 1.060985))
 PAINTS = {"silver_fine": "paints", "candy_red": "paints", "film_green_violet": "travel"}
 REFERENCE = ("--tolerance", "0.3", "--time-limit", "30", "--seed", "7")
 FLAT = 1.25  # A pixel that is no brighter than this many times its neighbors is no highlight.
@@ -48,12 +46,9 @@ class Picture:
         report, begin = out.with_suffix(".json"), time.monotonic()
         # A child of this process would count its memory before it becomes another program.
         used = out.with_suffix(".used")
-        process = subprocess.run(["time", "--quiet", "-f", "%U %S %M", "-o", used, "render-osmesa", "-q", *map(str, words),
-                                  "--background", "env", "--aov", "part,normal", "-o", out, "--report", report],
-                                 stderr=subprocess.DEVNULL, check=False)
+        run_tool("time", "--quiet", "-f", "%U %S %M", "-o", used, "render-osmesa", "-q", *words, "--background", "env", "--aov",
+                 "part,normal", "-o", out, "--report", report, done=(0, 4))
         self.seconds = time.monotonic() - begin
-        if process.returncode not in (0, 4):
-            sys.exit(f"render-osmesa {' '.join(map(str, words))} ended with exit status {process.returncode}")
         user_s, system_s, peak_kb = map(float, used.read_text().split())
         self.cpu_s, self.peak_mb = user_s + system_s, peak_kb / 1024
         planes = pictures.channels(out)
@@ -65,9 +60,7 @@ class Picture:
 
     def de00(self, reference):
         """CIEDE2000 to the reference at each pixel that shows the mesh, before the white of the reference."""
-        xyz = [numpy.maximum(p.rgb[reference.seen] @ numpy.transpose(XYZ_FROM_REC2020), 0) / reference.report["white_luminance"]
-               for p in (self, reference)]
-        return de2000(lab(xyz[0]), lab(xyz[1]))
+        return de2000(*(lab_of_rec2020(p.rgb[reference.seen], reference.report["white_luminance"]) for p in (self, reference)))
 
     def isolated(self, reference):
         """The number of pixels over twice all their neighbors, on one even piece of surface with these, that are no highlights of
@@ -86,7 +79,7 @@ class Picture:
 
 
 def row(name, words, work, size):
-    """Draws a default picture and its reference; returns the text of both and whether what is told of the noise is true."""
+    """Draws a default picture and its reference, prints their row, and returns whether what is told of the noise is true."""
     out = Picture(work / "picture.exr", *words, "--size", size)
     reference = Picture(work / "reference.exr", *words, "--size", size, *REFERENCE)
     error, rays = out.de00(reference), out.report.get("rays", {})
@@ -105,8 +98,11 @@ def main():
     chosen = parser.parse_args()
     put_tools_into_path()
     meshes, probes = scene_files()
-    print(f"{'mesh, probe, paint':58} {'size':>9} {'s':>6} {'cpu s':>6} {'MB':>6}  {'mean':>5} {'p95':>5}  {'noise':>5} {'error':>5} {'ref.':>5}"
-          f" {'specks':>6}")
+    names = [f"{mesh} {probe} {paint}" for probe in probes for mesh in meshes for paint in PAINTS]
+    if not any(chosen.only in name for name in names):
+        parser.error(f"no picture has {chosen.only} in its name; the first is {names[0]}")
+    print(f"{'mesh, probe, paint':58} {'size':>9} {'s':>6} {'cpu s':>6} {'MB':>6}  {'mean':>5} {'p95':>5}  {'noise':>5} {'error':>5}"
+          f" {'ref.':>5} {'specks':>6}")
     true = True
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
@@ -126,4 +122,8 @@ def main():
     return 0 if true else 1
 
 
-sys.exit(main())
+try:
+    sys.exit(main())
+except Failed as failed:
+    print(f"bench pictures: {failed}", file=sys.stderr)
+    sys.exit(failed.status)

@@ -276,12 +276,10 @@ void Renderer::State::correct(int first, int count, image::Image& picture, Corre
   request.white_luminance = white_luminance > 0 ? white_luminance : 1;
   request.most_samples = std::max(2 * kBatch, effects.most_ray_samples);
   request.progress = effort_asked.progress;
-  request.first_points =
-      request.first_points * static_cast<std::size_t>(band.height()) / static_cast<std::size_t>(view->height);
-  // The rows that remain share the remaining time.
+  // Bands have about as many points each, and those that are left share the time that is left.
+  request.first_points /= static_cast<std::size_t>(band.count);
   if (effort_asked.time_limit_s > 0)
-    request.time_limit_s =
-        std::max(1e-3, deadline->left_s()) * (band.last_kept - band.first_kept) / (view->height - band.first_kept);
+    request.time_limit_s = std::max(1e-3, deadline->left_s()) / (band.count - band.number);
   request.seed =
       mixed(effort_asked.seed, static_cast<std::uint64_t>(first) + (static_cast<std::uint64_t>(band.first) << 8));
   const image::Image before = picture;
@@ -490,7 +488,6 @@ Result<std::shared_ptr<const Gbuffer>> Renderer::look(const mesh::Mesh& mesh, co
 }
 
 Result<void> Renderer::State::draw_band(Frame& frame) {
-  frame.open_centers = {};
   if (view->with_centers || view->samples == 1) {
     GONIO_TRY(take(0, 1, frame.picture));
     frame.open_centers = view->with_centers ? frame.picture : image::Image{};
@@ -517,7 +514,7 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   frame.gbuffer = s.gbuffer(0);
   frame.gbuffer_ms = s.gbuffer_ms;
   if (!s.maps_found) s.maps_found = s.audit(frame.gbuffer);
-  frame.rays = {};
+  frame.rays = {}, frame.open_centers = {};
   std::vector<Band> bands = {whole_band(view.height)};
   if (!s.given && !s.engine->info().traces_rays)
     bands = bands_of(*frame.gbuffer, view.samples, s.effects.rays.any() && s.transport);

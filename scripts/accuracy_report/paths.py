@@ -3,13 +3,12 @@
 import numpy
 
 from shared import pictures
-from shared.colors import de2000, lab
+from shared.colors import XYZ_FROM_REC2020, de2000, lab_of_rec2020
 
 from .growth import curve
 from .scene import CAMERA
 from .study import Figure, Reading, Study
 
-XYZ_FROM_REC2020 = ((0.636958, 0.144617, 0.168881), (0.262700, 0.677998, 0.059302), (0.0, 0.028073, 1.060985))
 PAINT = "silver_fine"
 MOST = 12  # bounces of the picture that all are held against
 NEVER = 0.5  # a tolerance that the time limits here do not meet
@@ -69,9 +68,8 @@ class Pictures:
 
     def error(self, rgb):
         """The 95th percentile of dE00 to that picture."""
-        def color(linear):
-            return lab(numpy.maximum(linear @ numpy.transpose(XYZ_FROM_REC2020) / self.white, 0))
-        return float(numpy.quantile(de2000(color(rgb[self.seen]), color(self.truth)), 0.95))
+        errors = de2000(lab_of_rec2020(rgb[self.seen], self.white), lab_of_rec2020(self.truth, self.white))
+        return float(numpy.quantile(errors, 0.95))
 
     def reading(self, method, setting, *drawn, default=False):
         """A reading; `drawn` are the options that make the picture."""

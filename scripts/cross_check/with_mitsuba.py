@@ -17,7 +17,7 @@ import numpy
 
 from cross_check.meshes import read_obj
 from shared import packages, pictures
-from shared.colors import de2000, lab
+from shared.colors import XYZ_FROM_REC2020, de2000, lab_of_rec2020
 from shared.files import write_whole
 from shared.tools import DATA, SCRIPTS, Failed, builds_folder, run_tool
 
@@ -27,7 +27,6 @@ class NotHere(Exception):
 
 
 VENV = builds_folder() / "cross-check"
-XYZ_FROM_REC2020 = ((0.636958, 0.144617, 0.168881), (0.262700, 0.677998, 0.059302), (0.0, 0.028073, 1.060985))
 REC2020_FROM_REC709 = ((0.627403896, 0.329283038, 0.043313066), (0.069097289, 0.919540395, 0.011362316),
                        (0.016391439, 0.088013308, 0.895595253))
 FOV_DEG, BOUNCES = 34.0, 6
@@ -184,9 +183,7 @@ def cases(bin_dir, at, size):
 
 def difference(one, two, white):
     """CIEDE2000 of two arrays of Rec.2020 colors before a white of this luminance."""
-    def seen(rgb):
-        return lab(numpy.maximum(rgb @ numpy.transpose(XYZ_FROM_REC2020) / white, 0))
-    return de2000(seen(one), seen(two))
+    return de2000(lab_of_rec2020(one, white), lab_of_rec2020(two, white))
 
 
 def p95(values):

@@ -8,8 +8,9 @@ import math
 
 import numpy
 
-from cross_check.with_mitsuba import REC2020_FROM_REC709, Case, difference, interpreter, p95, XYZ_FROM_REC2020
+from cross_check.with_mitsuba import REC2020_FROM_REC709, Case, difference, interpreter, p95
 from shared import pictures
+from shared.colors import XYZ_FROM_REC2020
 from shared.files import write_whole
 from shared.sphere import sphere_obj
 from shared.tools import DATA, run_tool

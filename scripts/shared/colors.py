@@ -3,6 +3,7 @@
 import numpy
 
 WHITE = (0.95047, 1.0, 1.08883)  # XYZ of D65
+XYZ_FROM_REC2020 = ((0.636958, 0.144617, 0.168881), (0.262700, 0.677998, 0.059302), (0.0, 0.028073, 1.060985))
 
 
 def lab(xyz):
@@ -11,6 +12,11 @@ def lab(xyz):
     f = numpy.where(ratio > (6 / 29) ** 3, numpy.cbrt(ratio), ratio / (3 * (6 / 29) ** 2) + 4 / 29)
     fx, fy, fz = numpy.moveaxis(f, -1, 0)
     return numpy.stack([116 * fy - 16, 500 * (fx - fy), 200 * (fy - fz)], -1)
+
+
+def lab_of_rec2020(rgb, white):
+    """L*, a* and b* of linear Rec.2020, before a white of this luminance."""
+    return lab(numpy.maximum(rgb @ numpy.transpose(XYZ_FROM_REC2020) / white, 0))
 
 
 def de2000(one, two):

@@ -14,7 +14,7 @@ namespace goniochrome::render {
 namespace {
 
 constexpr double kSharpestBands = 8;  // exponent
-constexpr double kAsMirror = 20;      // times the sharpest exponent, which shows what the mirror shows
+constexpr double kAsMirror = 20;      // A lobe so many times as sharp as the sharpest of all shows what the mirror does.
 
 bool is_sharp(double exponent) {
   return exponent > 2 * kSharpestBands;

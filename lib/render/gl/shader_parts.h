@@ -48,7 +48,7 @@ inline constexpr std::size_t kMostLobesOverShade = 8;
 inline constexpr const char* kKeptLight = R"(uniform sampler2D ground_light;
 uniform float ground_scale;  // 1 over its reach, see PageGroundLight; 0 for none
 uniform vec2 ground_turn;  // cosine and sine by which the environment was turned
-vec4 kept_light(vec3 at, float width) {  // the mean over about so much of the ground
+vec4 kept_light(vec3 at, float width) {  // the mean over a part of the ground that is so wide
   if (ground_scale == 0.0) return vec4(1.0, 1.0, 1.0, 0.0);
   vec2 p = clamp(ground_scale * vec2(dot(ground_turn, at.xz), ground_turn.x * at.z - ground_turn.y * at.x), -1e3, 1e3);
   float squared = 1.0 + dot(p, p), size = 0.5 * float(textureSize(ground_light, 0).x) * ground_scale * width;
@@ -60,8 +60,10 @@ inline constexpr const char* kMeshColor = "uniform vec3 mesh_color;  // reflecta
 // The light of a lobe that the mesh and its ground leave on a page. `bands` are the bands 1 and 2 of the lobe itself;
 // `occluded` holds those of the luminance that is lost, times the cosine toward it, about the mirror direction. The
 // light itself has the mean cosine of the lobe. Bands tell little of sharp lobes. Their part that looks down sees the
-// ground, and the rest keeps the share of a wider lobe. The maps show the ground as the eye of the environment saw it:
-// seen from nearer by, a lobe covers less of it, as a sharper lobe did there.
+// ground, and the rest keeps the share of a wider lobe: an axis near the horizon stands for either part 0.7 deviations
+// off it. A logistic curve of 1.7 x is the normal distribution within 0.01, and a lobe is 2.4 deviations wide where it
+// has half of its height. The maps show the ground as the eye of the environment saw it: seen from nearer by, a lobe
+// covers less of it, as a sharper lobe did there.
 inline constexpr const char* kOcclusion = R"(uniform sampler2D occlusion;
 vec4 occluded;
 float tilted;  // 5/8 P_2(c), the band 2 of the cosine; its mean is 1/2

@@ -12,6 +12,7 @@ namespace goniochrome::render {
 // Rows that are drawn together, from the first up to the last, and those of them that are kept.
 struct Band {
   int first = 0, last = 0, first_kept = 0, last_kept = 0;
+  int number = 0, count = 1;  // The bands of a picture are numbered from 0, from the top.
   int height() const { return last - first; }
   bool operator==(const Band&) const = default;
 };

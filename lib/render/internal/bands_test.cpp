@@ -17,15 +17,19 @@ Gbuffer gbuffer(int width, int height, int first_seen, int last_seen) {
 }
 
 TEST(Bands, ASmallPictureIsOne) {
-  EXPECT_EQ(bands_of(gbuffer(640, 360, 0, 360), 4, false), std::vector{whole_band(360)});
+  EXPECT_EQ(bands_of(gbuffer(640, 360, 0, 360), 4, true), std::vector{whole_band(360)});
+  EXPECT_EQ(bands_of(gbuffer(1280, 720, 0, 720), 16, false).size(), 1U) << "G-buffers are kept for the next picture";
+  EXPECT_GT(bands_of(gbuffer(1280, 720, 0, 720), 16, true).size(), 1U);
 }
 
 TEST(Bands, KeepEachRowOnceAndDrawThoseBesideIt) {
   for (const auto& [width, height] : {std::pair{2560, 1440}, {60000, 25}, {200, 20000}}) {
     const std::vector<Band> bands = bands_of(gbuffer(width, height, height / 4, height / 2), 4, true);
     ASSERT_GT(bands.size(), 1U);
-    int next = 0;
+    int next = 0, number = 0;
     for (const Band& band : bands) {
+      EXPECT_EQ(band.number, number++);
+      EXPECT_EQ(band.count, static_cast<int>(bands.size()));
       EXPECT_EQ(band.first_kept, next);
       EXPECT_GT(band.last_kept, band.first_kept);
       EXPECT_TRUE(band.first < band.first_kept || band.first == 0);

@@ -25,7 +25,7 @@ struct CorrectionNoise {
   // The change by each of the effects, in the order of plans, and whether the first pass was its last.
   std::array<FoundShare, kShareCount> found;
 
-  double points = 0;
+  double points = 0;  // that these are means over
 
   // Adds a band.
   void add(const PathPicture& one);

@@ -40,8 +40,8 @@ let pageNumbers = null;  // the bytes of all of them
 // Numbers at a place, [first byte, count], of the page or, as the third of the place, of what was opened.
 const numbersOf = ([at, count, bytes = pageNumbers], Kind) => new Kind(bytes.buffer, at, count);
 
-// The texels of a smooth map of 16 bits and so many channels: each is told by its difference from that of the texel before, and the low bytes
-// of all stand before the high bytes.
+// The texels of a smooth map of 16 bits and so many channels: each number is told by its difference from that of the texel before,
+// and the low bytes of all stand before the high bytes.
 function smoothNumbersOf([at, count, of], channels = 3) {
   const bytes = numbersOf([at, 2 * count, of], Uint8Array), values = new Uint16Array(count);
   for (let i = 0; i < count; ++i) values[i] = (i >= channels ? values[i - channels] : 0) + bytes[i] + (bytes[count + i] << 8);
