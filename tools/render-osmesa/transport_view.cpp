@@ -58,7 +58,7 @@ void report_traced(const render::TracedLobes& traced, const render::TransportPar
                                     {"columns", traced.transport.columns.count()},
                                     {"noise_de00_p95", json_number(traced.noise_p95_de00)},
                                     {"noise_de00_mean", json_number(traced.noise_mean_de00)},
-                                    {"shown_noise_de00_p95", json_number(traced.shown_p95_de00)},
+                                    {"shown_noise_de00_p95", json_number(traced.error_p95_de00)},
                                     {"samples_mean", traced.samples_mean},
                                     {"open_share", traced.free_share},
                                     {"trace_s", traced.time_s},
@@ -79,10 +79,10 @@ void report_traced(const render::TracedLobes& traced, const render::TransportPar
       fmt::format("transport: {} points by {} columns, errors dE00 {:.2f} (p95) in these paints, noise {:.2f} in "
                   "the worst gray paint of one lobe, after {:.0f} directions a point and {:.1f} s; {:.0f} bytes a "
                   "point, {} parts as floats",
-                  traced.transport.places.size(), traced.transport.columns.count(), traced.shown_p95_de00,
+                  traced.transport.places.size(), traced.transport.columns.count(), traced.error_p95_de00,
                   traced.noise_p95_de00, traced.samples_mean, traced.time_s, per_point, file.float_parts));
   if (!traced.reached)
-    session.warn(fmt::format("the error of the transport is {:.2f} dE00, above --tolerance {}: {}", traced.error_de00(),
+    session.warn(fmt::format("the error of the transport is {:.2f} dE00, above --tolerance {}: {}", traced.error_p95_de00,
                              shortest(session.common().tolerance),
                              session.common().time_limit_s > 0
                                  ? "give more --time-limit"

@@ -41,9 +41,8 @@ mesh::Mesh inside_out(mesh::Mesh mesh) {
 TEST(BadShapes, DuplicateCoplanarAndInsideOutWallsShowTheSameLight) {
   const auto stage_of = [](mesh::Mesh mesh) {
     auto stage = std::make_unique<PathStage>(std::move(mesh), std::vector<paint::LobeFit>{matt({0.8, 0.5, 0.3})});
-    stage->environment = environment_of(16, 8, [](int x, int y) {
-      return color::Rgb{1 + 0.2 * x, y < 3 ? 3.0 : 0.5, x == 4 ? 6.0 : 1.0};
-    });
+    stage->environment = environment_of(
+        16, 8, [](int x, int y) { return color::Rgb{1 + 0.2 * x, y < 3 ? 3.0 : 0.5, x == 4 ? 6.0 : 1.0}; });
     stage->scene.lights = {{normalized({0.3, 2, 0.2}), {0.5, 0.4, 0.3}}};
     stage->build();
     return stage;

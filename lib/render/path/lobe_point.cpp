@@ -236,74 +236,73 @@ std::size_t start_of(std::size_t sequence, std::size_t points, std::uint64_t see
   return order[step];
 }
 
-// The estimates of sequences that start from several points. Where each point has at least two they scatter about the
-// means of their points, since what points differ by is no random error of a mean that all of them are part of.
-class Scatter {
- public:
-  explicit Scatter(std::size_t points) : of_point_(points) {}
-
-  void add(std::size_t point, const color::Rgb& value) { of_point_[point].add(value), all_.add(value); }
-  int freedom() const { return all_.count() - (stratified() ? static_cast<int>(of_point_.size()) : 1); }
-  Covariance covariance() const {
-    if (!stratified()) return all_.covariance();
-    Covariance sum{};
-    for (const Estimates& point : of_point_) {
-      const Covariance own = point.covariance();
-      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += (point.count() - 1.0) / freedom() * own[i];
-    }
-    return sum;
-  }
-
- private:
-  bool stratified() const {
-    return std::ranges::all_of(of_point_, [](const Estimates& point) { return point.count() >= 2; });
-  }
-  std::vector<Estimates> of_point_;
-  Estimates all_;
-};
-
 }  // namespace
 
-// All that a floor shows is light of its one column; what the mesh sends to it came through other surfaces.
-LobeEstimate LobePoint::floor_estimate(std::span<const LobePoint> points, int sequences, int directions,
-                                       std::uint64_t seed) {
-  const LobePoint& any = points.front();
-  LobeEstimate result;
-  result.direct.resize(any.columns_.count()), result.bounced.resize(any.columns_.count());
-  result.covariance.resize(any.columns_.count()), result.classes.resize(any.groups_.classes());
-  color::Rgb &direct = result.direct[LobeColumns::diffuse()], &bounced = result.bounced[LobeColumns::diffuse()];
+LobeEstimate LobePoint::no_light() const {
+  const std::vector<color::Rgb> dark(columns_.count());
+  return {dark, dark, std::vector<color::Rgb>(groups_.classes())};
+}
+
+PointTransport LobePoint::as_floor() const {
   PathOptions options;
-  options.bounces = any.bounces_;
-  std::vector<PointTransport> floors;
+  options.bounces = bounces_;
+  return {transport_, options, spot_, painted_.to_viewer()};
+}
+
+// All that a floor shows is light of its one column; what the mesh sends to it came through other surfaces.
+LobeEstimate LobePoint::known_floor(std::span<const LobePoint> points) {
+  const LobePoint& any = points.front();
+  LobeEstimate result = any.no_light();
+  LightShares shown;
   for (const LobePoint& point : points) {
-    const double share = 1.0 / static_cast<double>(points.size());
     if (any.transport_.shaded_ != nullptr) {
-      const LightShares shown = any.transport_.shaded_ground(point.spot_);
-      direct += share * shown.direct, bounced += share * shown.into_diffuse;
-      continue;
+      shown += any.transport_.shaded_ground(point.spot_);
+    } else {
+      shown.direct += point.as_floor().deterministic();
     }
-    floors.emplace_back(point.transport_, options, point.spot_, point.painted_.to_viewer());
-    direct += share * floors.back().deterministic();
   }
-  if (!std::ranges::all_of(floors, &PointTransport::certain)) {
-    result.sequences = sequences;
-    const int batches = std::max(1, directions / kBatch);
-    Scatter shown(points.size());
-    for (std::size_t which = 0; which < static_cast<std::size_t>(sequences); ++which) {
-      const std::size_t start = start_of(which, floors.size(), seed);
-      LightShares mean;
-      for (int i = 0; i < batches; ++i)
-        mean += (1.0 / batches) * floors[start].batch_shares(mixed(mixed(seed, which), static_cast<std::uint64_t>(i)));
-      direct += (1.0 / sequences) * mean.direct;
-      bounced += (1.0 / sequences) * (mean.into_lobes + mean.into_diffuse);
-      shown.add(start, mean.sum());
-    }
-    result.freedom = shown.freedom();
-    result.covariance[LobeColumns::diffuse()] = result.shown = shown.covariance();
-  }
-  const int floor = any.groups_.of_part[static_cast<std::size_t>(any.spot_.part)];
-  result.classes[any.groups_.at(floor, PaintGroups::kDeeper)] = bounced;
+  any.add_floor_light((1.0 / static_cast<double>(points.size())) * shown, result);
   return result;
+}
+
+void LobePoint::add_floor_light(const LightShares& light, LobeEstimate& estimate) const {
+  const color::Rgb bounced = light.into_lobes + light.into_diffuse;
+  estimate.direct[LobeColumns::diffuse()] += light.direct, estimate.bounced[LobeColumns::diffuse()] += bounced;
+  const int floor = groups_.of_part[static_cast<std::size_t>(spot_.part)];
+  estimate.classes[groups_.at(floor, PaintGroups::kDeeper)] += bounced;
+}
+
+std::array<LobeEstimate, 2> LobePoint::sampled_floor(std::span<const LobePoint> points, int sequences, int directions,
+                                                     std::uint64_t seed) {
+  const LobePoint& any = points.front();
+  std::array<LobeEstimate, 2> halves = {any.no_light(), any.no_light()};
+  const int batches = std::max(1, directions / kBatch);
+  for (std::size_t which = 0; which < static_cast<std::size_t>(sequences); ++which) {
+    const PointTransport floor = points[start_of(which, points.size(), seed)].as_floor();
+    for (int i = 0; i < batches; ++i)
+      any.add_floor_light(
+          (2.0 / (sequences * batches)) * floor.batch_shares(mixed(mixed(seed, which), static_cast<std::uint64_t>(i))),
+          halves[which % 2]);
+  }
+  return halves;
+}
+
+LobeEstimate LobePoint::known(std::span<const LobePoint> points, const color::Rgb* open_mirrors,
+                              const color::Rgb* paint) {
+  if (points.front().on_projected_) return known_floor(points);
+  LobeEstimate result = points.front().no_light();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i].add_deterministic(open_mirrors != nullptr ? &open_mirrors[i] : nullptr,
+                                1.0 / static_cast<double>(points.size()), paint, result);
+  return result;
+}
+
+bool LobePoint::is_known(std::span<const LobePoint> points, bool with_open_light) {
+  const Transport& transport = points.front().transport_;
+  if (points.front().on_projected_)
+    return transport.shaded_ != nullptr ||
+           std::ranges::all_of(points, [](const LobePoint& point) { return point.as_floor().certain(); });
+  return (with_open_light || transport.environment_ == nullptr) && std::ranges::all_of(points, &LobePoint::open);
 }
 
 // Light L from free directions is what is wanted; M is known of all directions. For any beta that does not depend on
@@ -312,30 +311,16 @@ LobeEstimate LobePoint::floor_estimate(std::span<const LobePoint> points, int se
 // has the right expectation: beta = 1 takes away what is hidden, beta = 0 sums what is free. The quieter of both is the
 // one with the smaller second moment; beta = free2/(free2 + hidden2) is taken for the even sequences from the odd
 // ones and for the odd ones from the even ones, so that it depends on no sample that it weighs.
-LobeEstimate LobePoint::estimate(std::span<const LobePoint> points, const color::Rgb* open_light,
-                                 const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed,
-                                 const color::Rgb* paint) {
+std::array<LobeEstimate, 2> LobePoint::sampled(std::span<const LobePoint> points, const color::Rgb* open_light,
+                                               int sequences, int directions, std::uint64_t seed,
+                                               const color::Rgb* paint) {
   const LobePoint& any = points.front();
-  if (any.on_projected_) return floor_estimate(points, sequences, directions, seed);
+  if (any.on_projected_) return sampled_floor(points, sequences, directions, seed);
   const Transport& transport = any.transport_;
   const LobeColumns& columns = any.columns_;
   const std::size_t count = columns.count();
-  LobeEstimate result;
-  result.direct.resize(count), result.bounced.resize(count), result.covariance.resize(count);
-  result.classes.resize(any.groups_.classes());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    points[i].add_deterministic(open_light != nullptr ? &open_mirrors[i] : nullptr,
-                                1.0 / static_cast<double>(points.size()), paint, result);
-  const auto add_open = [&] {
-    for (std::size_t k = 0; open_light != nullptr && k + 1 < count; ++k) result.direct[k] += open_light[k];
-  };
-  const bool summed = open_light == nullptr && transport.environment_ != nullptr;
-  if (!summed && std::ranges::all_of(points, &LobePoint::open)) {
-    add_open();
-    return result;
-  }
-  result.sequences = sequences;
-  bool any_occluded = summed || !transport.emitters_.empty();
+  std::array<LobeEstimate, 2> halves = {any.no_light(), any.no_light()};
+  bool any_occluded = (open_light == nullptr && transport.environment_ != nullptr) || !transport.emitters_.empty();
   const auto sequence_of = [&](std::size_t which) {
     return Sequence(mixed(seed, which), static_cast<std::uint32_t>(directions));
   };
@@ -347,14 +332,11 @@ LobeEstimate LobePoint::estimate(std::span<const LobePoint> points, const color:
     start.trace(sequence_of(which).set(0), 0, rays[which]);
     any_occluded = any_occluded || start.mirror_hit_.any() || std::ranges::any_of(rays[which], &Ray::occluded);
   }
-  if (!any_occluded) {
-    add_open();
-    result.freedom = sequences - 1;
-    return result;
-  }
+  if (!any_occluded) return halves;
   std::size_t over_floor = 0;
   if (const std::size_t lobes = any.floor_lobes(); open_light != nullptr && lobes > 0) over_floor = 1 + 2 * lobes;
   std::vector<Columns> sums;
+  const double share = 2.0 / sequences;
   for (std::size_t which = 0; which < rays.size(); ++which) {
     const LobePoint& start = points[starts[which]];
     Columns& sum = sums.emplace_back(start, directions, over_floor, paint);
@@ -362,32 +344,41 @@ LobeEstimate LobePoint::estimate(std::span<const LobePoint> points, const color:
     const int mirrors = std::max(1, directions / kMirrorShare);
     start.sample_mirror(sequence_of(which).other(0x4D), 0, static_cast<std::uint32_t>(mirrors),
                         static_cast<double>(directions) / mirrors, sum);
-    for (std::size_t c = 0; c < sum.classes.size(); ++c) result.classes[c] += (1.0 / sequences) * sum.classes[c];
+    for (std::size_t c = 0; c < sum.classes.size(); ++c) halves[which % 2].classes[c] += share * sum.classes[c];
   }
-  std::vector<color::Rgb> of_paint(sums.size());
   for (std::size_t k = 0; k < count; ++k) {
-    const bool is_known = open_light != nullptr && k != columns.mirror();
+    const bool is_open = open_light != nullptr && k != columns.mirror();
     double free[2] = {0, 0}, hidden[2] = {0, 0};
     for (std::size_t which = 0; which < sums.size(); ++which) {
       free[which % 2] += sums[which].columns[k].free_square;
       hidden[which % 2] += sums[which].columns[k].hidden_square;
     }
-    Scatter shown(points.size());
     for (std::size_t which = 0; which < sums.size(); ++which) {
       const Column& of = sums[which].columns[k];
       const std::size_t other = 1 - which % 2;
-      const double all = free[other] + hidden[other], beta = !is_known ? 0 : all > 0 ? free[other] / all : 1;
+      const double all = free[other] + hidden[other], beta = !is_open ? 0 : all > 0 ? free[other] / all : 1;
       color::Rgb light = (1 - beta) * of.free - beta * of.hidden + of.emitted;
-      if (is_known) light += beta * open_light[k];
-      result.direct[k] += (1.0 / sequences) * light, result.bounced[k] += (1.0 / sequences) * of.bounced;
-      shown.add(starts[which], light + of.bounced);
-      if (paint != nullptr) of_paint[which] += any.reflect(rays::float3(paint[k]), light + of.bounced);
+      if (is_open) light += (beta - 1) * open_light[k];
+      halves[which % 2].direct[k] += share * light, halves[which % 2].bounced[k] += share * of.bounced;
     }
-    result.covariance[k] = shown.covariance(), result.freedom = shown.freedom();
   }
-  Scatter shown(points.size());
-  for (std::size_t which = 0; which < of_paint.size(); ++which) shown.add(starts[which], of_paint[which]);
-  result.shown = shown.covariance();
+  return halves;
+}
+
+void LobeEstimate::add(const LobeEstimate& other, double scale) {
+  for (std::size_t k = 0; k < direct.size(); ++k)
+    direct[k] += scale * other.direct[k], bounced[k] += scale * other.bounced[k];
+  for (std::size_t k = 0; k < classes.size(); ++k) classes[k] += scale * other.classes[k];
+}
+
+LobeEstimate LobePoint::estimate(const color::Rgb* open_light, int sequences, int directions,
+                                 std::uint64_t seed) const {
+  const std::size_t mirror = columns_.mirror();
+  const std::span one(this, 1);
+  LobeEstimate result = known(one, open_light != nullptr ? open_light + mirror : nullptr, nullptr);
+  for (std::size_t k = 0; open_light != nullptr && k < mirror; ++k) result.direct[k] += open_light[k];
+  if (is_known(one, open_light != nullptr)) return result;
+  for (const LobeEstimate& half : sampled(one, open_light, sequences, directions, seed)) result.add(half, 0.5);
   return result;
 }
 

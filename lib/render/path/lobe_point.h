@@ -2,12 +2,12 @@
 // goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "render/path/lobe_columns.h"
-#include "render/path/noise.h"
 #include "render/path/point_sampler.h"
 
 namespace goniochrome::render {
@@ -29,12 +29,12 @@ struct PaintGroups {
 // environment and emitters; bounced light has met a surface before.
 struct LobeEstimate {
   std::vector<color::Rgb> direct, bounced;
-  std::vector<Covariance> covariance;  // of one sequence's mean of the sum of both, about that of its point
-  Covariance shown{};                  // likewise, of the paint whose weights were given
-  std::vector<color::Rgb> classes;     // of bounced light, as the paint that the point wears shows them
-  int sequences = 0;                   // 0: the points see their whole hemispheres, and all is exact
-  int freedom = 0;                     // of the covariance
+  std::vector<color::Rgb> classes;  // of bounced light, as the paint that the point wears shows them
+
+  void add(const LobeEstimate& other, double scale);
 };
+
+class PointTransport;
 
 class LobePoint : PointSampler {
  public:
@@ -62,19 +62,23 @@ class LobePoint : PointSampler {
   // whose light of it is known. Nothing where no floor is shaded.
   void add_open_floor(color::Rgb* open_light) const;
 
-  // The mean over at most kMostPoints points of one part, and at least one, by so many sequences of `directions` each,
-  // a power of two: each sequence starts from one of them. `open_light` has the mean light of each column there, of the
-  // environment without any surface in the way, with add_open_floor(): rays correct it without bias, so that points
-  // whose rays are all free have no noise. `open_mirrors` has what the mirror of each point sees of it. Both null: rays
-  // alone. `paint` has a weight for each column, or is null.
-  static LobeEstimate estimate(std::span<const LobePoint> points, const color::Rgb* open_light,
-                               const color::Rgb* open_mirrors, int sequences, int directions, std::uint64_t seed,
-                               const color::Rgb* paint = nullptr);
-  // The estimate of this point alone.
-  LobeEstimate estimate(const color::Rgb* open_light, int sequences, int directions, std::uint64_t seed) const {
-    const color::Rgb* mirror = open_light != nullptr ? open_light + columns_.mirror() : nullptr;
-    return estimate({this, 1}, open_light, mirror, sequences, directions, seed);
-  }
+  // The mean light of at most kMostPoints points of one part, and at least one, is that which needs no samples and that
+  // which samples tell.
+  //
+  // Without samples: lamps, and what the mirror sees. `open_mirrors` has what the mirror of each point sees of the
+  // environment without any surface in the way; null: rays tell it. `paint` has a weight for each column, or is null.
+  static LobeEstimate known(std::span<const LobePoint> points, const color::Rgb* open_mirrors, const color::Rgb* paint);
+  // True if samples tell nothing more than this and the open light.
+  static bool is_known(std::span<const LobePoint> points, bool with_open_light);
+  // By so many sequences of `directions` each, a power of two; both even. Each sequence starts from one of the points.
+  // The results of the even and of the odd ones are independent. `open_light` has the mean light of each column, of the
+  // environment without any surface in the way, with add_open_floor(): what is sampled is what to add to it. Null: rays
+  // alone.
+  static std::array<LobeEstimate, 2> sampled(std::span<const LobePoint> points, const color::Rgb* open_light,
+                                             int sequences, int directions, std::uint64_t seed,
+                                             const color::Rgb* paint = nullptr);
+  // All light of this point.
+  LobeEstimate estimate(const color::Rgb* open_light, int sequences, int directions, std::uint64_t seed) const;
   static constexpr std::size_t kMostPoints = 16;
 
  private:
@@ -89,8 +93,12 @@ class LobePoint : PointSampler {
                          LobeEstimate& estimate) const;
   // The diffuse part and so many lobes are told by the blocks of an open floor; 0: not even that part.
   std::size_t floor_lobes() const;
-  static LobeEstimate floor_estimate(std::span<const LobePoint> points, int sequences, int directions,
-                                     std::uint64_t seed);
+  static LobeEstimate known_floor(std::span<const LobePoint> points);
+  static std::array<LobeEstimate, 2> sampled_floor(std::span<const LobePoint> points, int sequences, int directions,
+                                                   std::uint64_t seed);
+  PointTransport as_floor() const;
+  void add_floor_light(const LightShares& light, LobeEstimate& estimate) const;
+  LobeEstimate no_light() const;
   int group_of(const rays::Hit& hit) const {
     return groups_.of_part[static_cast<std::size_t>(transport_.rays().part(hit.triangle))];
   }

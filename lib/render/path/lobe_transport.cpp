@@ -1,8 +1,10 @@
 #include "render/path/lobe_transport.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "base/angles.h"
 #include "base/clock.h"
@@ -11,6 +13,9 @@
 #include "render/effects.h"
 #include "render/internal/seen.h"
 #include "render/internal/wear.h"
+#include "render/path/noise.h"
+#include "render/path/pixel_pieces.h"
+#include "render/path/reconstruction.h"
 #include "render/path/rounds.h"
 #include "render/surface_layer.h"
 
@@ -18,11 +23,12 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr int kFirstBatches = 2, kMostAtOnce = 512;
 constexpr int kDirections = kFan;  // of a batch
-// Later rounds draw as few sequences as tell a variance, each of as many directions as it takes: the longer a sequence,
-// the more evenly it covers the hemisphere.
-constexpr int kSequences = 8;
+// Two sequences of one batch tell how light scatters. Later rounds draw as few sequences as start from several samples
+// of a pixel, each of as many directions as it takes: the longer a sequence, the more evenly it covers the hemisphere.
+constexpr int kFirstBatches = 2, kSequences = 8, kMostAtOnce = 512;
+// The first round samples at least so many points; their neighbors tell the others.
+constexpr std::size_t kFirstPoints = 50000;
 // Directions at a probe; scaling is judged by ratios, in which the noise of a probe stands on both sides.
 constexpr int kProbeSequences = 4, kProbeDirections = 256;
 
@@ -39,10 +45,8 @@ class Tracing {
       if (request.pixel_samples == 1) break;
       samples_.push_back(visible_surface(transport.rays(), g.rays.shifted(dx, dy), g.width, g.height));
     }
-    by_pixel_ = PixelPoints(g.width, g.height);
     for (std::size_t i = 0; i < g.triangles.size(); ++i) {
       if (g.triangles[i] == kNoTriangle) continue;
-      by_pixel_.add(static_cast<int>(i) % g.width, static_cast<int>(i) / g.width);
       t.places.push_back(static_cast<std::uint32_t>(i));
       t.part.push_back(std::abs(static_cast<int>(g.data[4 * i + 3])) - 1);
     }
@@ -50,57 +54,114 @@ class Tracing {
     t.direct.assign(points * t.floats(), 0), t.bounced.assign(points * t.floats(), 0);
     t.classes.assign(points * worn.groups.classes() * 3, 0);
     t.noise_de00.assign(points, 0);
-    if (open != nullptr) open_light_.assign(points * t.floats(), 0);
-    variance_.assign(points * (columns.count() + 1), 0), shown_noise_.assign(points, 0);
-    batches_.assign(points, 0), freedom_.assign(points, 0), needed_.assign(points, 0);
-    for (std::size_t k = 0; k < columns.count(); ++k) nominal_.push_back(nominal_weight(columns, k));
-    fewest_ = request.pixel_samples > 1 ? 2 * request.pixel_samples : kFirstBatches;
+    exact_.assign(points, 0), batches_.assign(points, 0), slot_.assign(points, kNotSampled);
+    smooth_.resize(columns.count());
+    of_slot_ = 6 * t.floats() + 3 * worn.groups.classes();
+    const color::ReflectionOperator reflection = transport.reflection();
+    for (const std::vector<color::Rgb>& weights : worn.weights) {
+      matrices_.emplace_back();
+      for (const color::Rgb& weight : weights) matrices_.back().push_back(color::reflection_matrix(reflection, weight));
+    }
   }
 
   TracedLobes trace() {
-    std::vector<int> more(batches_.size(), fewest_);
+    look();
+    std::vector<int> more = first_batches();
+    bool is_first = true;
     while (true) {
       const double before = drawn();
       pace_.start();
-      sample(more);
+      sample(more, is_first);
       pace_.end(drawn() - before);
+      is_first = false;  // which no time limit cuts
+      const Stopwatch judging;
       judge();
-      if (request_.progress) request_.progress(result_.error_de00(), clock_.elapsed_s());
-      result_.reached = result_.error_de00() <= request_.tolerance_de00;
-      if (result_.reached || deadline_.passed() || !plan(more) || !cut(more)) break;
+      if (request_.progress) request_.progress(result_.error_p95_de00, clock_.elapsed_s());
+      result_.reached = result_.error_p95_de00 <= request_.tolerance_de00;
+      const double columns_s = kColumnCost * judging.elapsed_s() * static_cast<double>(smooth_.size());
+      if (result_.reached || !plan(more) || !cut(columns_s, more)) break;
     }
+    smooth_columns();
+    add_smooth();
     const double count = std::max<double>(1, static_cast<double>(batches_.size()));
     for (std::size_t i = 0; i < batches_.size(); ++i) {
       result_.noise_mean_de00 += result_.transport.noise_de00[i] / count;
       result_.samples_mean += kDirections * batches_[i] / count;
     }
-    result_.free_share = static_cast<double>(std::ranges::count(batches_, 0)) / count;
+    result_.free_share = static_cast<double>(std::ranges::count(exact_, 1)) / count;
     if (request_.bounces > 0) probe();
     result_.time_s = clock_.elapsed_s();
     return std::move(result_);
   }
 
  private:
+  static constexpr std::uint32_t kNotSampled = ~0U;
+  // The time to smooth a column, in that to judge a picture of the paints that are worn.
+  static constexpr double kColumnCost = 1.5;
+
   double drawn() const { return std::accumulate(batches_.begin(), batches_.end(), 0.0); }
+  static int whole(int batches) { return batches / 2 * 2; }
 
   // No more than there is time for; whether any.
-  bool cut(std::vector<int>& more) const {
-    return cut_round(pace_.left(), more, [this](int batches) { return batches / fewest_ * fewest_; });
+  bool cut(double reserved_s, std::vector<int>& more) const { return cut_round(pace_.left(reserved_s), more, whole); }
+
+  // What needs no samples, of all points.
+  void look() {
+    const std::size_t points = batches_.size();
+    draw_round(all_points(), nullptr, [&](std::size_t i) { look(i); });
+    int top = 0, left = 0;
+    for (std::size_t i = 0; i < points; ++i) {
+      if (exact_[i] != 0 && is_projected(i)) continue;
+      const auto [x, y] = pixel(i);
+      if (kept_.empty()) top = y, left = x;
+      left = std::min(left, x);
+      kept_.push_back(static_cast<std::uint32_t>(i));
+    }
+    for (const std::uint32_t i : kept_) {
+      const auto [x, y] = pixel(i);
+      const rays::Spot spot = spot_at(transport_.rays(), surface_, x, y);
+      shown_.push_back({x - left, y - top, {spot.part, spot.shading, spot.position}});
+    }
+  }
+  std::vector<std::uint32_t> all_points() const {
+    std::vector<std::uint32_t> all(batches_.size());
+    std::iota(all.begin(), all.end(), 0U);
+    return all;
+  }
+  std::array<int, 2> pixel(std::size_t i) const {
+    const LobeTransport& t = result_.transport;
+    return {static_cast<int>(t.places[i]) % t.width, static_cast<int>(t.places[i]) / t.width};
   }
 
-  void sample(const std::vector<int>& more) {
+  // Light on a surface does not change with the resolution: points are left out that their neighbors tell.
+  std::vector<int> first_batches() const {
+    std::vector<const Gbuffer*> samples;
+    for (const Gbuffer& sample : samples_) samples.push_back(&sample);
+    if (samples.empty()) samples.push_back(&surface_);
+    const int spacing = filters() == Filters::kNone ? 1 : first_spacing(kept_.size(), kFirstPoints);
+    const PixelFlags told = told_by_corners(surface_, even_pixels(samples), spacing);
+    std::vector<int> more(batches_.size(), 0);
+    for (const std::uint32_t i : kept_)
+      if (exact_[i] == 0 && (spacing == 1 || told[result_.transport.places[i]] == 0)) more[i] = kFirstBatches;
+    return more;
+  }
+
+  void sample(const std::vector<int>& more, bool is_needed) {
     std::vector<std::uint32_t> wanted;
-    for (std::size_t i = 0; i < more.size(); ++i)
-      if (more[i] > 0) wanted.push_back(static_cast<std::uint32_t>(i));
-    // The first round is whole.
-    draw_round(wanted, round_ > 0 ? &deadline_ : nullptr, [&](std::size_t i) { sample(i, more[i]); });
-    ++round_;
+    std::uint32_t slots = static_cast<std::uint32_t>(sampled_.size() / of_slot_);
+    for (const std::uint32_t i : kept_) {
+      if (more[i] == 0) continue;
+      wanted.push_back(i);
+      if (slot_[i] == kNotSampled) slot_[i] = slots++;
+    }
+    sampled_.resize(slots * of_slot_, 0.0F);
+    draw_round(wanted, is_needed ? nullptr : &deadline_, [&](std::size_t i) { sample(i, more[i]); });
   }
 
   // The point in the center of a pixel.
   LobePoint point_at(std::size_t i) const {
     const LobeTransport& t = result_.transport;
-    const int x = static_cast<int>(t.places[i]) % t.width, y = static_cast<int>(t.places[i]) / t.width;
+    const auto [x, y] = pixel(i);
     return {transport_,
             t.columns,
             t.worn.groups,
@@ -110,14 +171,26 @@ class Tracing {
   }
 
   // The samples of a pixel that a point is the mean of.
-  std::vector<const Gbuffer*> samples_of(std::size_t i) const {
-    const std::uint32_t place = result_.transport.places[i];
-    const float part = surface_.data[4 * static_cast<std::size_t>(place) + 3];
+  struct Seen {
+    std::vector<LobePoint> points;
+    std::vector<OpenView> views;
+  };
+  Seen seen_at(std::size_t i) const {
+    const LobeTransport& t = result_.transport;
+    const std::size_t place = 4 * static_cast<std::size_t>(t.places[i]) + 3;
     std::vector<const Gbuffer*> shown;
     for (const Gbuffer& sample : samples_)
-      if (sample.data[4 * static_cast<std::size_t>(place) + 3] == part) shown.push_back(&sample);
+      if (sample.data[place] == surface_.data[place]) shown.push_back(&sample);
     if (shown.empty()) shown.push_back(&surface_);
-    return shown;
+    const auto [x, y] = pixel(i);
+    Seen seen;
+    for (const Gbuffer* sample : shown) {
+      const rays::Spot spot = spot_at(transport_.rays(), *sample, x, y);
+      const Vec3 to_viewer = sample->to_viewer(x, y);
+      seen.views.push_back({rays::vec3(spot.shading), to_viewer});
+      seen.points.emplace_back(transport_, t.columns, t.worn.groups, request_.bounces, spot, rays::float3(to_viewer));
+    }
+    return seen;
   }
 
   void probe() {
@@ -148,161 +221,272 @@ class Tracing {
     }
   }
 
+  static void put(const std::vector<color::Rgb>& from, float* to) {
+    for (const color::Rgb& light : from)
+      for (int c = 0; c < 3; ++c) *to++ = static_cast<float>(light[c]);
+  }
+
+  bool is_projected(std::size_t i) const { return result_.transport.worn.is_projected(result_.transport.part[i]); }
+  bool has_open_light(std::size_t i) const { return open_ != nullptr && !is_projected(i); }
+
+  // Adds to open light that is looked up what takes long and changes slowly over a surface: what maps err by, and the
+  // floor, which hardly differs between samples of one part.
+  void complete(std::size_t i, const Seen& seen, std::vector<color::Rgb>& open) const {
+    open_->add_sums(seen.views.front(), result_.transport.part[i], open.data());
+    seen.points.front().add_open_floor(open.data());
+  }
+
+  void look(std::size_t i) {
+    LobeTransport& t = result_.transport;
+    const Seen seen = seen_at(i);
+    std::vector<color::Rgb> open(t.columns.count()), mirrors;
+    if (has_open_light(i)) mirrors = open_->mean(seen.views, t.part[i], open.data());
+    exact_[i] = LobePoint::is_known(seen.points, open_ != nullptr) ? 1 : 0;
+    if (has_open_light(i) && exact_[i] != 0) complete(i, seen, open);
+    LobeEstimate known =
+        LobePoint::known(seen.points, mirrors.empty() ? nullptr : mirrors.data(), worn_by(t.part[i]).data());
+    for (std::size_t k = 0; k < t.columns.mirror(); ++k) known.direct[k] += open[k];
+    put(known.direct, &t.direct[i * t.floats()]), put(known.bounced, &t.bounced[i * t.floats()]);
+    put(known.classes, &t.classes[3 * i * t.worn.groups.classes()]);
+  }
+
+  // The open light of a point that is sampled is kept, and what completed it.
+  std::vector<color::Rgb> open_light(std::size_t i, const Seen& seen) {
+    const LobeTransport& t = result_.transport;
+    const std::size_t count = t.columns.count();
+    float* kept = &sampled_[slot_[i] * of_slot_];
+    std::vector<color::Rgb> open(count);
+    if (batches_[i] > 0) {
+      for (color::Rgb& light : open)
+        for (int c = 0; c < 3; ++c) light[c] = *kept++;
+      return open;
+    }
+    open_->mean(seen.views, t.part[i], open.data());
+    std::vector<color::Rgb> more = open;
+    complete(i, seen, open);
+    for (std::size_t k = 0; k < count; ++k) more[k] = k < t.columns.mirror() ? open[k] - more[k] : color::Rgb{};
+    put(open, kept), put(more, kept + t.floats());
+    return open;
+  }
+
   // Rounds are independent estimates, and count by their batches.
   void sample(std::size_t i, int batches) {
-    LobeTransport& t = result_.transport;
-    const std::uint32_t place = t.places[i];
-    const int x = static_cast<int>(place) % t.width, y = static_cast<int>(place) / t.width;
-    const int part = t.part[i];
-    std::vector<LobePoint> points;
-    std::vector<OpenView> views;
-    for (const Gbuffer* sample : samples_of(i)) {
-      const rays::Spot spot = spot_at(transport_.rays(), *sample, x, y);
-      const Vec3 to_viewer = sample->to_viewer(x, y);
-      views.push_back({rays::vec3(spot.shading), to_viewer});
-      points.emplace_back(transport_, t.columns, t.worn.groups, request_.bounces, spot, rays::float3(to_viewer));
-    }
-    // Looked up or summed in the first round, and kept for the others; what mirrors see is not.
-    std::vector<color::Rgb> open(t.columns.count()), mirrors(points.size());
-    if (open_ != nullptr && !t.worn.is_projected(part)) {
-      float* kept = &open_light_[i * t.floats()];
-      if (round_ == 0) {
-        open_->mean(views, part, open.data());
-        points.front().add_open_floor(open.data());  // which hardly differs between samples of one part
-        for (const color::Rgb& light : open)
-          for (int c = 0; c < 3; ++c) *kept++ = static_cast<float>(light[c]);
-      } else {
-        for (color::Rgb& light : open)
-          for (int c = 0; c < 3; ++c) light[c] = *kept++;
-      }
-      mirrors = open_->mirrors(views, part);
-    }
-    const int sequences = std::min(batches, std::max(kSequences, fewest_));
+    const LobeTransport& t = result_.transport;
+    const Seen seen = seen_at(i);
+    std::vector<color::Rgb> open;
+    if (has_open_light(i)) open = open_light(i, seen);
+    const int sequences = std::min(batches, kSequences);
     int of_each = 1;  // batches
     while (of_each * sequences < batches) of_each *= 2;
-    const LobeEstimate estimate = LobePoint::estimate(
-        points, open_ != nullptr ? open.data() : nullptr, mirrors.data(), sequences, of_each * kDirections,
-        mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(batches_[i])), worn_by(part).data());
-    const double before = batches_[i], added = estimate.sequences * of_each;
-    const double share = added > 0 ? added / (before + added) : 1;
-    const auto mix = [share](float& into, double value) {
-      into = static_cast<float>((1 - share) * into + share * value);
+    const std::array<LobeEstimate, 2> found = LobePoint::sampled(
+        seen.points, open.empty() ? nullptr : open.data(), sequences, of_each * kDirections,
+        mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(batches_[i])), worn_by(t.part[i]).data());
+    const int added = sequences * of_each;
+    const double share = static_cast<double>(added) / (batches_[i] + added);
+    float* to = &sampled_[slot_[i] * of_slot_ + 2 * t.floats()];
+    const auto mix = [&](const color::Rgb& light) {
+      for (int c = 0; c < 3; ++c, ++to) *to = static_cast<float>((1 - share) * *to + share * light[c]);
     };
-    for (std::size_t k = 0; k < t.columns.count(); ++k)
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::size_t at = i * t.floats() + 3 * k + c;
-        mix(t.direct[at], estimate.direct[k][static_cast<int>(c)]);
-        mix(t.bounced[at], estimate.bounced[k][static_cast<int>(c)]);
-      }
-    for (std::size_t k = 0; k < estimate.classes.size(); ++k)
-      for (std::size_t c = 0; c < 3; ++c)
-        mix(t.classes[(i * estimate.classes.size() + k) * 3 + c], estimate.classes[k][static_cast<int>(c)]);
-    batches_[i] += estimate.sequences * of_each;
-    freedom_[i] += estimate.freedom + (before > 0 ? 1 : 0);
-    // The variance of the mean of both rounds, kept as that of one batch.
-    for (std::size_t k = 0; added > 0 && k <= t.columns.count(); ++k) {
-      float& variance = variance_[i * (t.columns.count() + 1) + k];
-      const double old = before > 0 ? (1 - share) * (1 - share) * variance / before : 0,
-                   now = share * share *
-                         (k < t.columns.count() ? nominal_variance(i, k, estimate.covariance[k])
-                                                : shown_variance(i, estimate.shown)) /
-                         estimate.sequences;
-      variance = static_cast<float>((before + added) * (old + now));
-    }
+    for (const LobeEstimate& half : found)
+      for (std::size_t k = 0; k < t.columns.count(); ++k) mix(half.direct[k]), mix(half.bounced[k]);
+    for (std::size_t k = 0; k < t.worn.groups.classes(); ++k) mix(0.5 * (found[0].classes[k] + found[1].classes[k]));
+    batches_[i] += added;
   }
 
-  // dE00^2
-  double nominal_variance(std::size_t i, std::size_t k, Covariance covariance) const {
+  // What samples tell of a column, by one half of them.
+  struct ColumnLight {
+    color::Rgb direct, bounced;
+    color::Rgb sum() const { return direct + bounced; }
+  };
+  ColumnLight sampled(std::size_t i, std::size_t half, std::size_t column) const {
+    if (slot_[i] == kNotSampled) return exact_[i] != 0 ? ColumnLight{} : ColumnLight{kUnknown, kUnknown};
     const LobeTransport& t = result_.transport;
-    const double weight = t.worn.is_projected(t.part[i]) ? 1 : nominal_[k];
-    color::Rgb shown = weight * t.light(i, k);
-    if (t.columns.is_gloss(k)) shown += (kNominalGray / kPi) * t.light(i, 0);
-    for (double& element : covariance) element *= weight * weight;
-    const double noise = noise_de00(shown, covariance, request_.white_luminance);
-    return noise * noise;
-  }
-
-  // dE00^2, in the paint that is worn there
-  double shown_variance(std::size_t i, const Covariance& covariance) const {
-    const LobeTransport& t = result_.transport;
-    const std::vector<color::Rgb>& weights = worn_by(t.part[i]);
-    color::Rgb shown;
-    for (std::size_t k = 0; k < weights.size(); ++k)
-      for (int c = 0; c < 3; ++c) shown[c] += weights[k][c] * t.light(i, k)[c];
-    const double noise = noise_de00(shown, covariance, request_.white_luminance);
-    return noise * noise;
+    const float *more = &sampled_[slot_[i] * of_slot_ + t.floats() + 3 * column],
+                *f = &sampled_[slot_[i] * of_slot_ + (2 + 2 * half) * t.floats() + 6 * column];
+    return {{more[0] + f[0], more[1] + f[1], more[2] + f[2]}, {f[3], f[4], f[5]}};
   }
 
   const std::vector<color::Rgb>& worn_by(int part) const {
     const WornPaints& worn = result_.transport.worn;
-    return worn.weights[static_cast<std::size_t>(worn.groups.of_part[static_cast<std::size_t>(part)])];
+    return worn.weights[static_cast<std::size_t>(group_of(part))];
+  }
+  int group_of(int part) const { return result_.transport.worn.groups.of_part[static_cast<std::size_t>(part)]; }
+
+  template <class Visit>
+  void each_kept(const Visit& visit) const {
+    parallel_for(kept_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) visit(n, std::size_t{kept_[n]});
+    });
   }
 
+  // Judges the light of the paints that are worn. Points of which no neighbor tells get samples first.
   void judge() {
-    const std::size_t points = batches_.size();
-    parallel_for(points, 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) judge(i);
-    });
-    result_.noise_p95_de00 = worse_percentile(result_.transport.noise_de00);
-    result_.shown_p95_de00 =
-        worse(shown_noise_, [](const std::vector<double>& noise) { return largest_errors(noise); });
-  }
-
-  // The larger of the 95th percentiles over the mesh and over a floor that shows the environment.
-  template <class Value>
-  double worse_percentile(const std::vector<Value>& of) const {
-    return worse(of, [](const std::vector<double>& values) { return percentile_95(values); });
-  }
-  template <class Value, class Figure>
-  double worse(const std::vector<Value>& of, const Figure& figure) const {
-    const LobeTransport& t = result_.transport;
-    std::vector<double> mesh, floor;
-    for (std::size_t i = 0; i < of.size(); ++i) (t.worn.is_projected(t.part[i]) ? floor : mesh).push_back(of[i]);
-    return std::max(figure(mesh), figure(floor));
-  }
-
-  // The neighbors alone decide the number of samples of a point, so that no point stops where its own sums happen to be
-  // bright.
-  void judge(std::size_t i) {
-    LobeTransport& t = result_.transport;
-    t.noise_de00[i] = shown_noise_[i] = 0, needed_[i] = 0;
-    const int n = batches_[i];
-    if (n < 2) return;
-    const std::size_t columns = t.columns.count(), kinds = columns + 1;
-    const int x = static_cast<int>(t.places[i]) % t.width, y = static_cast<int>(t.places[i]) / t.width;
-    double around[2 * kMostTracedLobes + 3] = {};
-    int count = 0;
-    by_pixel_.visit_around(x, y, [&](std::size_t other) {
-      if (other == i || batches_[other] < 2) return;
-      ++count;
-      for (std::size_t k = 0; k < kinds; ++k) around[k] += variance_[other * kinds + k];
-    });
-    const double freedom = freedom_[i];
-    double worst = 0, needed = 0;
-    for (std::size_t k = 0; k < kinds; ++k) {
-      const double own = variance_[i * kinds + k], found = smoothed_variance(own, freedom, around[k], count) / n;
-      const double expected = count > 0 ? around[k] / count : own;
-      if (k == columns) {
-        shown_noise_[i] = static_cast<float>(std::sqrt(found));
-        needed = std::max(needed, kDeviations * kDeviations * expected);
-        continue;
-      }
-      worst = std::max(worst, found);
-      needed = std::max(needed, expected / (TracedLobes::kColumnTolerances * TracedLobes::kColumnTolerances));
+    Reconstruction found = shown_in_paints();
+    std::vector<int> gaps(batches_.size(), 0);
+    for (std::size_t n = 0; n < kept_.size(); ++n)
+      if (exact_[kept_[n]] == 0 && std::isinf(found.error_de00[n])) gaps[kept_[n]] = kFirstBatches;
+    if (std::ranges::any_of(gaps, [](int batches) { return batches > 0; }))
+      sample(gaps, true), found = shown_in_paints();
+    std::vector<double> errors(batches_.size(), 0);
+    needed_.assign(batches_.size(), 0);
+    for (std::size_t n = 0; n < kept_.size(); ++n) {
+      const std::size_t i = kept_[n];
+      if (exact_[i] != 0) continue;
+      errors[i] = found.error_de00[n];
+      needed_[i] = needed_samples(counted(i), errors[i], found.spike_de00[n], request_.tolerance_de00);
     }
-    t.noise_de00[i] = static_cast<float>(std::sqrt(worst));
-    needed_[i] = needed / (request_.tolerance_de00 * request_.tolerance_de00);
+    shares_ = std::move(found.shares);
+    result_.error_p95_de00 = worse([&](std::size_t i) { return errors[i]; },
+                                   [](const std::vector<double>& of) { return largest_errors(of); });
+  }
+  int counted(std::size_t i) const { return slot_[i] == kNotSampled ? kFirstBatches : batches_[i]; }
+
+  Reconstruction shown_in_paints() const {
+    const LobeTransport& t = result_.transport;
+    std::vector<Halves> halves(kept_.size());
+    std::vector<color::Rgb> beside(kept_.size());
+    each_kept([&](std::size_t n, std::size_t i) {
+      const std::vector<color::Matrix3>& matrices = matrices_[static_cast<std::size_t>(group_of(t.part[i]))];
+      for (std::size_t k = 0; k < matrices.size(); ++k) {
+        beside[n] += color::product(matrices[k], t.light(i, k));
+        for (std::size_t half = 0; half < 2; ++half)
+          halves[n][half] += color::product(matrices[k], sampled(i, half, k).sum());
+      }
+    });
+    return reconstruction(shown_, halves, beside, request_.white_luminance, filters());
+  }
+  // Rays alone are a reference, and are shown as they were sampled.
+  Filters filters() const { return open_ != nullptr ? Filters::kChosen : Filters::kNone; }
+
+  // What samples tell of a column at the points that are kept, smoothed.
+  struct SmoothColumn {
+    std::vector<color::Rgb> sum, bounced;
+  };
+
+  // Smooths the samples of every column as the gray paint of nominal_weight() shows them, and tells their errors.
+  void smooth_columns() {
+    LobeTransport& t = result_.transport;
+    std::vector<FilterShares> before;
+    for (std::size_t k = 0; k < smooth_.size(); ++k) {
+      Reconstruction found = in_gray_paint(k);
+      each_kept([&](std::size_t n, std::size_t i) {
+        if (exact_[i] == 0) t.noise_de00[i] = std::max(t.noise_de00[i], found.error_de00[n]);
+        found.light[n] = (1 / nominal(i, k)) * found.light[n];
+      });
+      smooth_[k].sum = std::move(found.light);
+      if (k % 2 == 1) smooth_bounced(k, before, found.shares);
+      before = std::move(found.shares);
+    }
+    result_.noise_p95_de00 = worse([&](std::size_t i) { return t.noise_de00[i]; },
+                                   [](std::vector<double> noise) { return percentile_95(std::move(noise)); });
+  }
+
+  // A figure of the mesh or of the floor, whichever is larger: a large floor that is easy to draw hides no mesh.
+  template <class Value, class Figure>
+  double worse(const Value& value, const Figure& figure) const {
+    std::vector<double> mesh, floor;
+    for (std::size_t i = 0; i < batches_.size(); ++i) (is_projected(i) ? floor : mesh).push_back(value(i));
+    return std::max(figure(std::move(mesh)), figure(std::move(floor)));
+  }
+  double nominal(std::size_t i, std::size_t k) const {
+    const LobeTransport& t = result_.transport;
+    return is_projected(i) ? 1 : nominal_weight(t.columns, k);
+  }
+
+  Reconstruction in_gray_paint(std::size_t k) const {
+    const LobeTransport& t = result_.transport;
+    std::vector<Halves> halves(kept_.size());
+    std::vector<color::Rgb> beside(kept_.size());
+    each_kept([&](std::size_t n, std::size_t i) {
+      const double weight = nominal(i, k);
+      beside[n] = weight * t.light(i, k);
+      if (t.columns.is_gloss(k)) {
+        const color::Rgb& diffuse = smooth_[LobeColumns::diffuse()].sum[n];
+        beside[n] += (kNominalGray / kPi) * (t.light(i, LobeColumns::diffuse()) + diffuse);
+      }
+      for (std::size_t half = 0; half < 2; ++half) halves[n][half] = weight * sampled(i, half, k).sum();
+    });
+    return reconstruction(shown_, halves, beside, request_.white_luminance, filters());
+  }
+
+  // Smooths the bounced light of a column and of the one before it, by the filters of both.
+  void smooth_bounced(std::size_t k, const std::vector<FilterShares>& before, const std::vector<FilterShares>& own) {
+    std::vector<Halves> bounced(kept_.size());
+    each_kept([&](std::size_t n, std::size_t i) {
+      for (std::size_t which = 0; which < 2; ++which)
+        bounced[n][which] = 0.5 * (sampled(i, 0, k - 1 + which).bounced + sampled(i, 1, k - 1 + which).bounced);
+    });
+    const std::vector<Halves> smooth = smoothed(shown_, bounced, {&before, &own});
+    for (std::size_t which = 0; which < 2; ++which) {
+      std::vector<color::Rgb>& to = smooth_[k - 1 + which].bounced;
+      for (const Halves& light : smooth) to.push_back(light[which]);
+    }
+  }
+
+  void add_smooth() {
+    LobeTransport& t = result_.transport;
+    const auto add = [](float* to, const color::Rgb& light) {
+      for (int c = 0; c < 3; ++c) to[c] += static_cast<float>(light[c]);
+    };
+    for (std::size_t k = 0; k < smooth_.size(); ++k)
+      each_kept([&](std::size_t n, std::size_t i) {
+        if (exact_[i] != 0) return;
+        add(&t.direct[i * t.floats() + 3 * k], smooth_[k].sum[n] - smooth_[k].bounced[n]);
+        add(&t.bounced[i * t.floats() + 3 * k], smooth_[k].bounced[n]);
+      });
+    // Classes are smoothed as the paints show them, two at a time.
+    const std::size_t classes = t.worn.groups.classes();
+    for (std::size_t k = 0; k < classes; k += 2) {
+      std::vector<Halves> light(kept_.size());
+      each_kept([&](std::size_t n, std::size_t i) {
+        light[n] = exact_[i] != 0 ? Halves{} : Halves{kUnknown, kUnknown};
+        if (slot_[i] == kNotSampled) return;
+        const float* f = &sampled_[slot_[i] * of_slot_ + 6 * t.floats() + 3 * k];
+        light[n][0] = {f[0], f[1], f[2]};
+        if (k + 1 < classes) light[n][1] = {f[3], f[4], f[5]};
+      });
+      const std::vector<Halves> smooth = smoothed(shown_, light, {&shares_, &shares_});
+      each_kept([&](std::size_t n, std::size_t i) {
+        if (exact_[i] != 0) return;
+        for (std::size_t which = 0; which < 2 && k + which < classes; ++which)
+          add(&t.classes[3 * (i * classes + k + which)], smooth[n][which]);
+      });
+    }
+    each_kept([&](std::size_t, std::size_t i) {
+      if (exact_[i] == 0) fit_classes(i);
+    });
+  }
+
+  // Scales the classes of a point so that together they are its bounced light in the paint that is worn.
+  void fit_classes(std::size_t i) {
+    LobeTransport& t = result_.transport;
+    const std::vector<color::Matrix3>& matrices = matrices_[static_cast<std::size_t>(group_of(t.part[i]))];
+    color::Rgb bounced, sum;
+    for (std::size_t k = 0; k < matrices.size(); ++k)
+      bounced += color::product(matrices[k], t.light(i, k) - t.light(i, k, false));
+    const std::size_t floats = 3 * t.worn.groups.classes();
+    const std::span of_point(&t.classes[i * floats], floats);
+    for (std::size_t k = 0; k < floats; ++k) {
+      of_point[k] = std::max(0.0F, of_point[k]);
+      sum[static_cast<int>(k % 3)] += of_point[k];
+    }
+    for (std::size_t k = 0; k < floats; ++k) {
+      const int c = static_cast<int>(k % 3);
+      if (sum[c] > 0 && bounced[c] > 0) of_point[k] *= static_cast<float>(bounced[c] / sum[c]);
+    }
   }
 
   // Plans the batches of the next round, and returns true if there are any.
   bool plan(std::vector<int>& more) const {
     RoundLimits limits;
     limits.of_point = request_.most_batches, limits.at_once = kMostAtOnce;
-    limits.typical = worse_percentile(needed_);
-    limits.lacking = result_.error_de00() / request_.tolerance_de00;
+    limits.typical = worse([this](std::size_t i) { return needed_[i]; },
+                           [](std::vector<double> needed) { return percentile_95(std::move(needed)); });
+    limits.lacking = result_.error_p95_de00 / request_.tolerance_de00;
+    limits.least = std::max(1.0, kLeastRound * drawn());
     const bool any = plan_round(
-        limits, [this](std::size_t i) { return needed_[i]; }, [this](std::size_t i) { return batches_[i]; }, more);
-    for (int& batches : more) batches = (batches + fewest_ - 1) / fewest_ * fewest_;
+        limits, [this](std::size_t i) { return needed_[i]; }, [this](std::size_t i) { return counted(i); }, more);
+    for (int& batches : more) batches = whole(batches + 1);
     return any;
   }
 
@@ -313,16 +497,21 @@ class Tracing {
   Deadline deadline_;
   Pace pace_{deadline_};
   Stopwatch clock_;
-  TracedLobes result_;
-  std::vector<Gbuffer> samples_;  // of the pixels; none: their centers
-  PixelPoints by_pixel_;
-  std::vector<float> open_light_;   // point, column, channel
-  std::vector<float> variance_;     // of one batch: point, column, and the paint that is worn last; dE00^2
-  std::vector<float> shown_noise_;  // of each point, in that paint
-  std::vector<int> batches_, freedom_;
-  int fewest_ = kFirstBatches;  // of a round; of several samples each gets two sequences
-  std::vector<double> needed_, nominal_;
-  int round_ = 0;
+  TracedLobes result_;                                 // whose light is at first what needs no samples
+  std::vector<Gbuffer> samples_;                       // of the pixels; none: their centers
+  std::vector<std::vector<color::Matrix3>> matrices_;  // of the paints that are worn, by group and column
+  std::vector<std::uint8_t> exact_;                    // points that nothing is left to samples of
+  std::vector<int> batches_;
+  std::vector<std::uint32_t> kept_;  // points but those of a floor without noise
+  std::vector<ShownPoint> shown_;    // these
+  std::vector<std::uint32_t> slot_;  // of points that have samples
+  // Floats of a slot: the open light of columns, what completed it, of each half the direct and bounced light of
+  // columns, and the classes.
+  std::size_t of_slot_ = 0;
+  std::vector<float> sampled_;        // by slot
+  std::vector<double> needed_;        // batches
+  std::vector<FilterShares> shares_;  // in the paints that are worn
+  std::vector<SmoothColumn> smooth_;  // by column
 };
 
 }  // namespace

@@ -71,7 +71,7 @@ struct LobeTransport {
 
 struct LobeTransportRequest {
   int bounces = 8;
-  // Samples are added until TracedLobes::error_de00() is within it.
+  // Samples are added until TracedLobes::error_p95_de00 is within it.
   double tolerance_de00 = 0.5;
   double time_limit_s = 0;  // 0: none
   int most_batches = 2048;  // of a point
@@ -84,15 +84,12 @@ struct LobeTransportRequest {
 
 struct TracedLobes {
   LobeTransport transport;
-  // The noise of a column is what its random error changes in the gray paint of nominal_weight(), as CIEDE2000 before
-  // white_luminance, one standard deviation. That of a point is the largest over its columns.
+  double error_p95_de00 = 0;  // what 5 of 100 errors exceed in the paints that are worn, before white_luminance
+  // The noise of a column is what its random error changes in the gray paint of nominal_weight(), one standard
+  // deviation. That of a point is the largest over its columns. Errors of columns cancel in part in a paint: on a car
+  // the noisiest column had five times the error of the paint, and other paints 0.8 to 1.4 times that of the one worn.
   double noise_p95_de00 = 0, noise_mean_de00 = 0;
-  double shown_p95_de00 = 0;  // what 5 of 100 errors exceed in the paints that are worn
-  // A single column may have the noise of four tolerances: errors of columns cancel in part in a paint, and on a car
-  // the noisiest column had three times the error of the paint.
-  static constexpr double kColumnTolerances = 4;
-  double error_de00() const { return std::max(shown_p95_de00, noise_p95_de00 / kColumnTolerances); }
-  double samples_mean = 0, free_share = 0;  // directions of a point; points that nothing rises above
+  double samples_mean = 0, free_share = 0;  // directions of a point; points that samples tell nothing of
   double time_s = 0;
   bool reached = false;
 };

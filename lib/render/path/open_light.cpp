@@ -122,29 +122,27 @@ void OpenLight::look_up(const std::vector<VisiblePoint>& points, color::Rgb* lig
   for (std::size_t i = 0; i < seen.size(); ++i) light[i % points.size() * count + i / points.size()] = seen[i];
 }
 
-void OpenLight::mean(const std::vector<OpenView>& views, int part, color::Rgb* light) const {
+std::vector<color::Rgb> OpenLight::mean(const std::vector<OpenView>& views, int part, color::Rgb* light) const {
   std::vector<VisiblePoint> points;
   for (const OpenView& view : views)
     points.push_back({.normal = view.normal, .to_viewer = view.to_viewer, .part = part});
-  std::vector<color::Rgb> seen(views.size() * columns_.count());
+  const std::size_t count = columns_.count();
+  std::vector<color::Rgb> seen(views.size() * count), mirrors;
   look_up(points, seen.data());
-  std::fill_n(light, columns_.count(), color::Rgb{});
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    light[i % columns_.count()] += (1.0 / static_cast<double>(views.size())) * seen[i];
-  if (!summed_) return;
-  const Surface& surface = surfaces_[surface_of(part)];
-  std::vector<color::Rgb> summed(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(columns_.count()));
-  summed_->at(views.front().normal, views.front().to_viewer, axes(views.front(), surface), surface.coat_index,
-              summed.data());
-  for (std::size_t k = 0; k < columns_.count(); ++k) light[k] += summed[k] - seen[k];
+  std::fill_n(light, count, color::Rgb{});
+  for (std::size_t i = 0; i < seen.size(); ++i) light[i % count] += (1.0 / static_cast<double>(views.size())) * seen[i];
+  for (std::size_t view = 0; view < views.size(); ++view) mirrors.push_back(seen[view * count + columns_.mirror()]);
+  return mirrors;
 }
 
-std::vector<color::Rgb> OpenLight::mirrors(const std::vector<OpenView>& views, int part) const {
-  std::vector<VisiblePoint> points;
-  const auto mirror = static_cast<int>(surface_of(part) * columns_.count() + columns_.mirror());
-  for (const OpenView& view : views)
-    points.push_back({.normal = view.normal, .to_viewer = view.to_viewer, .part = mirror});
-  return engine_->colors(points);
+void OpenLight::add_sums(const OpenView& view, int part, color::Rgb* light) const {
+  if (!summed_) return;
+  const Surface& surface = surfaces_[surface_of(part)];
+  std::vector<color::Rgb> seen(columns_.count());
+  mean({view}, part, seen.data());
+  std::vector<color::Rgb> summed = seen;
+  summed_->at(view.normal, view.to_viewer, axes(view, surface), surface.coat_index, summed.data());
+  for (std::size_t k = 0; k < columns_.count(); ++k) light[k] += summed[k] - seen[k];
 }
 
 // Each column in the gray paint that its noise is judged by.

@@ -43,17 +43,17 @@ class OpenLight {
   // Writes the light of each column with weight 1 at a point seen from there; both vectors unit, on one side.
   void at(const Vec3& normal, const Vec3& to_viewer, int part, color::Rgb* light) const {
     mean({{normal, to_viewer}}, part, light);
+    add_sums({normal, to_viewer}, part, light);
   }
 
-  // Writes the mean of that over views of a part which lie close together. Wide lobes that are summed are so at the
-  // first view alone: at the others they differ from it as the maps do.
-  void mean(const std::vector<OpenView>& views, int part, color::Rgb* light) const;
+  // Writes the mean of that over views of a part which lie close together, whatever is summed, and returns the light of
+  // the mirror's column at each view.
+  std::vector<color::Rgb> mean(const std::vector<OpenView>& views, int part, color::Rgb* light) const;
+  // Adds what the light that is summed differs by from the maps at a view; nothing where nothing is summed.
+  void add_sums(const OpenView& view, int part, color::Rgb* light) const;
 
   // Writes the light of all columns at each point in turn, whatever is summed.
   void look_up(const std::vector<VisiblePoint>& points, color::Rgb* light) const;
-
-  // The light of the mirror's column alone, at each view.
-  std::vector<color::Rgb> mirrors(const std::vector<OpenView>& views, int part) const;
 
  private:
   // Parts that are brushed and coated alike.

@@ -18,17 +18,10 @@ namespace goniochrome::render {
 
 namespace {
 
-// An error of so many tolerances is a speck. Its point gets at most so many times its samples, and all of these points
-// such a part of all samples or, where few points have any, as many for each point.
-constexpr double kSpeck = 2, kMostOfSpeck = 15, kSpecksShare = 0.5;
-// An error of a point's samples of so many tolerances is seen once filters spread it: a disc of 25 pixels on a hood
-// went with 10, and a fourth of its light stayed with 30.
-constexpr double kBlotch = 10;
+// All specks get such a part of all samples or, where few points have any, as many for each point.
+constexpr double kSpecksShare = 0.5;
 // Most points need no more than a few samples: the first round takes as many fours as tell a variance.
 constexpr int kFirstFours = 2;
-// A round draws no less than this part of all fours so far: after each the noise of every point is judged anew, which
-// takes the time of a fan for every twenty points.
-constexpr double kLeastRound = 1.0 / 16;
 // The samples of a pixel are first looked at, which took about as long as so many fours of a car in two probes.
 constexpr double kFoursOfLook = 2;
 // Rays look at every sample of a pixel at an edge. Where all of them show one piece of surface, rays look at the first
@@ -442,9 +435,8 @@ class Picture {
       const bool certain = states_[i].certain && sums(i).fours() == 0;
       points_[i].radiance = states_[i].sharp + (certain ? halves[i][0] : found.light[i]);
       points_[i].noise_de00 = certain ? 0 : found.error_de00[i];
-      const double excess = kDeviations * points_[i].noise_de00 / tolerance();
-      const double speck = found.spike_de00[i] > kBlotch * tolerance() ? kSpeck * kSpeck * (1 + kMostOfSpeck) : 0;
-      states_[i].needed = certain ? 0 : counted(i) * std::max(excess * excess, speck);
+      states_[i].needed =
+          certain ? 0 : needed_samples(counted(i), points_[i].noise_de00, found.spike_de00[i], tolerance());
     });
   }
 

@@ -29,6 +29,7 @@ constexpr std::array<Filter, 5> kFilters = {{
 constexpr int kLevels = 4;
 // The light as it was sampled, and by each filter.
 constexpr std::size_t kChoices = kFilters.size() + 1;
+static_assert(kChoices == kFilterChoices);
 // Errors are means over this neighborhood.
 constexpr Filter kErrorMean = {2, {3, 0.25F, 0.5F, kNoSlopes}};
 // A squared difference of a filter from its reference above this multiple of their common variance counts as bias.
@@ -264,8 +265,13 @@ struct Measured {
 
 using Predictions = std::array<std::vector<Predicted>, kChoices>;
 
-Predictions all_predictions(int width, int height, const std::vector<ShownPoint>& points,
-                            const std::vector<Halves>& halves) {
+std::array<int, 2> size_of(const std::vector<ShownPoint>& points) {
+  if (points.empty()) return {0, 0};
+  return {std::ranges::max(points, {}, &ShownPoint::x).x + 1, points.back().y + 1};
+}
+
+Predictions all_predictions(const std::vector<ShownPoint>& points, const std::vector<Halves>& halves) {
+  const auto [width, height] = size_of(points);
   Predictions predicted;
   predicted[0].resize(points.size());
   each_point(points.size(), [&](std::size_t n) {
@@ -287,8 +293,8 @@ Predictions all_predictions(int width, int height, const std::vector<ShownPoint>
 
 // Values at points become means over their neighborhoods. Errors at edges are no mean of those beside them, so that
 // each kind has an image of its own, in which the few points at edges are not lost among the others.
-void take_neighborhood_means(int width, int height, const std::vector<ShownPoint>& points,
-                             std::vector<Values>& values) {
+void take_neighborhood_means(const std::vector<ShownPoint>& points, std::vector<Values>& values) {
+  const auto [width, height] = size_of(points);
   for (const bool at_edges : {false, true}) {
     SurfaceImage image = image_of(width, height, points, values, at_edges);
     for (int level = 0; level < kErrorMean.level; ++level) image = coarser(image);
@@ -300,7 +306,7 @@ void take_neighborhood_means(int width, int height, const std::vector<ShownPoint
 }
 
 // Measures all choices. The visibility of an error is taken at filtered light, which has less noise than its samples.
-Measured measured(int width, int height, const std::vector<ShownPoint>& points, const Predictions& predicted,
+Measured measured(const std::vector<ShownPoint>& points, const Predictions& predicted,
                   const std::vector<color::Rgb>& beside, double white_luminance) {
   Measured result;
   result.seen.resize(points.size()), result.variances.resize(points.size()), result.mean_biases.resize(points.size());
@@ -326,9 +332,9 @@ Measured measured(int width, int height, const std::vector<ShownPoint>& points, 
     }
     result.seen[n] = seen;
   });
-  take_neighborhood_means(width, height, points, biases);
+  take_neighborhood_means(points, biases);
   result.mean_variances = result.variances;
-  take_neighborhood_means(width, height, points, result.mean_variances);
+  take_neighborhood_means(points, result.mean_variances);
   return result;
 }
 
@@ -352,18 +358,20 @@ float squared_error(const Predictions& predicted, const Measured& measured, std:
 }  // namespace
 
 Reconstruction reconstruction(const std::vector<ShownPoint>& points, const std::vector<Halves>& halves,
-                              const std::vector<color::Rgb>& beside, double white_luminance) {
-  const int width = points.empty() ? 0 : std::ranges::max(points, {}, &ShownPoint::x).x + 1,
-            height = points.empty() ? 0 : points.back().y + 1;
-  const Predictions predicted = all_predictions(width, height, points, halves);
-  const Measured errors = measured(width, height, points, predicted, beside, white_luminance);
+                              const std::vector<color::Rgb>& beside, double white_luminance, Filters filters) {
+  const Predictions predicted = all_predictions(points, halves);
+  const Measured errors = measured(points, predicted, beside, white_luminance);
   Reconstruction result;
   result.light.resize(points.size()), result.error_de00.resize(points.size());
-  result.spike_de00.resize(points.size());
+  result.spike_de00.resize(points.size()), result.shares.resize(points.size());
   each_point(points.size(), [&](std::size_t n) {
     Values error{};
     for (std::size_t k = 0; k < kChoices; ++k)
       error[k] = std::isnan(predicted[k][n][0]) ? HUGE_VALF : squared_error(predicted, errors, n, k);
+    if (filters == Filters::kNone) {
+      error.fill(HUGE_VALF);
+      if (!std::isnan(predicted[0][n][0])) error[0] = std::max(errors.mean_variances[n][0], 1e-6F);
+    }
     if (const float own = errors.variances[n][0]; own > kLargePart * errors.mean_variances[n][0])
       result.spike_de00[n] = std::sqrt(own);
     const float least = *std::ranges::min_element(error);
@@ -377,9 +385,24 @@ Reconstruction reconstruction(const std::vector<ShownPoint>& points, const std::
       const double ratio = least / error[k], weight = ratio * ratio * ratio * ratio;
       weights += weight, squared += weight * error[k];
       result.light[n] += weight * 0.5 * (half(predicted[k][n], 0) + half(predicted[k][n], 1));
+      result.shares[n][k] = static_cast<float>(weight);
     }
     result.light[n] = (1 / weights) * result.light[n];
+    for (float& share : result.shares[n]) share = static_cast<float>(share / weights);
     result.error_de00[n] = static_cast<float>(std::sqrt(squared / weights));
+  });
+  return result;
+}
+
+std::vector<Halves> smoothed(const std::vector<ShownPoint>& points, const std::vector<Halves>& lights,
+                             const std::array<const std::vector<FilterShares>*, 2>& shares) {
+  const Predictions predicted = all_predictions(points, lights);
+  std::vector<Halves> result(points.size());
+  each_point(points.size(), [&](std::size_t n) {
+    for (std::size_t which = 0; which < 2; ++which)
+      for (std::size_t k = 0; k < kChoices; ++k)
+        if (const float share = (*shares[which])[n][k]; share > 0)
+          result[n][which] += static_cast<double>(share) * half(predicted[k][n], which);
   });
   return result;
 }

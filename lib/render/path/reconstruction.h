@@ -36,17 +36,31 @@ using Halves = std::array<color::Rgb, 2>;
 constexpr color::Rgb kUnknown{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
                               std::numeric_limits<double>::quiet_NaN()};
 
+// The part of each filter in the light of a point; that of the samples as they are comes first.
+constexpr std::size_t kFilterChoices = 6;
+using FilterShares = std::array<float, kFilterChoices>;
+
 struct Reconstruction {
   std::vector<color::Rgb> light;  // of each point
   std::vector<float> error_de00;  // its standard error, over the neighborhood; infinite where nothing tells a point
   // The error of samples that have a large part of the variance of their neighborhood, over which filters spread it as
   // a blotch; 0 of all other points.
   std::vector<float> spike_de00;
+  std::vector<FilterShares> shares;
 };
+
+// None: the light is the mean of its samples, and errors are told by neighborhoods alone, so that the number of samples
+// does not depend on what they found.
+enum class Filters { kChosen, kNone };
 
 // `beside` is what each point shows beside the light that is reconstructed; with it, errors are seen before a white of
 // this luminance. Points come row by row, at most one for each pixel. Bit-identical for any number of threads.
 Reconstruction reconstruction(const std::vector<ShownPoint>& points, const std::vector<Halves>& halves,
-                              const std::vector<color::Rgb>& beside, double white_luminance);
+                              const std::vector<color::Rgb>& beside, double white_luminance,
+                              Filters filters = Filters::kChosen);
+
+// Two lights of each point, smoothed by filters that were chosen for others.
+std::vector<Halves> smoothed(const std::vector<ShownPoint>& points, const std::vector<Halves>& lights,
+                             const std::array<const std::vector<FilterShares>*, 2>& shares);
 
 }  // namespace goniochrome::render

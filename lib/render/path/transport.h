@@ -115,6 +115,9 @@ class Transport {
   // The part of what lies behind the scene that is seen there: 1 beside the scene, less through panes, 0 before others.
   double clear_share(const rays::Float3& from, const rays::Float3& direction) const;
   const Emitters& emitters() const { return emitters_; }
+  color::ReflectionOperator reflection() const {
+    return reflection_ != nullptr ? *reflection_ : color::component_wise();
+  }
   // The light of a floor that shows the environment, where nothing occludes it.
   color::Rgb open_ground(const rays::Spot& spot) const;
   // From here on paths that meet such a floor read its light from a grid, and go no farther. They lose what little

@@ -64,12 +64,15 @@ TEST(TransportFile, ComesBackToHalvesAndIsShadedAsItWasTraced) {
   EXPECT_GT(t.probes.size(), 4U);
   EXPECT_EQ(t.unit, kWhite);
   EXPECT_EQ(t.samples, 4);
-  // A half has 11 bits, and 2^-25 at the least.
+  // A half has 11 bits, and 2^-25 at the least; direct and bounced light are halves of their own.
   for (std::size_t i = 0; i < t.places.size(); ++i)
     for (std::size_t c = 0; c < t.columns.count(); ++c)
       for (int e = 0; e < 3; ++e)
-        ASSERT_NEAR(t.unit * t.light(i, c)[e], before.light(i, c)[e],
-                    0x1p-11 * std::abs(before.light(i, c)[e]) + kWhite * 0x1p-24);
+        for (const bool bounced : {false, true}) {
+          const double kept = before.light(i, c, bounced)[e] - (bounced ? before.light(i, c, false)[e] : 0),
+                       found = t.unit * (t.light(i, c, bounced)[e] - (bounced ? t.light(i, c, false)[e] : 0));
+          ASSERT_NEAR(found, kept, 0x1p-11 * std::abs(kept) + kWhite * 0x1p-24);
+        }
   // Shaded by the kernel, in the paints that were worn, by the product of colored light, and in paints that change
   // with the view; against sums in doubles.
   std::mt19937_64 random(8);
