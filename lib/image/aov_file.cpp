@@ -150,9 +150,11 @@ std::optional<std::vector<std::string>> left_out(const ImagePart& picture) {
   return file.left_out;
 }
 
-Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::string>& channels) {
-  GONIO_ASSIGN(auto read, read_exr(path, {.part = {}, .channels = channels}));
-  const Attributes& attributes = read.front().attributes;
+namespace {
+
+// The file by its first part, whose picture it takes.
+Result<AovFile> file_of(const std::string& path, ImagePart& first) {
+  const Attributes& attributes = first.attributes;
   const auto text = [&](const char* name) { return attribute_or<std::string>(attributes, name, ""); };
   AovFile file;
   file.path = path == "-" ? "standard input" : path;
@@ -183,11 +185,28 @@ Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::st
     if (number.is_number_integer()) file.trim.push_back(number.get<int>());
   take_plan(text("goniochrome:plan"), file);
   file.transport = text("goniochrome:transport");
-  file.image = std::move(read.front().image);
+  file.image = std::move(first.image);
   GONIO_TRY(check_rays(file));
-  if (!file.transport.empty())
-    file.layers.assign(std::make_move_iterator(read.begin() + 1), std::make_move_iterator(read.end()));
   return file;
+}
+
+}  // namespace
+
+Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::string>& channels,
+                              const TakeLayer& take) {
+  std::optional<AovFile> file;
+  const auto visit = [&](ImagePart& part) -> Result<void> {
+    if (!file) {
+      GONIO_ASSIGN(file, file_of(path, part));
+      return {};
+    }
+    if (file->transport.empty()) return {};
+    if (take) return take(*file, part);
+    file->layers.push_back(std::move(part));
+    return {};
+  };
+  GONIO_TRY(visit_exr(path, {.part = {}, .channels = channels}, visit));
+  return *std::move(file);
 }
 
 }  // namespace goniochrome::image

@@ -2,6 +2,7 @@
 // angles, parts), and what the header tells of camera, lights and effects. goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -65,7 +66,10 @@ bool is_drawn(const ImagePart& picture, const std::string& effect);
 std::optional<std::vector<std::string>> left_out(const ImagePart& picture);
 
 // The file, or of its picture and buffers only the channels named, in that order and as far as it has them. Error: it
-// is not an EXR file, or its header is not one that render-osmesa writes.
-Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::string>& channels = {});
+// is not an EXR file, or its header is not one that render-osmesa writes. With `take`, AovFile::layers stays empty: the
+// parts of a transport are handed over one by one, as visit_exr() does.
+using TakeLayer = std::function<Result<void>(const AovFile& file, const ImagePart& layer)>;
+Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::string>& channels = {},
+                              const TakeLayer& take = {});
 
 }  // namespace goniochrome::image

@@ -192,8 +192,10 @@ Result<void> read_pixels(Imf::MultiPartInputFile& file, int index, const std::st
   return {};
 }
 
+// `room` may have memory for the pixels.
 Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const std::string& file_name,
-                               std::size_t file_bytes, const ExrWanted& wanted, bool as_picture = false) {
+                               std::size_t file_bytes, const ExrWanted& wanted, bool as_picture = false,
+                               std::vector<float> room = {}) {
   const Imf::Header& header = file.header(index);
   ImagePart part;
   if (header.hasName()) part.name = header.name();
@@ -221,6 +223,7 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
   if (samples > kMostSamples || samples / most_samples_a_byte(header.compression()) > file_bytes)
     return input_error("{}: {} x {} pixels are too many for a file of {} bytes", where, image.width, image.height,
                        file_bytes);
+  image.data = std::move(room);
   resize_on_large_pages(image.data, samples);
 
   part.type = PixelType::kHalf;
@@ -256,16 +259,35 @@ auto opened(const std::string& content, const std::string& name, Read&& read)
 
 }  // namespace
 
+namespace {
+
+Result<void> visit_parts(const std::string& content, const std::string& name, const ExrWanted& wanted,
+                         const ExrVisit& visit) {
+  return opened(content, name, [&](Imf::MultiPartInputFile& file) -> Result<void> {
+    std::vector<float> room;
+    for (int i = 0; i < file.parts(); ++i) {
+      GONIO_ASSIGN(auto part, decoded_part(file, i, name, content.size(), wanted, false, std::move(room)));
+      GONIO_TRY(visit(part));
+      room = std::move(part.image.data);
+    }
+    return {};
+  });
+}
+
+ExrVisit keeping(std::vector<ImagePart>& parts) {
+  return [&parts](ImagePart& part) -> Result<void> {
+    parts.push_back(std::move(part));
+    return {};
+  };
+}
+
+}  // namespace
+
 Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name,
                                            const ExrWanted& wanted) {
-  return opened(content, name, [&](Imf::MultiPartInputFile& file) -> Result<std::vector<ImagePart>> {
-    std::vector<ImagePart> parts;
-    for (int i = 0; i < file.parts(); ++i) {
-      GONIO_ASSIGN(auto part, decoded_part(file, i, name, content.size(), wanted));
-      parts.push_back(std::move(part));
-    }
-    return parts;
-  });
+  std::vector<ImagePart> parts;
+  GONIO_TRY(visit_parts(content, name, wanted, keeping(parts)));
+  return parts;
 }
 
 Result<ImagePart> decoded_exr_picture(const std::string& content, const std::string& name, const std::string& layer) {
@@ -292,10 +314,16 @@ Result<std::vector<ImagePart>> read_exr(const std::string& path) {
 }
 
 Result<std::vector<ImagePart>> read_exr(const std::string& path, const ExrWanted& wanted) {
+  std::vector<ImagePart> parts;
+  GONIO_TRY(visit_exr(path, wanted, keeping(parts)));
+  return parts;
+}
+
+Result<void> visit_exr(const std::string& path, const ExrWanted& wanted, const ExrVisit& visit) {
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
   GONIO_ASSIGN(const std::string content, input.rest(std::string::npos));
   if (content.empty()) return input_error("{}: is empty: name an EXR file", input.name());
-  return decoded_exr(content, input.name(), wanted);
+  return visit_parts(content, input.name(), wanted, visit);
 }
 
 namespace {

@@ -23,6 +23,11 @@ Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std
                                            const ExrWanted& wanted = {});
 Result<std::vector<ImagePart>> read_exr(const std::string& path, const ExrWanted& wanted);
 
+// Hands the parts over one by one, in their order. What `visit` leaves of a part's pixels is room for those of the
+// next: memory that is new costs more than decoding does. An error of `visit` ends it.
+using ExrVisit = std::function<Result<void>(ImagePart& part)>;
+Result<void> visit_exr(const std::string& path, const ExrWanted& wanted, const ExrVisit& visit);
+
 // The picture of an EXR file: its colors, with alpha where there is one, in its display window. `layer` names them, or
 // is empty for the only ones or those without a layer.
 Result<ImagePart> decoded_exr_picture(const std::string& content, const std::string& name, const std::string& layer);

@@ -133,13 +133,16 @@ Result<void> check_samples(const Options& options, const Request& request, const
 
 // The buffers of --gbuffer, and a mesh that has their parts.
 Result<void> set_gbuffer(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
+  render::TransportReader reader;
+  const auto take = [&](const image::AovFile& file, const image::ImagePart& layer) { return reader.add(file, layer); };
   GONIO_ASSIGN(image::AovFile buffers,
-               image::read_aov_file(options.gbuffer, {"normal.X", "normal.Y", "normal.Z", "part"}));
+               image::read_aov_file(options.gbuffer, {"normal.X", "normal.Y", "normal.Z", "part"}, take));
+  GONIO_ASSIGN(auto light, reader.finish(buffers));
   GONIO_ASSIGN(render::Gbuffer gbuffer, render::gbuffer_of(buffers));
   stage.gbuffer = std::make_shared<const render::Gbuffer>(std::move(gbuffer));
   for (std::size_t i = 0; i < buffers.parts.size(); ++i)
     stage.mesh.parts.push_back({buffers.parts[i], buffers.materials[i], 0, 0});
-  GONIO_ASSIGN(stage.transport, kept_transport(std::move(buffers), options, request.lights, session));
+  stage.transport = kept_transport(std::move(light), std::move(buffers), options, request.lights, session);
   // A floor keeps the paint that it wore.
   if (stage.transport && stage.transport->light.worn.has_floor) stage.mesh.parts.pop_back();
   if (!stage.transport && options.env.empty() && request.lights.empty())

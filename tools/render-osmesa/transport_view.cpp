@@ -82,8 +82,8 @@ void report_traced(const render::TracedLobes& traced, const render::TransportPar
                   traced.transport.places.size(), traced.transport.columns.count(), traced.error_p95_de00,
                   traced.noise_p95_de00, traced.samples_mean, traced.time_s, per_point, file.float_parts));
   if (!traced.reached)
-    session.warn(fmt::format("the error of the transport is {:.2f} dE00, above --tolerance {}: {}", traced.error_p95_de00,
-                             shortest(session.common().tolerance),
+    session.warn(fmt::format("the error of the transport is {:.2f} dE00, above --tolerance {}: {}",
+                             traced.error_p95_de00, shortest(session.common().tolerance),
                              session.common().time_limit_s > 0
                                  ? "give more --time-limit"
                                  : "some points have as many samples as one can have: give a larger --tolerance"));
@@ -174,20 +174,20 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
   return view;
 }
 
-Result<std::optional<KeptTransport>> kept_transport(image::AovFile file, const Options& options,
-                                                    const std::vector<render::Light>& lights, cli::Session& session) {
-  GONIO_ASSIGN(auto light, render::transport_of(file));
-  if (!light) return std::optional<KeptTransport>();
+std::optional<KeptTransport> kept_transport(std::optional<render::LobeTransport> light, image::AovFile file,
+                                            const Options& options, const std::vector<render::Light>& lights,
+                                            cli::Session& session) {
+  if (!light) return std::nullopt;
   if ((!options.env.empty() && options.env != file.environment) ||
       (!lights.empty() && !same_light(file.lights, lights))) {
     session.warn(
         fmt::format("{} holds the light of {} and {} lights, and the command line has other light: the "
                     "picture has no shadows: leave out --env and --light, or trace the transport again",
                     file.path, file.environment.empty() ? "no environment" : file.environment, file.lights.size()));
-    return std::optional<KeptTransport>();
+    return std::nullopt;
   }
-  file.image = {}, file.layers.clear();
-  return std::optional(KeptTransport{*std::move(light), std::move(file)});
+  file.image = {};
+  return KeptTransport{*std::move(light), std::move(file)};
 }
 
 ViewShader::ViewShader(const KeptTransport& kept, const render::Gbuffer& gbuffer, const render::Scene& scene)

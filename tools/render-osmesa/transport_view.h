@@ -38,9 +38,10 @@ struct KeptTransport {
   render::LobeTransport light;
   image::AovFile file;  // without its pictures
 };
-// Nothing where the file has none, or where the command line has other light, which is told.
-Result<std::optional<KeptTransport>> kept_transport(image::AovFile file, const Options& options,
-                                                    const std::vector<render::Light>& lights, cli::Session& session);
+// Nothing where there is no light, or where the command line has other light than the file, which is told.
+std::optional<KeptTransport> kept_transport(std::optional<render::LobeTransport> light, image::AovFile file,
+                                            const Options& options, const std::vector<render::Light>& lights,
+                                            cli::Session& session);
 
 // The results of shading a view in some paints.
 struct ShadedPaint {

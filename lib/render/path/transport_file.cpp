@@ -3,10 +3,13 @@
 #include <Imath/half.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <map>
 
 #include "base/angles.h"
 #include "base/json.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "render/internal/seen.h"
 
@@ -17,6 +20,7 @@ namespace {
 // Version 2 has the coats of the parts. In a file of version 1 no part has one.
 constexpr int kVersion = 2, kVersionWithoutCoats = 1;
 const char* const kColorSpace = "lin_rec2020_scene";
+const char* const kProbesName = "bounced-probes";
 const char* const kRemedy = "render it again with --aov transport";
 const char* const kKindNames[PaintGroups::kKinds] = {"base", "gloss", "deeper"};
 
@@ -121,7 +125,7 @@ image::ImagePart class_part(const LobeTransport& t, int group, TransportParts& a
 // Probe by probe a row: once, then deeper.
 image::ImagePart probe_part(const LobeTransport& t) {
   const std::size_t floats = t.probes.front().once.size();
-  image::ImagePart part{"bounced-probes",
+  image::ImagePart part{kProbesName,
                         {static_cast<int>(2 * floats), static_cast<int>(t.probes.size()), 1, {}, {"Y"}},
                         {},
                         image::PixelType::kFloat};
@@ -133,17 +137,26 @@ image::ImagePart probe_part(const LobeTransport& t) {
   return part;
 }
 
-class Reader {
- public:
-  explicit Reader(const image::AovFile& file) : file_(file) {}
+}  // namespace
 
-  Result<LobeTransport> read(const std::string& text) {
-    GONIO_TRY(read_header(text));
-    t_.width = file_.image.width, t_.height = file_.image.height;
-    GONIO_ASSIGN(const int part_channel, file_.channel("part"));
+struct TransportReader::State {
+  // Where the channels of a part go: from `first` of `stride` of each point.
+  struct Target {
+    int channels = 0;
+    std::size_t first = 0, stride = 0;
+    std::vector<float>* to = nullptr;
+    bool found = false;
+  };
+
+  Result<void> begin(const image::AovFile& file) {
+    file_ = &file;
+    if (!targets_.empty()) return {};
+    GONIO_TRY(read_header(file.transport));
+    t_.width = file.image.width, t_.height = file.image.height;
+    GONIO_ASSIGN(const int part_channel, file.channel("part"));
     for (int y = 0; y < t_.height; ++y) {
       for (int x = 0; x < t_.width; ++x) {
-        const float part = file_.image.pixel(x, y)[part_channel];
+        const float part = file.image.pixel(x, y)[part_channel];
         if (part == 0) continue;
         t_.places.push_back(static_cast<std::uint32_t>(y * t_.width + x));
         t_.part.push_back(static_cast<int>(part) - 1);
@@ -152,23 +165,33 @@ class Reader {
                                    t_.worn.groups.of_part.size()));
       }
     }
-    for (const bool bounced : {false, true}) {
-      std::vector<float>& light = bounced ? t_.bounced : t_.direct;
-      light.assign(t_.places.size() * t_.floats(), 0);
+    const std::size_t points = t_.places.size(), classes = t_.worn.groups.classes();
+    t_.direct.assign(points * t_.floats(), 0), t_.bounced.assign(points * t_.floats(), 0);
+    t_.classes.assign(points * classes * 3, 0);
+    for (const bool bounced : {false, true})
       for (std::size_t k = 0; k < t_.columns.count() && (!bounced || t_.bounces > 0); ++k)
-        GONIO_TRY(read_light(part_name(t_.columns, k, bounced), 3, 3 * k, t_.floats(), light));
-    }
-    const std::size_t classes = t_.worn.groups.classes();
-    t_.classes.assign(t_.places.size() * classes * 3, 0);
+        targets_[part_name(t_.columns, k, bounced)] = {3, 3 * k, t_.floats(), bounced ? &t_.bounced : &t_.direct};
     for (int group = 0; group < t_.worn.groups.count && t_.bounces > 0; ++group)
-      GONIO_TRY(read_light(class_name(group), 9, 9 * static_cast<std::size_t>(group), 3 * classes, t_.classes));
-    GONIO_TRY(read_probes());
+      targets_[class_name(group)] = {9, 9 * static_cast<std::size_t>(group), 3 * classes, &t_.classes};
+    return {};
+  }
+
+  Result<void> add(const image::ImagePart& part) {
+    if (part.name == kProbesName) return read_probes(part);
+    const auto target = targets_.find(part.name);
+    return target != targets_.end() ? read_light(part, target->second) : Result<void>{};
+  }
+
+  Result<LobeTransport> finish() {
+    for (const auto& [name, target] : targets_)
+      if (!target.found) return wrong(fmt::format("it lacks the part {}", name));
+    if (t_.probes.size() != probe_places_.size()) return wrong(fmt::format("it lacks the part {}", kProbesName));
     return std::move(t_);
   }
 
  private:
   Error wrong(const std::string& what) const {
-    return input_error("{}: its transport is damaged: {}: {}", file_.path, what, kRemedy);
+    return input_error("{}: its transport is damaged: {}: {}", file_->path, what, kRemedy);
   }
 
   Result<void> read_header(const std::string& text) {
@@ -177,7 +200,7 @@ class Reader {
     try {
       const int version = header.at("version").get<int>();
       if (version != kVersion && version != kVersionWithoutCoats)
-        return input_error("{}: its transport is of version {}, and this program reads {} and {}: {}", file_.path,
+        return input_error("{}: its transport is of version {}, and this program reads {} and {}: {}", file_->path,
                            version, kVersionWithoutCoats, kVersion, kRemedy);
       t_.columns.exponents = header.at("exponents").get<std::vector<double>>();
       t_.bounces = header.at("bounces").get<int>();
@@ -227,54 +250,51 @@ class Reader {
     return t_.worn.weights[static_cast<std::size_t>(group)] == laid;
   }
 
-  const image::ImagePart* find(const std::string& name) const {
-    const auto found = std::ranges::find(file_.layers, name, &image::ImagePart::name);
-    return found == file_.layers.end() ? nullptr : &*found;
-  }
-
-  // Some channels of each point, from `first` of `stride`.
-  Result<void> read_light(const std::string& name, int channels, std::size_t first, std::size_t stride,
-                          std::vector<float>& to) const {
-    const image::ImagePart* part = find(name);
-    if (part == nullptr) return wrong(fmt::format("it lacks the part {}", name));
-    if (part->image.width != t_.width || part->image.height != t_.height || part->image.channels != channels)
-      return wrong(fmt::format("its part {} has {} x {} pixels of {} channels, and the picture has {} x {} of {}", name,
-                               part->image.width, part->image.height, part->image.channels, t_.width, t_.height,
-                               channels));
-    if (const std::string id = image::text_attribute(*part, "colorInteropID"); !id.empty() && id != kColorSpace)
-      return wrong(fmt::format("colorInteropID of its part {} is \"{}\", not \"{}\"", name, id, kColorSpace));
-    std::vector<std::size_t> from(static_cast<std::size_t>(channels));
-    for (std::size_t c = 0; c < from.size(); ++c) {
+  Result<void> read_light(const image::ImagePart& part, Target& target) const {
+    const image::Image& image = part.image;
+    if (image.width != t_.width || image.height != t_.height || image.channels != target.channels)
+      return wrong(fmt::format("its part {} has {} x {} pixels of {} channels, and the picture has {} x {} of {}",
+                               part.name, image.width, image.height, image.channels, t_.width, t_.height,
+                               target.channels));
+    if (const std::string id = image::text_attribute(part, "colorInteropID"); !id.empty() && id != kColorSpace)
+      return wrong(fmt::format("colorInteropID of its part {} is \"{}\", not \"{}\"", part.name, id, kColorSpace));
+    const auto channels = static_cast<std::size_t>(target.channels);
+    std::vector<std::size_t> from(channels);
+    for (std::size_t c = 0; c < channels; ++c) {
       const std::string color(1, "RGB"[c % 3]), wanted = channels == 3 ? color : kKindNames[c / 3] + ("." + color);
-      const auto found = std::ranges::find(part->image.channel_names, wanted);
-      if (found == part->image.channel_names.end())
-        return wrong(fmt::format("its part {} lacks the channel {}", name, wanted));
-      from[c] = static_cast<std::size_t>(found - part->image.channel_names.begin());
+      const auto found = std::ranges::find(image.channel_names, wanted);
+      if (found == image.channel_names.end())
+        return wrong(fmt::format("its part {} lacks the channel {}", part.name, wanted));
+      from[c] = static_cast<std::size_t>(found - image.channel_names.begin());
     }
-    for (std::size_t i = 0; i < t_.places.size(); ++i) {
-      const float* pixel = &part->image.data[static_cast<std::size_t>(channels) * t_.places[i]];
-      for (std::size_t c = 0; c < from.size(); ++c) {
-        if (!std::isfinite(pixel[from[c]]))
-          return wrong(fmt::format("its part {} has a value at pixel {},{} that is not finite", name,
-                                   t_.places[i] % static_cast<std::uint32_t>(t_.width),
-                                   t_.places[i] / static_cast<std::uint32_t>(t_.width)));
-        to[i * stride + first + c] = pixel[from[c]];
+    std::atomic<std::size_t> worst = t_.places.size();  // a point with a value that is not finite
+    parallel_for(t_.places.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const float* pixel = &image.data[channels * t_.places[i]];
+        float* to = &(*target.to)[i * target.stride + target.first];
+        for (std::size_t c = 0; c < channels; ++c) {
+          const float value = pixel[from[c]];
+          if (!std::isfinite(value)) worst = i;
+          if (value != 0) to[c] = value;  // most of a floor's light is 0, and its memory need not be touched
+        }
       }
-    }
+    });
+    if (const std::size_t i = worst; i < t_.places.size())
+      return wrong(fmt::format("its part {} has a value at pixel {},{} that is not finite", part.name,
+                               t_.places[i] % static_cast<std::uint32_t>(t_.width),
+                               t_.places[i] / static_cast<std::uint32_t>(t_.width)));
+    target.found = true;
     return {};
   }
 
-  Result<void> read_probes() {
-    if (probe_places_.empty()) return {};
-    const image::ImagePart* part = find("bounced-probes");
+  Result<void> read_probes(const image::ImagePart& part) {
     const std::size_t floats =
         3 * static_cast<std::size_t>(t_.worn.groups.count) * t_.columns.count() * t_.columns.count();
-    if (part == nullptr) return wrong("it lacks the part bounced-probes");
-    if (part->image.data.size() != 2 * floats * probe_places_.size() ||
+    if (part.image.data.size() != 2 * floats * probe_places_.size() ||
         t_.probed < static_cast<int>(probe_places_.size()))
-      return wrong(fmt::format("its part bounced-probes has {} values and not {}", part->image.data.size(),
+      return wrong(fmt::format("its part {} has {} values and not {}", kProbesName, part.image.data.size(),
                                2 * floats * probe_places_.size()));
-    const float* from = part->image.data.data();
+    const float* from = part.image.data.data();
     for (const std::uint32_t place : probe_places_) {
       const auto found = std::ranges::lower_bound(t_.places, place);
       if (found == t_.places.end() || *found != place) return wrong("a probe stands beside the mesh");
@@ -286,12 +306,27 @@ class Reader {
     return {};
   }
 
-  const image::AovFile& file_;
+  static constexpr std::size_t kPointsAtOnce = 8192;
+  const image::AovFile* file_ = nullptr;
   LobeTransport t_;
   std::vector<std::uint32_t> probe_places_;
+  std::map<std::string, Target> targets_;  // by the parts' names
 };
 
-}  // namespace
+TransportReader::TransportReader() : state_(std::make_unique<State>()) {}
+TransportReader::~TransportReader() = default;
+
+Result<void> TransportReader::add(const image::AovFile& file, const image::ImagePart& layer) {
+  GONIO_TRY(state_->begin(file));
+  return state_->add(layer);
+}
+
+Result<std::optional<LobeTransport>> TransportReader::finish(const image::AovFile& file) {
+  if (file.transport.empty()) return std::optional<LobeTransport>();
+  GONIO_TRY(state_->begin(file));
+  GONIO_ASSIGN(LobeTransport transport, state_->finish());
+  return std::optional<LobeTransport>(std::move(transport));
+}
 
 TransportParts transport_parts(const LobeTransport& t) {
   TransportParts all;
@@ -306,9 +341,9 @@ TransportParts transport_parts(const LobeTransport& t) {
 }
 
 Result<std::optional<LobeTransport>> transport_of(const image::AovFile& file) {
-  if (file.transport.empty()) return std::optional<LobeTransport>();
-  GONIO_ASSIGN(LobeTransport transport, Reader(file).read(file.transport));
-  return std::optional<LobeTransport>(std::move(transport));
+  TransportReader reader;
+  for (const image::ImagePart& layer : file.layers) GONIO_TRY(reader.add(file, layer));
+  return reader.finish(file);
 }
 
 }  // namespace goniochrome::render

@@ -1,6 +1,7 @@
 // Transports in the EXR of a picture, beside its buffers. goniochrome-paint(5), "TRANSPORTS".
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -26,7 +27,22 @@ inline constexpr const char* kTransportAttribute = "goniochrome:transport";
 // Light is kept relative to the diffuse white of the scene.
 TransportParts transport_parts(const LobeTransport& transport);
 
-// The transport of a file, or nothing where it has none. Error: the part or the number that is missing or wrong.
+// Reads the transport of a file part by part. Errors: the part or the number that is missing or wrong.
+class TransportReader {
+ public:
+  TransportReader();
+  ~TransportReader();
+  // The next part of the transport; the file has its picture, the buffer `part` and its header.
+  Result<void> add(const image::AovFile& file, const image::ImagePart& layer);
+  // The transport once all parts were added, or nothing where the file has none.
+  Result<std::optional<LobeTransport>> finish(const image::AovFile& file);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// The same of a file that was read with its layers.
 Result<std::optional<LobeTransport>> transport_of(const image::AovFile& file);
 
 }  // namespace goniochrome::render

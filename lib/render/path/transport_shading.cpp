@@ -16,6 +16,23 @@ namespace {
 
 constexpr std::size_t kBlocksAtOnce = 64;
 
+// The largest magnitude of each of `stride` values of a point.
+std::vector<float> largest_of(const std::vector<float>& values, std::size_t stride) {
+  constexpr std::size_t kPointsAtOnce = 8192;
+  if (stride == 0) return {};
+  const std::size_t points = values.size() / stride, chunks = (points + kPointsAtOnce - 1) / kPointsAtOnce;
+  std::vector<std::vector<float>> of_chunk(chunks, std::vector<float>(stride, 0));
+  parallel_for(points, kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<float>& largest = of_chunk[begin / kPointsAtOnce];
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t k = 0; k < stride; ++k) largest[k] = std::max(largest[k], std::abs(values[i * stride + k]));
+  });
+  std::vector<float> largest(stride, 0);
+  for (const std::vector<float>& chunk : of_chunk)
+    for (std::size_t k = 0; k < stride; ++k) largest[k] = std::max(largest[k], chunk[k]);
+  return largest;
+}
+
 // The power of two, 1 or less, that brings these values within the range of halves.
 float half_scale(float largest) {
   constexpr float kMostHalf = 65504;
@@ -74,18 +91,15 @@ void TransportShader::State::gather(const LobeTransport& t) {
 }
 
 void TransportShader::State::lay_out(const LobeTransport& t) {
-  scales.assign(columns, HUGE_VALF);
+  scales.assign(columns, 1);
   for (const std::vector<float>* light : {&t.direct, &t.bounced}) {
-    std::vector<float> largest(columns, 0);
-    for (std::size_t i = 0; i < light->size(); ++i) {
-      float& of_column = largest[i % t.floats() / 3];
-      of_column = std::max(of_column, std::abs((*light)[i]));
-    }
-    for (std::size_t k = 0; k < columns; ++k) scales[k] = std::min(scales[k], half_scale(largest[k]));
+    const std::vector<float> largest = largest_of(*light, t.floats());
+    for (std::size_t k = 0; k < columns; ++k)
+      scales[k] = std::min(scales[k], half_scale(*std::max_element(&largest[3 * k], &largest[3 * k] + 3)));
   }
   // Classes are factors of a mean, which no common scale changes.
-  float largest_class = 0;
-  for (const float value : t.classes) largest_class = std::max(largest_class, std::abs(value));
+  const std::vector<float> of_classes_largest = largest_of(t.classes, 3 * classes);
+  const float largest_class = of_classes_largest.empty() ? 0 : *std::ranges::max_element(of_classes_largest);
   const std::vector<float> of_class(classes, half_scale(largest_class));
   std::size_t bounced_blocks = 0;
   for (const Block& block : blocks) bounced_blocks += block.is_bounced ? 1 : 0;
