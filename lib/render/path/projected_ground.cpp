@@ -51,20 +51,15 @@ std::size_t place_of(const envmap::Environment& environment, int column, int row
          static_cast<std::size_t>(column);
 }
 
+}  // namespace
+
 // Calls visit(column, row, upward_weight()) for the texels that reach above the horizon.
 template <class Visit>
-void for_upper_texels(const envmap::Environment& environment, const Visit& visit) {
-  const bool rows_agree = environment.layout() == envmap::Environment::Layout::kLatLong;
-  for (int row = 0; row < environment.height(); ++row) {
-    double weight = 0;
-    for (int column = 0; column < environment.width(); ++column) {
-      if (column == 0 || !rows_agree) weight = upward_weight(environment, column, row);
-      if (weight > 0) visit(column, row, weight);
-    }
-  }
+void ProjectedGround::for_upper_texels(const Visit& visit) const {
+  for (int row = 0; row < environment_->height(); ++row)
+    for (int column = 0; column < environment_->width(); ++column)
+      if (const double weight = upward_[place_of(*environment_, column, row)]; weight > 0) visit(column, row, weight);
 }
-
-}  // namespace
 
 Result<ProjectedGround> ProjectedGround::create(const Ground& ground, const envmap::Environment& environment,
                                                 const std::vector<Light>& lights) {
@@ -75,10 +70,15 @@ Result<ProjectedGround> ProjectedGround::create(const Ground& ground, const envm
   ProjectedGround result;
   result.environment_ = &environment;
   result.eye_ = ground.probe_eye;
+  const bool rows_agree = environment.layout() == envmap::Environment::Layout::kLatLong;
+  result.upward_.reserve(environment.values().size() / 3);
+  for (int row = 0; row < environment.height(); ++row)
+    for (int column = 0; column < environment.width(); ++column)
+      result.upward_.push_back(column > 0 && rows_agree ? result.upward_.back()
+                                                        : upward_weight(environment, column, row));
   // Each texel is a constant patch.
-  for_upper_texels(environment, [&](int column, int row, double weight) {
-    result.soft_irradiance_ += weight * texel(environment, column, row);
-  });
+  result.for_upper_texels(
+      [&](int column, int row, double weight) { result.soft_irradiance_ += weight * texel(environment, column, row); });
   result.irradiance_ = result.soft_irradiance_;
   for (const Light& light : lights)
     result.irradiance_ += (kPi * brdf::disc_irradiance(light.direction.y, light.radius_rad)) * light.white;
@@ -94,7 +94,7 @@ void ProjectedGround::find_bright() {
   std::vector<bool> bright(static_cast<std::size_t>(environment.width()) *
                            static_cast<std::size_t>(environment.height()));
   color::Rgb sum;
-  for_upper_texels(environment, [&](int column, int row, double weight) {
+  for_upper_texels([&](int column, int row, double weight) {
     const color::Rgb light = texel(environment, column, row);
     if (gray_of(light) <= kTimes * mean) return;
     bright[place_of(environment, column, row)] = true;
@@ -113,7 +113,7 @@ std::vector<ProjectedGround::SharedRay> ProjectedGround::shared_rays(std::uint32
   for (int row = 0; row < environment_->height(); ++row)
     for (int column = 0; column < environment_->width(); ++column)
       factors[place_of(*environment_, column, row)] = {column, row, 0};
-  for_upper_texels(*environment_, [&](int column, int row, double weight) {
+  for_upper_texels([&](int column, int row, double weight) {
     const std::size_t at = place_of(*environment_, column, row);
     if (bright == (has_bright() && bright_[at])) factors[at].factor = weight / environment_->solid_angle(column, row);
   });

@@ -45,6 +45,8 @@ class ProjectedGround {
   std::vector<SharedRay> bright_rays(std::uint32_t count) const { return shared_rays(count, true); }
 
  private:
+  template <class Visit>
+  void for_upper_texels(const Visit& visit) const;
   void find_bright();
   std::vector<SharedRay> shared_rays(std::uint32_t count, bool bright) const;
 
@@ -52,6 +54,7 @@ class ProjectedGround {
   Vec3 eye_;
   color::Rgb irradiance_;
   color::Rgb bright_irradiance_, soft_irradiance_;  // of the environment
+  std::vector<double> upward_;                      // of texels, as upward_weight() has them
   std::vector<bool> bright_;                        // texel by texel; empty where there are none
 };
 
