@@ -73,8 +73,8 @@ void add_light(cli::ToolSpec& spec, Options& o) {
           "Its parts are:\n- WHERE: AZIMUTH,ELEVATION or X,Y,Z toward a lamp far away, or place:X,Y,Z in units of the "
           "mesh.\n- LIGHT: R,G,B or a name as in --spectral, the radiance of a white diffuser that faces the lamp "
           "[1,1,1].\n- EXTENT: the angle of its disc, from 0, a point, to 180 [0.53]. It does not change the light.\nA "
-          "lamp at a place has that extent and light in the middle of the mesh, and takes the engine path; cpu and gl "
-          "draw it as a point alone.");
+          "lamp at a place has that extent and light in the middle of the mesh, and takes the engine path; cpu draws "
+          "it as a point alone.");
   spec.option("emit", "PART=LIGHT", "Lamp=20,18,15", &o.emissions, "make a part or material shine by itself")
       .more(
           "LIGHT is the radiance of both sides of the part: R,G,B, or a name and a factor, as A*20. It takes the "
@@ -170,8 +170,9 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
           "auto takes cpu, or path where the scene needs it. Rays add what the mesh does to light to pictures of all "
           "but path." +
           engine_items() +
-          "\n- gpu is gl on the first GPU with OpenGL 3.3.\nPictures of cpu and gl are the same; they differ from the "
-          "truth by 0.2 to 0.5 dE00 in the mean. integral takes several hundred times as long. It and path draw rough "
+          "\n- gpu is gl on the first GPU with OpenGL 3.3.\nPictures of cpu and gl are the same, where gl draws "
+          "the scene: it has no tilted lobes, panes, and lamps at a place. They differ from the truth by 0.2 to 0.5 "
+          "dE00 in the mean. integral takes several hundred times as long. It and path draw rough "
           "coats as facets, and the others lobes that stand for them.");
   spec.flag("print-shader", &o.print_shader, "print the OpenGL program of the scene on standard output")
       .more("Comments before it name what it does not show.");
