@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "display/display.h"
 #include "image/frames.h"
-#include "image/shrink.h"
+#include "paint_views.h"
 #include "picture_file.h"
 #include "plan_text.h"
 #include "render/aov.h"
@@ -250,28 +250,37 @@ Result<void> Shooting::write_frame(const std::string& content) {
 
 // Other paints in the light that was traced; nothing is planned, since all is there.
 Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Display>& display) {
-  const KeptTransport& kept = *stage_.transport;
-  image::Image points;
-  GONIO_ASSIGN(const ShadedPaint shaded,
-               shaded_view(kept, *stage_.gbuffer, stage_.dresses.front(), stage_.scene, points, session_));
-  image::shrink(points, request_.points_across(), frame_.picture);
+  TransportViews views(options_, request_, stage_, session_);
+  GONIO_ASSIGN(const ShadedPaint shaded, views.show(stage_.dresses.front(), frame_.picture));
+  const double tolerance = session_.common().tolerance;
+  if (!shaded.scaled) {
+    session_.say("bounced light is that of these paints");
+  } else if (shaded.bounced_de00_p95 <= tolerance) {
+    session_.say(fmt::format("bounced light was traced in other paints and scaled to these: off by {:.2f} dE00 (p95)",
+                             shaded.bounced_de00_p95));
+  } else {
+    session_.warn(fmt::format(
+        "bounced light was traced in other paints; scaled to these it is off by {:.2f} dE00 (p95), above --tolerance "
+        "{}: trace again with --aov transport in these paints",
+        shaded.bounced_de00_p95, tolerance));
+  }
   frame_.gbuffer = stage_.gbuffer;
-  white_ = {kept.file.white_luminance, {0, 1, 0}};
-  plan_.engine = "transport", plan_.engine_reason = options_.gbuffer + " holds the light by lobes";
+  white_ = {views.white_luminance, {0, 1, 0}};
+  plan_ = *views.plan;
   stage_.scene.lights.clear();
-  for (const image::AovLight& light : kept.file.lights) stage_.scene.lights.push_back(render::light_of(light));
-  automatic_stops_ = kept.file.automatic_stops;
-  const double stops = request_.stops.value_or(request_.png ? automatic_stops_ : 0);
-  GONIO_TRY(write({{}, {}, options_.output}, display, stops));
+  for (const image::AovLight& light : stage_.transport->file.lights)
+    stage_.scene.lights.push_back(render::light_of(light));
+  automatic_stops_ = views.automatic_stops;
+  GONIO_TRY(write({{}, {}, options_.output}, display, views.stops));
   Json& results = session_.results();
   results["engine"] = plan_.engine, results["engine_reason"] = plan_.engine_reason;
   results["gbuffer_ms"] = 0, results["frame_ms"] = shaded.frame_ms, results["frames"] = 1;
-  results["exposure_stops"] = stops, results["white_luminance"] = json_number(white_.luminance);
+  results["exposure_stops"] = views.stops, results["white_luminance"] = json_number(white_.luminance);
   session_.say(fmt::format("{}: {} x {}, shaded in {:.1f} ms from the light of {}, exposure {:+.2f}{}",
                            options_.output == "-" ? "standard output" : options_.output, request_.size.width,
-                           request_.size.height, shaded.frame_ms, options_.gbuffer, stops,
+                           request_.size.height, shaded.frame_ms, options_.gbuffer, views.stops,
                            display ? ", " + display->name() : ""));
-  return shaded.bounced_de00_p95 > session_.common().tolerance ? cli::Verdict::kNegative : cli::Verdict::kDone;
+  return shaded.bounced_de00_p95 > tolerance ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }
 
 // Says a line, which --quiet keeps where it explains an exit status.

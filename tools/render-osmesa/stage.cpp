@@ -139,7 +139,7 @@ Result<void> set_gbuffer(const Options& options, const Request& request, Stage& 
   stage.gbuffer = std::make_shared<const render::Gbuffer>(std::move(gbuffer));
   for (std::size_t i = 0; i < buffers.parts.size(); ++i)
     stage.mesh.parts.push_back({buffers.parts[i], buffers.materials[i], 0, 0});
-  GONIO_ASSIGN(stage.transport, kept_transport(std::move(buffers), options, request.lights, session));
+  GONIO_ASSIGN(stage.transport, kept_transport(std::move(buffers), options, request, session));
   // A floor keeps the paint that it wore.
   if (stage.transport && stage.transport->light.worn.has_floor) stage.mesh.parts.pop_back();
   if (!stage.transport && options.env.empty() && request.lights.empty())
