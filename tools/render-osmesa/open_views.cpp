@@ -37,7 +37,7 @@ class OpenViews : public PaintViews {
         stage_(stage),
         others_(std::move(others)),
         wardrobe_(stage.dresses.front()) {
-    stops = others_->stops, automatic_stops = others_->automatic_stops, white_luminance = others_->white_luminance;
+    exposure = others_->exposure;
     render::Plan looked_up;
     looked_up.engine = "cpu", looked_up.engine_reason = "the light of each lobe is looked up once for all paints";
     plan = std::make_shared<render::Plan>(std::move(looked_up));

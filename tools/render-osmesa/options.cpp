@@ -170,9 +170,8 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
           "auto takes cpu, or path where the scene needs it. Rays add what the mesh does to light to pictures of all "
           "but path." +
           engine_items() +
-          "\n- gpu is gl on the first GPU with OpenGL 3.3.\nPictures of cpu and gl are the same, where gl draws "
-          "the scene: it has no tilted lobes, panes, and lamps at a place. They differ from the truth by 0.2 to 0.5 "
-          "dE00 in the mean. integral takes several hundred times as long. It and path draw rough "
+          "\n- gpu is gl on the first GPU with OpenGL 3.3.\nPictures of cpu and gl are the same; they differ from the "
+          "truth by 0.2 to 0.5 dE00 in the mean. integral takes several hundred times as long. It and path draw rough "
           "coats as facets, and the others lobes that stand for them.");
   spec.flag("print-shader", &o.print_shader, "print the OpenGL program of the scene on standard output")
       .more("Comments before it name what it does not show.");

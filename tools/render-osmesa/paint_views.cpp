@@ -1,6 +1,5 @@
 #include "paint_views.h"
 
-#include <cmath>
 #include <utility>
 
 #include "image/shrink.h"
@@ -8,7 +7,6 @@
 #include "render/aov.h"
 #include "render/effect_union.h"
 #include "render/scene_effects.h"
-#include "sight.h"
 #include "stream.h"
 
 namespace goniochrome::tool {
@@ -33,9 +31,8 @@ TransportViews::TransportViews(const Options& options, const Request& request, S
       points_across_(request.points_across()),
       wardrobe_(stage.dresses.front()),
       shader_(stage.transport->light, {stage.gbuffer.get()}, stage.scene) {
-  automatic_stops = stage.transport->file.automatic_stops;
-  stops = request.stops.value_or(request.png ? automatic_stops : 0);
-  white_luminance = stage.transport->file.white_luminance;
+  const double automatic = stage.transport->file.automatic_stops;
+  exposure = {{stage.transport->file.white_luminance, {0, 1, 0}}, request.stops_by(automatic), automatic};
   render::Plan kept;
   kept.engine = "transport", kept.engine_reason = options.gbuffer + " holds the light by lobes";
   plan = std::make_shared<render::Plan>(std::move(kept));
@@ -80,16 +77,7 @@ class EngineViews : public PaintViews {
     }
     GONIO_ASSIGN(auto seen, renderer_.look(stage_.mesh, view()));
     looks_ = {seen};
-    tell_visibility(*seen, stage_.mesh, session_);
-    tell_opengl(renderer_, session_);
-    const render::DiffuseWhite white = render::diffuse_white(stage_.scene.env, stage_.scene.lights);
-    white_luminance = white.luminance;
-    request_.plan.white_luminance = white.luminance;
-    request_.plan.tolerance_de00 = session_.common().tolerance;
-    const Vec3 to_camera = -seen->rays.direction(0.5 * seen->width, 0.5 * seen->height);
-    const double metered = render::metered_white(stage_.scene.env, stage_.scene.lights, to_camera);
-    automatic_stops = metered > 0 ? -std::log2(metered) : 0;
-    stops = request_.stops.value_or(request_.png ? automatic_stops : 0);
+    exposure = begin_sight(renderer_, *seen, stage_, request_, session_);
     return {};
   }
 

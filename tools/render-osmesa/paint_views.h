@@ -9,6 +9,7 @@
 #include "render/exact.h"
 #include "render/renderer.h"
 #include "request.h"
+#include "sight.h"
 #include "stage.h"
 #include "transport_view.h"
 
@@ -45,8 +46,7 @@ class PaintViews {
   virtual Result<void> draw(const SourcePaint& paint, PaintView& view) = 0;
 
   std::shared_ptr<const render::Plan> plan = std::make_shared<render::Plan>();  // of the picture that was drawn last
-  double stops = 0, automatic_stops = 0;                                        // exposure in force, and that of a PNG
-  double white_luminance = 0;
+  Exposure exposure;
   double gbuffer_ms = 0;
 };
 

@@ -171,6 +171,12 @@ Result<std::vector<Assignment>> assignments(const std::vector<std::string>& opti
 
 }  // namespace
 
+std::string first_names(std::vector<std::string> names) {
+  constexpr std::size_t kMost = 6;
+  if (names.size() > kMost) names.resize(kMost + 1), names.back() = "...";
+  return joined(names, ", ");
+}
+
 Result<std::vector<std::size_t>> parts_of(const mesh::Mesh& mesh, const std::string& word) {
   std::vector<std::size_t> named, made_of;
   for (std::size_t i = 0; i < mesh.parts.size(); ++i) {

@@ -42,6 +42,9 @@ struct DressedMesh {
   std::vector<std::string> unpainted;  // names of the parts that wear the gray of unpainted parts
 };
 
+// Six of the names at most: "a, b, ...".
+std::string first_names(std::vector<std::string> names);
+
 // Resolves --part and --paint. Finishes of --trim mirror where `with_mirrors`. Error: an unknown part, paint or file,
 // or a paint without lobes, with what there is.
 Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool with_mirrors);

@@ -87,13 +87,8 @@ void tell_parts(const mesh::Mesh& mesh, const DressedMesh& dress, bool streamed,
                     "PART=FILE,project=cylinder and the like choose",
                     part));
   if (dress.unpainted.empty() || streamed) return;
-  std::string names;
-  for (std::size_t i = 0; i < std::min<std::size_t>(6, dress.unpainted.size()); ++i) {
-    names += (i == 0 ? "" : ", ") + dress.unpainted[i];
-  }
-  session.warn(fmt::format("{} of {} parts have no paint and are matt gray: {}{}: give --paint or --part",
-                           dress.unpainted.size(), mesh.parts.size(), names,
-                           dress.unpainted.size() > 6 ? ", ..." : ""));
+  session.warn(fmt::format("{} of {} parts have no paint and are matt gray: {}: give --paint or --part",
+                           dress.unpainted.size(), mesh.parts.size(), first_names(dress.unpainted)));
 }
 
 Result<void> dress_stage(const Options& options, Stage& stage) {

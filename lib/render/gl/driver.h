@@ -40,7 +40,7 @@ using GlDriverPointer = std::shared_ptr<const GlDriver>;
 // with what to install.
 Result<GlDriverPointer> gl_driver(OpenGlBy by);
 
-// The same by EGL alone: on its first GPU, or by its software renderer.
+// A driver of EGL alone: on its first GPU, or by its software renderer. Error: as gl_driver().
 Result<GlDriverPointer> egl_driver(bool on_gpu);
 
 }  // namespace goniochrome::render

@@ -49,7 +49,7 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
     return usage_error(
         "the engine gl draws no tilted lobes, which stand for color maps and rough coats: take the engine cpu, or "
         "leave "
-        "them out by --effects auto,-tilts,-stretch");
+        "them out by --effects auto,-travel,-satin");
   std::string text = shading_fragment_shader(effects, scene.reflection);
   if (gl_->on_gpu()) text = with_exact_lookups(text);
   if (text != text_) {
@@ -81,17 +81,6 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
   return gl_->status("uploading the scene");
 }
 
-void GlEngine::upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts) {
-  const std::vector<float> texels = tilt_texels(tilts);
-  tilts_ = gl_->float_texture(static_cast<int>(texels.size() / (4 * tilts.size())), static_cast<int>(tilts.size()),
-                              texels.data());
-}
-
-void GlEngine::upload_discs() {
-  const FloatTexture discs = disc_texture(lights_, effects_);
-  discs_ = gl_->float_texture(discs.columns, discs.rows, discs.rgba.data());
-}
-
 void GlEngine::set_lamps() {
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     gl_->set(program_, fmt::format("light_direction[{}]", i), lights_[i].direction);
@@ -106,11 +95,18 @@ void GlEngine::load_paints(const Scene& scene) {
   weights_ = gl_->float_texture(2 * table.slots * table.segments, table.parts, table.rgba.data());
   gl_->DeleteTextures(1, &tilts_);
   tilts_ = 0;
-  if (effects_.anisotropy) upload_tilts(tilts_of(scene, effects_));
+  if (effects_.anisotropy) {
+    const std::vector<float> texels = tilt_texels(tilts_of(scene, effects_));
+    const auto rows = static_cast<int>(scene.paints.size());
+    tilts_ = gl_->float_texture(static_cast<int>(texels.size() / 4) / rows, rows, texels.data());
+  }
   lights_ = single_lights(scene, effects_);
   gl_->DeleteTextures(1, &discs_);
   discs_ = 0;
-  if (effects_.discs() && !lights_.empty()) upload_discs();
+  if (effects_.discs() && !lights_.empty()) {
+    const FloatTexture discs = disc_texture(lights_, effects_);
+    discs_ = gl_->float_texture(discs.columns, discs.rows, discs.rgba.data());
+  }
   background_color_ = scene.background_color;
 }
 

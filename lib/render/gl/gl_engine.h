@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "brdf/ward.h"
 #include "render/engine.h"
 #include "render/gl/gl.h"
 #include "render/internal/maps.h"
@@ -32,9 +31,7 @@ class GlEngine : public Engine {
 
  private:
   Result<void> resize(int width, int height);
-  void upload_discs();
   void set_lamps();
-  void upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts);
   void upload(const envmap::CubeMap& map, const std::string& sampler);
 
   const GlContext* gl_;
