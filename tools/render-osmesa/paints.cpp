@@ -319,10 +319,4 @@ Result<std::vector<color::Rgb>> emission_of(const mesh::Mesh& mesh, const std::v
   return all;
 }
 
-Result<DressedMesh> dressed_in(const mesh::Mesh& mesh, Options options, const std::string& paint) {
-  options.paint = paint;
-  const bool with_mirrors = !options.env.empty();
-  return dressed(mesh, options, with_mirrors);
-}
-
 }  // namespace goniochrome::tool

@@ -89,7 +89,4 @@ Result<std::vector<std::size_t>> parts_of(const mesh::Mesh& mesh, const std::str
 struct Emission;
 Result<std::vector<color::Rgb>> emission_of(const mesh::Mesh& mesh, const std::vector<Emission>& emissions);
 
-// The mesh with another paint in the place of --paint.
-Result<DressedMesh> dressed_in(const mesh::Mesh& mesh, Options options, const std::string& paint);
-
 }  // namespace goniochrome::tool

@@ -1,7 +1,6 @@
 #include "tool.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "base/file.h"

@@ -91,22 +91,19 @@ void tell_parts(const mesh::Mesh& mesh, const DressedMesh& dress, bool streamed,
                            dress.unpainted.size(), mesh.parts.size(), first_names(dress.unpainted)));
 }
 
-Result<void> dress_stage(const Options& options, Stage& stage) {
-  if (options.split.empty()) {
-    // A transport has the light that mirrors show of its own environment.
-    const bool with_mirrors = !options.env.empty() || (stage.transport && !stage.transport->file.environment.empty());
-    GONIO_ASSIGN(DressedMesh dress, dressed(stage.mesh, options, with_mirrors));
-    stage.dresses.push_back(std::move(dress));
-    return {};
-  }
+Result<void> dress_stage(Options options, Stage& stage) {
   std::vector<std::string> paints;
   for (const std::string& text : options.split) {
     for (const std::string_view paint : split(text, ',')) paints.emplace_back(trimmed(paint));
   }
-  if (paints.size() != 2)
+  if (!options.split.empty() && paints.size() != 2)
     return usage_error("--split names {} paints: write two, A.xml#NAME,B.xml#NAME", paints.size());
+  if (options.split.empty()) paints = {options.paint};
+  // A transport has the light that mirrors show of its own environment.
+  const bool with_mirrors = !options.env.empty() || (stage.transport && !stage.transport->file.environment.empty());
   for (const std::string& paint : paints) {
-    GONIO_ASSIGN(DressedMesh dress, dressed_in(stage.mesh, options, paint));
+    options.paint = paint;
+    GONIO_ASSIGN(DressedMesh dress, dressed(stage.mesh, options, with_mirrors));
     stage.dresses.push_back(std::move(dress));
   }
   return {};
