@@ -92,6 +92,7 @@ TEST(Furnace, NoPixelOfAnyPaintByAnyEngineIsBrighterThanTheSky) {
     const bool is_exact = engine->needs_texels || engine->needs_mesh;
     double most = 0;
     for (const Worn& worn : all_paints()) {
+      if (engine->needs_opengl && worn.map) continue;  // tilted lobes, which that engine refuses
       const double here = brightest(*engine, worn, sky);
       EXPECT_LE(here, 1 + (is_exact ? 5e-3 : 2e-3)) << engine->name << " " << worn.name;
       most = std::max(most, here);

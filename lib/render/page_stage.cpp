@@ -23,11 +23,11 @@ namespace {
 
 PageShading shading_programs(Effects effects, const color::ReflectionOperator& op) {
   PageShading programs;
-  programs.shading = for_opengl_es(shading_fragment_shader(effects, op, {}, true));
+  programs.shading = for_opengl_es(shading_fragment_shader(effects, op, true));
   programs.gathering = for_opengl_es(gathering_fragment_shader(effects, true));
   if (effects.single_lights() > 0) programs.sparkle = for_opengl_es(sparkle_fragment_shader(effects, op));
   effects.anisotropy = true;
-  programs.brushed_shading = for_opengl_es(shading_fragment_shader(effects, op, {}, true));
+  programs.brushed_shading = for_opengl_es(shading_fragment_shader(effects, op, true));
   programs.brushed_gathering = for_opengl_es(gathering_fragment_shader(effects, true));
   return programs;
 }

@@ -130,7 +130,7 @@ Result<void> Renderer::State::can_shade(const Scene& wanted, const Engine& by) c
   if (needs_rays(wanted) && !by.info().traces_rays)
     return usage_error("the engine {} draws neither floors nor parts that shine: take the engine path", by.info().name);
   if (has_placed_lamps(wanted) && !by.info().draws_placed_lamps)
-    return usage_error("the engine {} draws no lamps at a place: take cpu, gl or path", by.info().name);
+    return usage_error("the engine {} draws no lamps at a place: take cpu or path", by.info().name);
   if (has_placed_lamps(wanted) && given)
     return usage_error("a lamp at a place needs positions, which a G-buffer that is given does not have");
   GONIO_TRY(by.can_shade(wanted));
@@ -385,7 +385,7 @@ std::string Renderer::opengl_library() const {
 }
 
 std::string Renderer::shader() const {
-  return shading_fragment_shader(state_->scene, state_->effects);
+  return shading_fragment_shader(state_->effects, state_->scene.reflection);
 }
 
 Result<void> Renderer::load(const Scene& scene, const std::string& engine) {

@@ -14,7 +14,7 @@
 #include "render/effects.h"
 #include "render/engine.h"
 #include "render/gbuffer.h"
-#include "render/gl/gl_choice.h"
+#include "render/gl/driver.h"
 #include "render/path/ray_correction.h"
 #include "render/plan.h"
 #include "render/scene.h"

@@ -87,23 +87,6 @@ TEST(Stretch, ClosesInOnTheFacets) {
   }
 }
 
-// In OpenGL too, beside lobes whose maps have lost their bright spots.
-TEST(Stretch, EnginesAgree) {
-  World world("outdoor.exr");
-  paint::LobeFit paint = satin(kCoats[1]);
-  paint.lobes[2].directional_diffuse = {0.05, 0.02, 0.01};
-  for (paint::ViewLobes& view : paint.views) view.lobes[2].directional_diffuse = {0.05, 0.02, 0.01};
-  world.wear(paint);
-  const Effects effects = effects_of(world.scene);
-  ASSERT_GT(effects.spots, 0u);
-  const Frame by_cpu = world.drawn(effects, "cpu"), by_gl = world.drawn(effects, "gl");
-  double most = 0;
-  for (std::size_t i = 0; i < by_cpu.picture.data.size(); ++i)
-    most = std::max(most, static_cast<double>(std::abs(by_cpu.picture.data[i] - by_gl.picture.data[i]) /
-                                              (0.02F + by_cpu.picture.data[i])));
-  EXPECT_LE(most, 1e-3);
-}
-
 // The plan tries out the look-ups, and leaves them out where nothing is asked of them.
 TEST(Stretch, IsPlanned) {
   World world("studio.exr");

@@ -73,8 +73,8 @@ void add_light(cli::ToolSpec& spec, Options& o) {
           "Its parts are:\n- WHERE: AZIMUTH,ELEVATION or X,Y,Z toward a lamp far away, or place:X,Y,Z in units of the "
           "mesh.\n- LIGHT: R,G,B or a name as in --spectral, the radiance of a white diffuser that faces the lamp "
           "[1,1,1].\n- EXTENT: the angle of its disc, from 0, a point, to 180 [0.53]. It does not change the light.\nA "
-          "lamp at a place has that extent and light in the middle of the mesh, and takes the engine path; cpu and gl "
-          "draw it as a point alone.");
+          "lamp at a place has that extent and light in the middle of the mesh, and takes the engine path; cpu draws "
+          "it as a point alone.");
   spec.option("emit", "PART=LIGHT", "Lamp=20,18,15", &o.emissions, "make a part or material shine by itself")
       .more(
           "LIGHT is the radiance of both sides of the part: R,G,B, or a name and a factor, as A*20. It takes the "

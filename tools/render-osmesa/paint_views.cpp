@@ -1,6 +1,5 @@
 #include "paint_views.h"
 
-#include <cmath>
 #include <utility>
 
 #include "image/shrink.h"
@@ -8,7 +7,6 @@
 #include "render/aov.h"
 #include "render/effect_union.h"
 #include "render/scene_effects.h"
-#include "sight.h"
 #include "stream.h"
 
 namespace goniochrome::tool {
@@ -28,42 +26,37 @@ std::vector<std::size_t> free_parts(const DressedMesh& dress) {
   return parts;
 }
 
+TransportViews::TransportViews(const Options& options, const Request& request, Stage& stage, cli::Session& session)
+    : session_(session),
+      points_across_(request.points_across()),
+      wardrobe_(stage.dresses.front()),
+      shader_(stage.transport->light, {stage.gbuffer.get()}, stage.scene) {
+  const double automatic = stage.transport->file.automatic_stops;
+  exposure = {{stage.transport->file.white_luminance, {0, 1, 0}}, request.stops_by(automatic), automatic};
+  render::Plan kept;
+  kept.engine = "transport", kept.engine_reason = options.gbuffer + " holds the light by lobes";
+  plan = std::make_shared<render::Plan>(std::move(kept));
+}
+
+Result<void> TransportViews::draw(const SourcePaint& paint, PaintView& view) {
+  GONIO_ASSIGN(const ShadedPaint shaded, show(wardrobe_.in(paint), view.picture));
+  view.shading_ms = shaded.frame_ms + shaded.scale_ms;
+  view.bounced_de00_p95 = shaded.bounced_de00_p95;
+  return {};
+}
+
+Result<ShadedPaint> TransportViews::show(const DressedMesh& dress, image::Image& picture) {
+  GONIO_ASSIGN(const ShadedPaint shaded, shader_.shade(dress, points_across_ > 1 ? points_ : picture));
+  if (points_across_ > 1) image::shrink(points_, points_across_, picture);
+  session_.results()["transport"] = shader_.figures(shaded, session_.common().tolerance);
+  if (shaded.coat_changed && !std::exchange(is_coat_told_, true))
+    session_.warn(
+        "a paint has a coat and took the place of one without it, or the other way round: toward grazing the picture "
+        "is that of the paint whose light was traced");
+  return shaded;
+}
+
 namespace {
-
-class TransportViews : public PaintViews {
- public:
-  TransportViews(const Options& options, const Request& request, Stage& stage, cli::Session& session)
-      : session_(session),
-        points_across_(request.points_across()),
-        wardrobe_(stage.dresses.front()),
-        shader_(*stage.transport, *stage.gbuffer, stage.scene) {
-    automatic_stops = stage.transport->file.automatic_stops;
-    stops = request.stops.value_or(request.png ? automatic_stops : 0);
-    white_luminance = stage.transport->file.white_luminance;
-    render::Plan kept;
-    kept.engine = "transport", kept.engine_reason = options.gbuffer + " holds the light by lobes";
-    plan = std::make_shared<render::Plan>(std::move(kept));
-  }
-
-  Result<void> draw(const SourcePaint& paint, PaintView& view) override {
-    image::Image& points = points_across_ > 1 ? points_ : view.picture;
-    GONIO_ASSIGN(const ShadedPaint shaded, shader_.shade(wardrobe_.in(paint), points));
-    if (points_across_ > 1) image::shrink(points_, points_across_, view.picture);
-    view.shading_ms = shaded.frame_ms + shaded.scale_ms;
-    view.bounced_de00_p95 = shaded.bounced_de00_p95;
-    session_.results()["transport"] = shader_.figures(shaded, session_.common().tolerance);
-    if (shaded.coat_changed && !std::exchange(is_coat_told_, true)) tell_coat(session_);
-    return {};
-  }
-
- private:
-  cli::Session& session_;
-  int points_across_;
-  Wardrobe wardrobe_;
-  ViewShader shader_;
-  image::Image points_;  // what all points show, where pixels are squares of them
-  bool is_coat_told_ = false;
-};
 
 // An engine draws the effects that any of the paints so far has called for. The plan of a paint would leave out what is
 // not seen in that paint, which says nothing about the others.
@@ -84,16 +77,7 @@ class EngineViews : public PaintViews {
     }
     GONIO_ASSIGN(auto seen, renderer_.look(stage_.mesh, view()));
     looks_ = {seen};
-    tell_visibility(*seen, stage_.mesh, session_);
-    tell_opengl(renderer_, session_);
-    const render::DiffuseWhite white = render::diffuse_white(stage_.scene.env, stage_.scene.lights);
-    white_luminance = white.luminance;
-    request_.plan.white_luminance = white.luminance;
-    request_.plan.tolerance_de00 = session_.common().tolerance;
-    const Vec3 to_camera = -seen->rays.direction(0.5 * seen->width, 0.5 * seen->height);
-    const double metered = render::metered_white(stage_.scene.env, stage_.scene.lights, to_camera);
-    automatic_stops = metered > 0 ? -std::log2(metered) : 0;
-    stops = request_.stops.value_or(request_.png ? automatic_stops : 0);
+    exposure = begin_sight(renderer_, *seen, stage_, request_, session_);
     return {};
   }
 

@@ -9,6 +9,7 @@
 #include "render/exact.h"
 #include "render/renderer.h"
 #include "request.h"
+#include "sight.h"
 #include "stage.h"
 #include "transport_view.h"
 
@@ -45,9 +46,27 @@ class PaintViews {
   virtual Result<void> draw(const SourcePaint& paint, PaintView& view) = 0;
 
   std::shared_ptr<const render::Plan> plan = std::make_shared<render::Plan>();  // of the picture that was drawn last
-  double stops = 0, automatic_stops = 0;                                        // exposure in force, and that of a PNG
-  double white_luminance = 0;
+  Exposure exposure;
   double gbuffer_ms = 0;
+};
+
+// From the transport of the stage, which has one.
+class TransportViews : public PaintViews {
+ public:
+  TransportViews(const Options& options, const Request& request, Stage& stage, cli::Session& session);
+
+  Result<void> draw(const SourcePaint& paint, PaintView& view) override;
+
+  // Draws the paints of this dress. The report gets the figures.
+  Result<ShadedPaint> show(const DressedMesh& dress, image::Image& picture);
+
+ private:
+  cli::Session& session_;
+  int points_across_;
+  Wardrobe wardrobe_;
+  ViewShader shader_;
+  image::Image points_;  // what all points show, where pixels are squares of them
+  bool is_coat_told_ = false;
 };
 
 // From the transport of the stage where it has one, else by an engine. The first dress of the stage has what --part,
@@ -55,11 +74,11 @@ class PaintViews {
 Result<std::unique_ptr<PaintViews>> paint_views(const Options& options, const Request& request, Stage& stage,
                                                 cli::Session& session);
 
-// Draws the paints of a stream from that light, in a few milliseconds. Paints that it cannot show (brushed ones, color
-// maps, lobes that the environment lacks) are left to `others`. Coats are taken with an index that is rounded to 1/50,
-// and the base under them is scaled to look the same at 45 degrees.
-// Returns `others` where the view cannot be kept as light by lobes, which takes an environment alone, nothing on the
-// mesh that is no sum of lobes, no engine asked for but cpu, and samples whose light takes less than 100 MB.
+// Draws the paints of a stream from light by lobes that is looked up once, in a few milliseconds. Paints that it cannot
+// show (brushed ones, color maps, lobes that the environment lacks) are left to `others`. Coats are taken with an index
+// that is rounded to 1/50, and the base under them is scaled to look the same at 45 degrees. Returns `others` where the
+// view cannot be kept as light by lobes, which takes an environment alone, nothing on the mesh that is no sum of lobes,
+// no engine asked for but cpu, and samples whose light takes less than 100 MB.
 std::unique_ptr<PaintViews> open_views(const Options& options, const Request& request, Stage& stage,
                                        cli::Session& session, std::unique_ptr<PaintViews> others);
 

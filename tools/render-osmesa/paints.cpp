@@ -171,6 +171,12 @@ Result<std::vector<Assignment>> assignments(const std::vector<std::string>& opti
 
 }  // namespace
 
+std::string first_names(std::vector<std::string> names) {
+  constexpr std::size_t kMost = 6;
+  if (names.size() > kMost) names.resize(kMost + 1), names.back() = "...";
+  return joined(names, ", ");
+}
+
 Result<std::vector<std::size_t>> parts_of(const mesh::Mesh& mesh, const std::string& word) {
   std::vector<std::size_t> named, made_of;
   for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
@@ -311,12 +317,6 @@ Result<std::vector<color::Rgb>> emission_of(const mesh::Mesh& mesh, const std::v
     for (const std::size_t part : parts) all[part] = emission.radiance;
   }
   return all;
-}
-
-Result<DressedMesh> dressed_in(const mesh::Mesh& mesh, Options options, const std::string& paint) {
-  options.paint = paint;
-  const bool with_mirrors = !options.env.empty();
-  return dressed(mesh, options, with_mirrors);
 }
 
 }  // namespace goniochrome::tool

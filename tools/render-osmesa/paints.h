@@ -42,6 +42,9 @@ struct DressedMesh {
   std::vector<std::string> unpainted;  // names of the parts that wear the gray of unpainted parts
 };
 
+// Six of the names at most: "a, b, ...".
+std::string first_names(std::vector<std::string> names);
+
 // Resolves --part and --paint. Finishes of --trim mirror where `with_mirrors`. Error: an unknown part, paint or file,
 // or a paint without lobes, with what there is.
 Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool with_mirrors);
@@ -85,8 +88,5 @@ Result<std::vector<std::size_t>> parts_of(const mesh::Mesh& mesh, const std::str
 // The radiance of each part by --emit. Error: an unknown part.
 struct Emission;
 Result<std::vector<color::Rgb>> emission_of(const mesh::Mesh& mesh, const std::vector<Emission>& emissions);
-
-// The mesh with another paint in the place of --paint.
-Result<DressedMesh> dressed_in(const mesh::Mesh& mesh, Options options, const std::string& paint);
 
 }  // namespace goniochrome::tool

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/angles.h"
+#include "base/file.h"
 #include "base/text.h"
 #include "plan_text.h"
 #include "render/aov.h"
@@ -53,23 +55,22 @@ image::Attributes provenance(const cli::Session& session, const display::Display
 Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const Request& request,
                                                   const render::Frame& frame, const render::Scene& scene,
                                                   const DressedMesh& dress, const render::Plan& plan,
-                                                  const render::DiffuseWhite& white, double stops, double automatic,
-                                                  const render::TransportParts* transport,
+                                                  const Exposure& exposure, const render::TransportParts* transport,
                                                   const cli::Session& session) {
   image::ImagePart part{"picture", frame.picture, provenance(session), image::PixelType::kHalf};
   part.attributes["goniochrome:plan"] = json_text(plan_rows(plan));
   part.attributes["goniochrome:engine"] = plan.engine;
-  const float gain = static_cast<float>(std::exp2(stops));
+  const float gain = static_cast<float>(std::exp2(exposure.stops));
   for (std::size_t i = 0; i < part.image.data.size(); ++i) part.image.data[i] *= i % 4 == 3 ? 1 : gain;
   part.attributes["colorInteropID"] = "lin_rec2020_scene";
   part.attributes["chromaticities"] =
       std::vector<float>{0.708F, 0.292F, 0.170F, 0.797F, 0.131F, 0.046F, 0.3127F, 0.3290F};
-  part.attributes["goniochrome:exposure"] = static_cast<float>(stops);
-  part.attributes["goniochrome:whiteLuminance"] = static_cast<float>(white.luminance);
-  part.attributes["goniochrome:automaticExposure"] = static_cast<float>(automatic);
+  part.attributes["goniochrome:exposure"] = static_cast<float>(exposure.stops);
+  part.attributes["goniochrome:whiteLuminance"] = static_cast<float>(exposure.white.luminance);
+  part.attributes["goniochrome:automaticExposure"] = static_cast<float>(exposure.automatic);
   part.attributes["goniochrome:samples"] = std::min(request.samples * request.samples_of_point, 16);
   if (!request.aovs.empty()) {
-    const Vec3 to_light = scene.lights.empty() ? white.direction : scene.lights.front().direction;
+    const Vec3 to_light = scene.lights.empty() ? exposure.white.direction : scene.lights.front().direction;
     for (const std::string& aov : request.aovs) {
       if (aov == "error") {
         render::add_error(part.image, frame.noise.value());
@@ -104,6 +105,13 @@ Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const 
 Result<std::string> exr_frame(std::vector<image::ImagePart> picture) {
   picture.front().attributes.erase("goniochrome:plan");
   return image::exr_content("standard output", picture, image::ExrStorage::kPlain);
+}
+
+Result<void> FrameOutput::write(const std::string& frame, const PictureSize& size) {
+  GONIO_ASSIGN(OutputFile out, OutputFile::create("-"));
+  if (std::exchange(head_, false)) GONIO_TRY(out.write(image::frames_head(format_, size.width, size.height)));
+  GONIO_TRY(out.write(frame));
+  return out.flush();
 }
 
 }  // namespace goniochrome::tool

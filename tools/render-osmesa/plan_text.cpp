@@ -52,6 +52,8 @@ std::string shader_gaps(const render::Plan& plan) {
   const auto gap = [&](bool shown, const char* effect, const char* what) {
     if (shown) gaps += fmt::format("//   {}: {}\n", effect, what);
   };
+  gap(effects.tilt_level > 0 || effects.stretch, "travel, satin", "tilted lobes, looked up on the processor");
+  gap(effects.placed, "lamps at a place", "shaded on the processor");
   gap(effects.texture, "texture", "surfaces of lobes, shaded on the processor");
   gap(effects.maps, "travel", "color maps under lights, evaluated on the processor");
   gap(effects.rays.shadow, "shadow", "light that the mesh takes from itself, traced by rays");

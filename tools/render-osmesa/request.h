@@ -23,6 +23,7 @@ struct Request {
   std::vector<render::Light> lights;
   std::vector<std::optional<color::Bands>> light_bands;  // of each that is named
   std::optional<double> stops;
+  double stops_by(double automatic) const { return stops.value_or(png ? automatic : 0); }
   std::vector<std::string> aovs;
   bool transport = false;  // among the buffers
   bool png = false;        // whether pictures are as a display shows them: PNG or frames

@@ -1,7 +1,6 @@
 #include "tool.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "base/file.h"
@@ -9,8 +8,7 @@
 #include "base/paths.h"
 #include "base/text.h"
 #include "display/display.h"
-#include "image/frames.h"
-#include "image/shrink.h"
+#include "paint_views.h"
 #include "picture_file.h"
 #include "plan_text.h"
 #include "render/aov.h"
@@ -29,18 +27,6 @@ namespace {
 
 // Pixels that the truth of each effect is measured at; it takes an integration for each of them.
 constexpr int kMostTruth = 100;
-
-cli::Verdict check(const Options& options, const render::Frame& frame, const render::Scene& scene, const Source& source,
-                   double white, cli::Session& session) {
-  session.progress(fmt::format("checking {} pixels", options.check));
-  const render::PictureError error =
-      render::picture_error(frame, scene, source.image(), white, options.check, session.common().seed);
-  session.results()["error"] = error_json(error, "model", source.name);
-  session.say(fmt::format("dE00 to the reference: mean {:.2f}, p95 {}, max {:.2f} at {},{} ({} pixels, {:.1f} s)",
-                          error.de00_mean, told_p95(error), error.de00_max, error.worst_x, error.worst_y,
-                          error.checked_pixels, error.time_s));
-  return tell_verdict(error, session.common().tolerance, session);
-}
 
 // Beside the plan's estimates, what they are worth here: how far the picture is from that of all effects, and its time.
 Result<void> measure_plan(render::Renderer& renderer, const render::Scene& scene, const render::Plan& plan,
@@ -71,7 +57,7 @@ void put_right_half(const render::Frame& other, render::Frame& frame) {
 class Shooting {
  public:
   Shooting(const Options& options, Request request, Stage& stage, cli::Session& session)
-      : options_(options), request_(std::move(request)), stage_(stage), session_(session) {}
+      : options_(options), request_(std::move(request)), stage_(stage), session_(session), frames_(options.to) {}
 
   Result<cli::Verdict> shoot(const std::optional<display::Display>& display);
 
@@ -96,8 +82,7 @@ class Shooting {
   Result<render::Plan> load(render::Renderer& renderer, const DressedMesh& dress);
   Result<void> draw(render::Renderer& renderer, const Shot& shot, bool first);
   Result<cli::Verdict> shade_transport(const std::optional<display::Display>& display);
-  Result<void> write(const Shot& shot, const std::optional<display::Display>& display, double stops);
-  Result<void> write_frame(const std::string& content);
+  Result<void> write(const Shot& shot, const std::optional<display::Display>& display);
   Result<cli::Verdict> check_picture();
   void tell_plan(render::Plan plan, const std::string& shader);
   void tell_findings(const render::Frame& frame);
@@ -106,15 +91,14 @@ class Shooting {
   Request request_;
   Stage& stage_;
   cli::Session& session_;
+  FrameOutput frames_;
   std::vector<Shot> shots_;
   std::vector<std::shared_ptr<const render::Gbuffer>> looks_;
-  render::DiffuseWhite white_;
+  Exposure exposure_;
   render::Plan plan_;
   render::Frame frame_;
-  double automatic_stops_ = 0;        // of a PNG
-  std::optional<OutputFile> frames_;  // of --to
-  bool stopped_ = false;              // before the noise was within the tolerance that was asked for
-  bool all_reached_ = true;           // whether that of the pictures by an engine with noise is, asked for or not
+  bool stopped_ = false;     // before the noise was within the tolerance that was asked for
+  bool all_reached_ = true;  // whether that of the pictures by an engine with noise is, asked for or not
 };
 
 // The scene with the floor of its picture, wherever that is drawn.
@@ -161,8 +145,6 @@ void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
   results["plan_de00_p95"] = json_number(plan.de00_p95);
   results["plan_quick"] = request_.quick;
   results["plan_ms"] = plan.time_ms;
-  results["engine"] = plan.engine;
-  results["engine_reason"] = plan.engine_reason;
   session_.explain(plan_table(plan));
   if (request_.quick && plan.effects.rays.any())
     session_.explain(fmt::format("no tolerance, time limit or check is asked for: rays end after {:g} s\n", kQuick_s));
@@ -193,7 +175,7 @@ Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool f
         std::vector<render::ProbePixel> pixels;
         for (const auto& [x, y] : sample.places) pixels.push_back({looks_.front().get(), x, y, {}});
         render::add_truth(plan, render::seen_scene(stage_.scene, looks_), sample.points, stage_.source.image(),
-                          white_.luminance, pixels);
+                          exposure_.white.luminance, pixels);
       }
       if (first) {
         tell_plan(std::move(plan), renderer.shader());
@@ -210,68 +192,58 @@ Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool f
   return {};
 }
 
-Result<void> Shooting::write(const Shot& shot, const std::optional<display::Display>& display, double stops) {
+Result<void> Shooting::write(const Shot& shot, const std::optional<display::Display>& display) {
   if (!display) {
     const render::Scene drawn = over_floor(plan_.effects.rays.floor || by_rays());
     std::optional<TracedView> traced;
     if (request_.transport) {
       const bool with_maps = !by_rays() && (request_.engine == nullptr || request_.engine->is_planned);
       GONIO_ASSIGN(traced, traced_view(drawn, stage_.source.image(), with_maps, *frame_.gbuffer, request_.samples,
-                                       white_.luminance, options_.bounces, session_));
+                                       exposure_.white.luminance, options_.bounces, session_));
       frame_.gbuffer = traced->gbuffer;
       stopped_ |= !traced->reached;
     }
     GONIO_ASSIGN(std::vector<image::ImagePart> picture,
-                 exr_picture(options_, request_, frame_, drawn, stage_.dresses.front(), plan_, white_, stops,
-                             automatic_stops_, traced ? &traced->file : nullptr, session_));
+                 exr_picture(options_, request_, frame_, drawn, stage_.dresses.front(), plan_, exposure_,
+                             traced ? &traced->file : nullptr, session_));
     if (options_.to.empty()) return image::write_exr(shot.output, picture);
     GONIO_ASSIGN(const std::string content, exr_frame(std::move(picture)));
-    return write_frame(content);
+    return frames_.write(content, request_.size);
   }
   image::ByteImage shown;
-  GONIO_TRY(display->show(frame_.picture, stops, shown));
-  if (!options_.to.empty()) {
-    const auto format = options_.to == "ppm" ? image::FrameFormat::kPpm : image::FrameFormat::kY4m;
-    const std::string head = frames_ ? "" : image::frames_head(format, shown.width, shown.height);
-    return write_frame(head + image::frame_content(format, shown));
-  }
+  GONIO_TRY(display->show(frame_.picture, exposure_.stops, shown));
+  if (!options_.to.empty()) return frames_.write(frames_.content(shown), request_.size);
   return write_file(shot.output, image::png_content(shown, provenance(session_, &*display)));
-}
-
-// One frame of a sequence on standard output.
-Result<void> Shooting::write_frame(const std::string& content) {
-  if (!frames_) {
-    GONIO_ASSIGN(OutputFile out, OutputFile::create("-"));
-    frames_.emplace(std::move(out));
-  }
-  GONIO_TRY(frames_->write(content));
-  return frames_->flush();
 }
 
 // Other paints in the light that was traced; nothing is planned, since all is there.
 Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Display>& display) {
-  const KeptTransport& kept = *stage_.transport;
-  image::Image points;
-  GONIO_ASSIGN(const ShadedPaint shaded,
-               shaded_view(kept, *stage_.gbuffer, stage_.dresses.front(), stage_.scene, points, session_));
-  image::shrink(points, request_.points_across(), frame_.picture);
+  TransportViews views(options_, request_, stage_, session_);
+  GONIO_ASSIGN(const ShadedPaint shaded, views.show(stage_.dresses.front(), frame_.picture));
+  const double tolerance = session_.common().tolerance;
+  if (!shaded.scaled) {
+    session_.say("bounced light is that of these paints");
+  } else if (shaded.bounced_de00_p95 <= tolerance) {
+    session_.say(fmt::format("bounced light was traced in other paints and scaled to these: off by {:.2f} dE00 (p95)",
+                             shaded.bounced_de00_p95));
+  } else {
+    session_.warn(fmt::format(
+        "bounced light was traced in other paints; scaled to these it is off by {:.2f} dE00 (p95), above --tolerance "
+        "{}: trace again with --aov transport in these paints",
+        shaded.bounced_de00_p95, tolerance));
+  }
   frame_.gbuffer = stage_.gbuffer;
-  white_ = {kept.file.white_luminance, {0, 1, 0}};
-  plan_.engine = "transport", plan_.engine_reason = options_.gbuffer + " holds the light by lobes";
+  exposure_ = views.exposure, plan_ = *views.plan;
   stage_.scene.lights.clear();
-  for (const image::AovLight& light : kept.file.lights) stage_.scene.lights.push_back(render::light_of(light));
-  automatic_stops_ = kept.file.automatic_stops;
-  const double stops = request_.stops.value_or(request_.png ? automatic_stops_ : 0);
-  GONIO_TRY(write({{}, {}, options_.output}, display, stops));
-  Json& results = session_.results();
-  results["engine"] = plan_.engine, results["engine_reason"] = plan_.engine_reason;
-  results["gbuffer_ms"] = 0, results["frame_ms"] = shaded.frame_ms, results["frames"] = 1;
-  results["exposure_stops"] = stops, results["white_luminance"] = json_number(white_.luminance);
+  for (const image::AovLight& light : stage_.transport->file.lights)
+    stage_.scene.lights.push_back(render::light_of(light));
+  GONIO_TRY(write({{}, {}, options_.output}, display));
+  report_pictures(plan_, exposure_, 1, 0, shaded.frame_ms, session_);
   session_.say(fmt::format("{}: {} x {}, shaded in {:.1f} ms from the light of {}, exposure {:+.2f}{}",
                            options_.output == "-" ? "standard output" : options_.output, request_.size.width,
-                           request_.size.height, shaded.frame_ms, options_.gbuffer, stops,
+                           request_.size.height, shaded.frame_ms, options_.gbuffer, exposure_.stops,
                            display ? ", " + display->name() : ""));
-  return shaded.bounced_de00_p95 > session_.common().tolerance ? cli::Verdict::kNegative : cli::Verdict::kDone;
+  return shaded.bounced_de00_p95 > tolerance ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }
 
 // Says a line, which --quiet keeps where it explains an exit status.
@@ -347,16 +319,8 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
   request_.quick = is_quick();
   GONIO_ASSIGN(render::Renderer renderer, make_renderer(options_, request_, stage_, session_));
   GONIO_TRY(look(renderer));
-  tell_visibility(*looks_.front(), stage_.mesh, session_);
-  white_ = render::diffuse_white(stage_.scene.env, stage_.scene.lights);
-  request_.plan.white_luminance = white_.luminance;
-  request_.plan.tolerance_de00 = session_.common().tolerance;
   session_.explain(explanation(options_, stage_.mesh, stage_.dresses.front()));
-  tell_opengl(renderer, session_);
-  const render::Rays& through = looks_.front()->rays;
-  const Vec3 to_camera = -through.direction(0.5 * looks_.front()->width, 0.5 * looks_.front()->height);
-  double metered = render::metered_white(stage_.scene.env, stage_.scene.lights, to_camera);
-  double stops = 0;
+  exposure_ = begin_sight(renderer, *looks_.front(), stage_, request_, session_);
   double frame_ms = 0;
   for (const Shot& shot : shots_) {
     GONIO_TRY(draw(renderer, shot, &shot == &shots_.front()));
@@ -364,27 +328,18 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
     tell_noise();
     tell_maps();
     tell_rays();
-    if (&shot == &shots_.front()) {
-      if (!(metered > 0)) metered = mean_luminance(frame_) / kMiddleGray;
-      automatic_stops_ = metered > 0 ? -std::log2(metered) : 0;
-      stops = request_.stops.value_or(request_.png ? automatic_stops_ : 0);
-    }
+    if (&shot == &shots_.front() && !exposure_.is_metered) exposure_.meter(white_by_gray(frame_), request_);
     if (stage_.scene.ground && shot.camera.eye.y <= stage_.scene.ground->height)
       session_.warn(fmt::format("the camera of {} is below the floor, which is black from there", shot.output));
     session_.progress(shot.output);
-    GONIO_TRY(write(shot, display, stops));
+    GONIO_TRY(write(shot, display));
   }
-  Json& results = session_.results();
-  results["gbuffer_ms"] = frame_.gbuffer_ms;
-  results["frame_ms"] = frame_ms;
-  results["frames"] = shots_.size();
-  results["exposure_stops"] = stops;
-  results["white_luminance"] = json_number(white_.luminance);
+  report_pictures(plan_, exposure_, shots_.size(), frame_.gbuffer_ms, frame_ms, session_);
   const std::string name = options_.output == "-" ? "standard output" : shots_.front().output;
   session_.say(fmt::format(
       "{}{}: {} x {}, {} samples a pixel, drawn in {:.0f} ms by {} (visible points {:.0f} ms), exposure {:+.2f}{}",
       name, shots_.size() > 1 ? fmt::format(" and {} more", shots_.size() - 1) : "", request_.size.width,
-      request_.size.height, request_.samples, frame_ms, plan_.engine, frame_.gbuffer_ms, stops,
+      request_.size.height, request_.samples, frame_ms, plan_.engine, frame_.gbuffer_ms, exposure_.stops,
       display ? ", " + display->name() : ""));
   cli::Verdict verdict = cli::Verdict::kDone;
   if (options_.check > 0) {
@@ -393,7 +348,7 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
   // An engine that traces rays leaves nothing out.
   if (options_.check > 0 && !by_rays()) {
     GONIO_TRY(measure_plan(renderer, render::seen_scene(stage_.scene, looks_), plan_, view(shots_.back(), 1),
-                           white_.luminance, session_));
+                           exposure_.white.luminance, session_));
   }
   return stopped_ ? cli::Verdict::kStopped : verdict;
 }
@@ -402,16 +357,22 @@ Result<cli::Verdict> Shooting::check_picture() {
   const bool traced =
       frame_.rays.samples > 0 || plan_.effects.rays.any() || (stage_.rays && stage_.rays->absent.empty());
   const bool truth = options_.check_against == "truth" || (options_.check_against == "auto" && traced);
+  session_.progress(fmt::format("checking {} pixels", options_.check));
   if (!truth || stage_.gbuffer) {
     // The model does not know the effects of rays.
     if (!frame_.open_centers.data.empty()) frame_.centers = frame_.open_centers;
-    return check(options_, frame_, stage_.scene, stage_.source, white_.luminance, session_);
+    const render::PictureError error = render::picture_error(
+        frame_, stage_.scene, stage_.source.image(), exposure_.white.luminance, options_.check, session_.common().seed);
+    session_.results()["error"] = error_json(error, "model", stage_.source.name);
+    session_.say(fmt::format("dE00 to the reference: mean {:.2f}, p95 {}, max {:.2f} at {},{} ({} pixels, {:.1f} s)",
+                             error.de00_mean, told_p95(error), error.de00_max, error.worst_x, error.worst_y,
+                             error.checked_pixels, error.time_s));
+    return tell_verdict(error, session_.common().tolerance, session_);
   }
-  session_.progress(fmt::format("checking {} pixels", options_.check));
   render::TruthRequest request;
   request.environment = stage_.source.image();
   request.white_luminance =
-      frame_.noise && frame_.noise->white_luminance > 0 ? frame_.noise->white_luminance : white_.luminance;
+      frame_.noise && frame_.noise->white_luminance > 0 ? frame_.noise->white_luminance : exposure_.white.luminance;
   request.count = options_.check;
   request.tolerance_de00 = session_.common().tolerance;
   request.bounces = options_.bounces;

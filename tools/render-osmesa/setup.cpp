@@ -125,16 +125,18 @@ Result<void> check_surfaces(const Options& options) {
   return usage_error("--engine {} draws a mesh: --gbuffer is shaded by {}", options.engine, others);
 }
 
-Result<PictureSize> parse_size(const std::string& text) {
-  constexpr std::int64_t kMost = 16384;  // of OpenGL here
-  if (text == "auto") return PictureSize{1280, 720};
+std::optional<PictureSize> width_by_height(const std::string& text, int most) {
   const auto pieces = split(text, 'x');
-  if (pieces.size() == 2) {
-    const auto width = parse_integer(pieces[0]), height = parse_integer(pieces[1]);
-    if (width && height && *width >= 1 && *height >= 1 && *width <= kMost && *height <= kMost) {
-      return PictureSize{static_cast<int>(*width), static_cast<int>(*height)};
-    }
-  }
+  const auto width = parse_integer(pieces.front()), height = parse_integer(pieces.back());
+  if (pieces.size() != 2 || !width || !height || std::min(*width, *height) < 1 || std::max(*width, *height) > most)
+    return std::nullopt;
+  return PictureSize{static_cast<int>(*width), static_cast<int>(*height)};
+}
+
+Result<PictureSize> parse_size(const std::string& text) {
+  constexpr int kMost = 16384;  // of OpenGL here
+  if (text == "auto") return PictureSize{1280, 720};
+  if (const auto size = width_by_height(text, kMost)) return *size;
   return usage_error("--size is \"{}\": write WIDTHxHEIGHT in pixels, 1x1 to {}x{}, or auto", text, kMost, kMost);
 }
 

@@ -27,6 +27,8 @@ Result<void> check_surfaces(const Options& options);
 struct PictureSize {
   int width = 0, height = 0;
 };
+// "1280x720", each from 1 to `most`; nothing where the text is none.
+std::optional<PictureSize> width_by_height(const std::string& text, int most);
 // "1280x720", or "auto", which is that. Errors of all of these are usage errors that name the option, its value and
 // what it takes.
 Result<PictureSize> parse_size(const std::string& text);

@@ -5,6 +5,39 @@
 
 namespace goniochrome::tool {
 
+namespace {
+
+void tell_visibility(const render::Gbuffer& gbuffer, const mesh::Mesh& mesh, cli::Session& session) {
+  constexpr std::size_t kMany = 20;  // fewer pixels may be those of a rim
+  std::size_t seen = 0, from_inside = 0;
+  std::vector<std::size_t> fronts(mesh.parts.size()), backs(mesh.parts.size());
+  for (std::size_t i = 3; i < gbuffer.data.size(); i += 4) {
+    seen += gbuffer.data[i] != 0;
+    from_inside += gbuffer.data[i] < 0;
+    if (gbuffer.data[i] == 0) continue;
+    const auto part = static_cast<std::size_t>(std::abs(gbuffer.data[i])) - 1;
+    ++(gbuffer.data[i] < 0 ? backs : fronts)[part];
+  }
+  std::vector<std::string> turned;
+  for (std::size_t part = 0; part < backs.size(); ++part)
+    if (backs[part] >= kMany && fronts[part] <= backs[part] / 100) turned.push_back(mesh.parts[part].name);
+  const std::size_t count = turned.size();
+  if (count > 0 && 2 * from_inside <= seen) {
+    session.warn(fmt::format("{} show{} {} back{} alone: {} faces may be turned inside out", first_names(turned),
+                             count == 1 ? "s" : "", count == 1 ? "its" : "their", count == 1 ? "" : "s",
+                             count == 1 ? "its" : "their"));
+  }
+  if (seen == 0) {
+    session.warn("the mesh is not in the picture: check --camera");
+  } else if (2 * from_inside > seen) {
+    session.warn(
+        fmt::format("{} % of what is seen are back sides: the camera is inside the mesh, or its faces are turned",
+                    100 * from_inside / seen));
+  }
+}
+
+}  // namespace
+
 Result<render::Renderer> make_renderer(const Options& options, const Request& request, const Stage& stage,
                                        cli::Session& session) {
   render::Effort effort;
@@ -28,39 +61,29 @@ Result<render::Renderer> make_renderer(const Options& options, const Request& re
   return ready(std::move(renderer));
 }
 
-void tell_visibility(const render::Gbuffer& gbuffer, const mesh::Mesh& mesh, cli::Session& session) {
-  constexpr std::size_t kMany = 20, kMostNames = 6;  // fewer pixels may be those of a rim
-  std::size_t seen = 0, from_inside = 0;
-  std::vector<std::size_t> fronts(mesh.parts.size()), backs(mesh.parts.size());
-  for (std::size_t i = 3; i < gbuffer.data.size(); i += 4) {
-    seen += gbuffer.data[i] != 0;
-    from_inside += gbuffer.data[i] < 0;
-    if (gbuffer.data[i] == 0) continue;
-    const auto part = static_cast<std::size_t>(std::abs(gbuffer.data[i])) - 1;
-    ++(gbuffer.data[i] < 0 ? backs : fronts)[part];
-  }
-  std::string turned;
-  std::size_t count = 0;
-  for (std::size_t part = 0; part < backs.size(); ++part) {
-    if (backs[part] < kMany || fronts[part] > backs[part] / 100) continue;
-    if (++count <= kMostNames) turned += (turned.empty() ? "" : ", ") + mesh.parts[part].name;
-  }
-  if (count > kMostNames) turned += ", ...";
-  if (count > 0 && 2 * from_inside <= seen) {
-    session.warn(fmt::format("{} show{} {} back{} alone: {} faces may be turned inside out", turned,
-                             count == 1 ? "s" : "", count == 1 ? "its" : "their", count == 1 ? "" : "s",
-                             count == 1 ? "its" : "their"));
-  }
-  if (seen == 0) {
-    session.warn("the mesh is not in the picture: check --camera");
-  } else if (2 * from_inside > seen) {
-    session.warn(
-        fmt::format("{} % of what is seen are back sides: the camera is inside the mesh, or its faces are turned",
-                    100 * from_inside / seen));
-  }
+void Exposure::meter(double white_luminance, const Request& request) {
+  is_metered = white_luminance > 0;
+  automatic = is_metered ? -std::log2(white_luminance) : 0;
+  stops = request.stops_by(automatic);
 }
 
-double mean_luminance(const render::Frame& frame) {
+Exposure begin_sight(const render::Renderer& renderer, const render::Gbuffer& seen, const Stage& stage,
+                     Request& request, cli::Session& session) {
+  tell_visibility(seen, stage.mesh, session);
+  const std::string device = renderer.opengl(), library = renderer.opengl_library();
+  session.results()["opengl"] = device.empty() ? Json(nullptr) : Json(device);
+  session.results()["opengl_library"] = library.empty() ? Json(nullptr) : Json(library);
+  if (!device.empty()) session.explain(fmt::format("OpenGL: {}, by {}\n", device, library));
+  const render::Scene& scene = stage.scene;
+  Exposure exposure{render::diffuse_white(scene.env, scene.lights)};
+  request.plan.white_luminance = exposure.white.luminance;
+  request.plan.tolerance_de00 = session.common().tolerance;
+  const Vec3 to_camera = -seen.rays.direction(0.5 * seen.width, 0.5 * seen.height);
+  exposure.meter(render::metered_white(scene.env, scene.lights, to_camera), request);
+  return exposure;
+}
+
+double white_by_gray(const render::Frame& frame) {
   double sum = 0;
   std::size_t count = 0;
   for (int y = 0; y < frame.gbuffer->height; ++y) {
@@ -71,15 +94,16 @@ double mean_luminance(const render::Frame& frame) {
       ++count;
     }
   }
-  return count > 0 ? sum / static_cast<double>(count) : 0;
+  constexpr double kMiddleGray = 0.18;
+  return count > 0 ? sum / static_cast<double>(count) / kMiddleGray : 0;
 }
 
-void tell_opengl(const render::Renderer& renderer, cli::Session& session) {
-  const std::string device = renderer.opengl();
-  const auto or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
-  session.results()["opengl"] = or_null(device);
-  session.results()["opengl_library"] = or_null(renderer.opengl_library());
-  if (!device.empty()) session.explain(fmt::format("OpenGL: {}, by {}\n", device, renderer.opengl_library()));
+void report_pictures(const render::Plan& plan, const Exposure& exposure, std::size_t count, double gbuffer_ms,
+                     double frame_ms, cli::Session& session) {
+  Json& results = session.results();
+  results["engine"] = plan.engine, results["engine_reason"] = plan.engine_reason;
+  results["gbuffer_ms"] = gbuffer_ms, results["frame_ms"] = frame_ms, results["frames"] = count;
+  results["exposure_stops"] = exposure.stops, results["white_luminance"] = json_number(exposure.white.luminance);
 }
 
 std::string explanation(const Options& options, const mesh::Mesh& mesh, const DressedMesh& dress) {

@@ -87,31 +87,23 @@ void tell_parts(const mesh::Mesh& mesh, const DressedMesh& dress, bool streamed,
                     "PART=FILE,project=cylinder and the like choose",
                     part));
   if (dress.unpainted.empty() || streamed) return;
-  std::string names;
-  for (std::size_t i = 0; i < std::min<std::size_t>(6, dress.unpainted.size()); ++i) {
-    names += (i == 0 ? "" : ", ") + dress.unpainted[i];
-  }
-  session.warn(fmt::format("{} of {} parts have no paint and are matt gray: {}{}: give --paint or --part",
-                           dress.unpainted.size(), mesh.parts.size(), names,
-                           dress.unpainted.size() > 6 ? ", ..." : ""));
+  session.warn(fmt::format("{} of {} parts have no paint and are matt gray: {}: give --paint or --part",
+                           dress.unpainted.size(), mesh.parts.size(), first_names(dress.unpainted)));
 }
 
-Result<void> dress_stage(const Options& options, Stage& stage) {
-  if (options.split.empty()) {
-    // A transport has the light that mirrors show of its own environment.
-    const bool with_mirrors = !options.env.empty() || (stage.transport && !stage.transport->file.environment.empty());
-    GONIO_ASSIGN(DressedMesh dress, dressed(stage.mesh, options, with_mirrors));
-    stage.dresses.push_back(std::move(dress));
-    return {};
-  }
+Result<void> dress_stage(Options options, Stage& stage) {
   std::vector<std::string> paints;
   for (const std::string& text : options.split) {
     for (const std::string_view paint : split(text, ',')) paints.emplace_back(trimmed(paint));
   }
-  if (paints.size() != 2)
+  if (!options.split.empty() && paints.size() != 2)
     return usage_error("--split names {} paints: write two, A.xml#NAME,B.xml#NAME", paints.size());
+  if (options.split.empty()) paints = {options.paint};
+  // A transport has the light that mirrors show of its own environment.
+  const bool with_mirrors = !options.env.empty() || (stage.transport && !stage.transport->file.environment.empty());
   for (const std::string& paint : paints) {
-    GONIO_ASSIGN(DressedMesh dress, dressed_in(stage.mesh, options, paint));
+    options.paint = paint;
+    GONIO_ASSIGN(DressedMesh dress, dressed(stage.mesh, options, with_mirrors));
     stage.dresses.push_back(std::move(dress));
   }
   return {};
@@ -142,7 +134,7 @@ Result<void> set_gbuffer(const Options& options, const Request& request, Stage& 
   stage.gbuffer = std::make_shared<const render::Gbuffer>(std::move(gbuffer));
   for (std::size_t i = 0; i < buffers.parts.size(); ++i)
     stage.mesh.parts.push_back({buffers.parts[i], buffers.materials[i], 0, 0});
-  stage.transport = kept_transport(std::move(light), std::move(buffers), options, request.lights, session);
+  GONIO_ASSIGN(stage.transport, kept_transport(std::move(light), std::move(buffers), options, request, session));
   // A floor keeps the paint that it wore.
   if (stage.transport && stage.transport->light.worn.has_floor) stage.mesh.parts.pop_back();
   if (!stage.transport && options.env.empty() && request.lights.empty())

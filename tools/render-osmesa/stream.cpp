@@ -150,21 +150,19 @@ void report(const Options& options, const Request& request, const Streaming& str
   const auto count = static_cast<double>(streaming.done());
   const double rate = seconds > 0 ? count / seconds : 0;
   Json& results = session.results();
-  results["engine"] = views.plan->engine, results["engine_reason"] = views.plan->engine_reason;
-  results["frames"] = streaming.done(), results["failed"] = streaming.failed(), results["files"] = sink.files();
+  report_pictures(*views.plan, views.exposure, streaming.done(), views.gbuffer_ms, streaming.shading_ms(), session);
+  results["failed"] = streaming.failed(), results["files"] = sink.files();
   results["pictures_per_s"] = rate;
   results["picture_ms"] = {{"p50", streaming.times().quantile_ms(0.5)},
                            {"p99", streaming.times().quantile_ms(0.99)},
                            {"max", streaming.times().most_ms()}};
-  results["gbuffer_ms"] = views.gbuffer_ms, results["frame_ms"] = streaming.shading_ms();
-  results["exposure_stops"] = views.stops, results["white_luminance"] = json_number(views.white_luminance);
   std::string line =
       fmt::format("{}: {} pictures", options.output == "-" ? "standard output" : options.output, streaming.done());
   if (!options.sheet.empty())
     line += fmt::format(" on {} sheet{} of {}", sink.files(), sink.files() == 1 ? "" : "s", options.sheet);
   line += fmt::format(", {} x {}, shaded in {:.1f} ms each by {}, {:.0f} pictures/s, exposure {:+.2f}{}",
                       request.size.width, request.size.height, streaming.shading_ms(), views.plan->engine, rate,
-                      views.stops, display ? ", " + display->name() : "");
+                      views.exposure.stops, display ? ", " + display->name() : "");
   if (streaming.failed() > 0)
     line += fmt::format(", {} paint{} failed", streaming.failed(), streaming.failed() == 1 ? "" : "s");
   session.say(line);

@@ -5,7 +5,6 @@
 #include "base/file.h"
 #include "base/file_names.h"
 #include "base/text.h"
-#include "image/frames.h"
 #include "picture_file.h"
 
 namespace goniochrome::tool {
@@ -13,16 +12,15 @@ namespace goniochrome::tool {
 namespace {
 
 Result<void> show(const SinkSetup& setup, StreamSlot& slot) {
-  return setup.display->show(slot.view.picture, setup.views.stops, slot.shown);
+  return setup.display->show(slot.view.picture, setup.views.exposure.stops, slot.shown);
 }
 
 // The parts of an EXR file.
 Result<std::vector<image::ImagePart>> scene_linear(const SinkSetup& setup, StreamSlot& slot) {
   render::Frame frame;
   std::swap(frame.picture, slot.view.picture);
-  const render::DiffuseWhite white{setup.views.white_luminance, {0, 1, 0}};
   auto parts = exr_picture(setup.options, setup.request, frame, setup.stage.scene, setup.stage.dresses.front(),
-                           *slot.plan, white, setup.views.stops, setup.views.automatic_stops, nullptr, setup.session);
+                           *slot.plan, setup.views.exposure, nullptr, setup.session);
   std::swap(frame.picture, slot.view.picture);
   return parts;
 }
@@ -63,27 +61,11 @@ class FileSink : public StreamSink {
   std::size_t files_ = 0;
 };
 
-struct SheetSize {
-  int columns = 0, rows = 0;
-};
-
-// "COLSxROWS" of --sheet.
-Result<SheetSize> parse_sheet(const std::string& text) {
-  constexpr std::int64_t kMost = 64;
-  const auto pieces = split(text, 'x');
-  if (pieces.size() == 2) {
-    const auto columns = parse_integer(pieces[0]), rows = parse_integer(pieces[1]);
-    if (columns && rows && *columns >= 1 && *rows >= 1 && *columns <= kMost && *rows <= kMost)
-      return SheetSize{static_cast<int>(*columns), static_cast<int>(*rows)};
-  }
-  return usage_error("--sheet is \"{}\": write COLSxROWS, 1x1 to {}x{}, as in 3x3", text, kMost, kMost);
-}
-
 // Contact sheets, one of them in memory at a time.
 class SheetSink : public StreamSink {
  public:
-  SheetSink(const SinkSetup& setup, FileNames names, const SheetSize& size)
-      : setup_(setup), names_(std::move(names)), size_(size), places_(size.columns, size.rows) {}
+  SheetSink(const SinkSetup& setup, FileNames names, const PictureSize& size)
+      : setup_(setup), names_(std::move(names)), size_(size), places_(size.width, size.height) {}
 
   bool looks_ahead() const override { return true; }
 
@@ -100,10 +82,10 @@ class SheetSink : public StreamSink {
         return usage_error(
             "--output is \"{}\": there are more paints than a sheet of {} x {} has room for: write {{index}} into it, "
             "as in 'sheet-{{index}}.png'",
-            setup_.options.output, size_.columns, size_.rows);
+            setup_.options.output, size_.width, size_.height);
       GONIO_TRY(end());
     }
-    if (!sheet_) sheet_.emplace(size_.columns, size_.rows, setup_.request.size.width, setup_.request.size.height);
+    if (!sheet_) sheet_.emplace(size_.width, size_.height, setup_.request.size.width, setup_.request.size.height);
     number_ = slot.place.sheet;
     const std::string name = slot.source.paint.name.empty() ? "?" : slot.source.paint.name;
     sheet_->put(slot.place.cell, slot.source.failure ? nullptr : &slot.shown,
@@ -122,17 +104,15 @@ class SheetSink : public StreamSink {
  private:
   SinkSetup setup_;
   FileNames names_;
-  SheetSize size_;
+  PictureSize size_;  // in cells
   image::SheetPlaces places_;
   std::optional<image::ContactSheet> sheet_;
   std::size_t number_ = 0, files_ = 0;
 };
 
-// Frames on standard output.
 class FrameSink : public StreamSink {
  public:
-  FrameSink(const SinkSetup& setup, image::FrameFormat format, OutputFile out)
-      : setup_(setup), format_(format), out_(std::move(out)) {}
+  explicit FrameSink(const SinkSetup& setup) : setup_(setup), frames_(setup.options.to) {}
 
   Result<void> finish(StreamSlot& slot) override {
     if (setup_.display == nullptr) {
@@ -141,44 +121,36 @@ class FrameSink : public StreamSink {
       return {};
     }
     GONIO_TRY(show(setup_, slot));
-    slot.content = image::frame_content(format_, slot.shown);
+    slot.content = frames_.content(slot.shown);
     return {};
   }
 
   Result<void> settle(StreamSlot& slot) override {
-    if (slot.source.failure) return {};
-    if (frames_++ == 0 && setup_.display != nullptr)
-      GONIO_TRY(out_.write(image::frames_head(format_, setup_.request.size.width, setup_.request.size.height)));
-    GONIO_TRY(out_.write(slot.content));
-    return out_.flush();
+    return slot.source.failure ? Result<void>() : frames_.write(slot.content, setup_.request.size);
   }
-
-  Result<void> end() override { return out_.commit(); }
   std::size_t files() const override { return 0; }
 
  private:
   SinkSetup setup_;
-  image::FrameFormat format_;
-  OutputFile out_;
-  std::size_t frames_ = 0;
+  FrameOutput frames_;
 };
 
 }  // namespace
 
 Result<std::unique_ptr<StreamSink>> stream_sink(const SinkSetup& setup) {
   const Options& options = setup.options;
-  if (!options.to.empty()) {
-    GONIO_ASSIGN(OutputFile out, OutputFile::create("-"));
-    const auto format = options.to == "ppm" ? image::FrameFormat::kPpm : image::FrameFormat::kY4m;
-    return std::unique_ptr<StreamSink>(std::make_unique<FrameSink>(setup, format, std::move(out)));
-  }
+  if (!options.to.empty()) return std::unique_ptr<StreamSink>(std::make_unique<FrameSink>(setup));
   const bool is_sheet = !options.sheet.empty();
   const std::vector<std::string> words =
       is_sheet ? std::vector<std::string>{"index"} : std::vector<std::string>{"name", "code", "index"};
   GONIO_ASSIGN(FileNames names, FileNames::create(options.output, words, "--output"));
   if (!is_sheet) return std::unique_ptr<StreamSink>(std::make_unique<FileSink>(setup, std::move(names)));
-  GONIO_ASSIGN(const SheetSize size, parse_sheet(options.sheet));
-  return std::unique_ptr<StreamSink>(std::make_unique<SheetSink>(setup, std::move(names), size));
+  constexpr int kMostCells = 64;
+  const auto size = width_by_height(options.sheet, kMostCells);
+  if (!size)
+    return usage_error("--sheet is \"{}\": write COLSxROWS, 1x1 to {}x{}, as in 3x3", options.sheet, kMostCells,
+                       kMostCells);
+  return std::unique_ptr<StreamSink>(std::make_unique<SheetSink>(setup, std::move(names), *size));
 }
 
 }  // namespace goniochrome::tool

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/angles.h"
-#include "base/clock.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "envmap/cube_map.h"
@@ -96,17 +96,17 @@ bool same_light(const std::vector<image::AovLight>& kept, const std::vector<rend
   });
 }
 
-// The background around the mesh.
-void put_background(const render::Gbuffer& gbuffer, const render::Scene& scene, image::Image& picture) {
+// The background around the mesh of a sample whose rows begin at `top`.
+void put_background(const render::Gbuffer& gbuffer, const render::Scene& scene, int top, image::Image& picture) {
   if (scene.background == render::Background::kNone) return;
-  parallel_for(static_cast<std::size_t>(picture.height), 8, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < picture.width; ++x) {
+      for (int x = 0; x < gbuffer.width; ++x) {
         if (gbuffer.part(x, y) >= 0) continue;
         const Vec3 color = scene.background == render::Background::kColor
                                ? scene.background_color
                                : envmap::bilinear(scene.env->mirror.map, -gbuffer.to_viewer(x, y));
-        float* pixel = picture.pixel(x, y);
+        float* pixel = picture.pixel(x, top + y);
         for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(color[c]);
         pixel[3] = 1;
       }
@@ -174,100 +174,68 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
   return view;
 }
 
-std::optional<KeptTransport> kept_transport(std::optional<render::LobeTransport> light, image::AovFile file,
-                                            const Options& options, const std::vector<render::Light>& lights,
-                                            cli::Session& session) {
-  if (!light) return std::nullopt;
+Result<std::optional<KeptTransport>> kept_transport(std::optional<render::LobeTransport> light, image::AovFile file,
+                                                    const Options& options, const Request& request,
+                                                    cli::Session& session) {
+  if (!light) return std::optional<KeptTransport>();
   if ((!options.env.empty() && options.env != file.environment) ||
-      (!lights.empty() && !same_light(file.lights, lights))) {
+      (!request.lights.empty() && !same_light(file.lights, request.lights))) {
     session.warn(
         fmt::format("{} holds the light of {} and {} lights, and the command line has other light: the "
                     "picture has no shadows: leave out --env and --light, or trace the transport again",
                     file.path, file.environment.empty() ? "no environment" : file.environment, file.lights.size()));
-    return std::nullopt;
+    return std::optional<KeptTransport>();
   }
+  if (file.reflection.k != request.reflection.k && light->bounces > 0)
+    return usage_error("--operator is another than that of --gbuffer: bounced light was traced with that one");
   file.image = {};
-  return KeptTransport{*std::move(light), std::move(file)};
+  return std::optional(KeptTransport{*std::move(light), std::move(file)});
 }
 
-ViewShader::ViewShader(const KeptTransport& kept, const render::Gbuffer& gbuffer, const render::Scene& scene)
-    : kept_(kept), gbuffer_(gbuffer), scene_(scene), scaler_(kept.light, render::operator_or_null(scene.reflection)) {}
-
-// Lays the light out, once, and once more where a paint comes that changes with the view.
-void ViewShader::lay_out(bool with_views) {
-  if (shader_ && (with_views_ || !with_views)) return;
-  const Stopwatch laying;
-  with_views_ = with_views;
-  shader_ = std::make_unique<render::TransportShader>(
-      kept_.light, with_views ? render::view_angles_deg(kept_.light, {&gbuffer_}) : std::vector<float>());
-  load_ms_ = 1000 * laying.elapsed_s();
-}
+ViewShader::ViewShader(const render::LobeTransport& light, std::vector<const render::Gbuffer*> samples,
+                       const render::Scene& scene)
+    : light_(light),
+      samples_(std::move(samples)),
+      scene_(scene),
+      shader_(light, render::view_angles_deg(light, samples_)),
+      load_ms_(1000 * laying_.elapsed_s()),
+      scaler_(light, render::operator_or_null(scene.reflection)) {}
 
 Result<ShadedPaint> ViewShader::shade(const DressedMesh& dress, image::Image& picture) {
-  const render::LobeTransport& light = kept_.light;
   std::vector<render::PartPaint> parts;
   for (std::size_t part = 0; part < dress.paints.size(); ++part)
     parts.push_back({&dress.paints[part], dress.anisotropy[part], dress.gloss_deg[part], dress.names[part],
                      scene_.mesh->parts[part].name});
-  GONIO_ASSIGN(const render::ShownPaints shown, render::shown_paints(light.columns, light.worn, parts));
+  GONIO_ASSIGN(const render::ShownPaints shown, render::shown_paints(light_.columns, light_.worn, parts));
   ShadedPaint result;
   result.coat_changed = shown.coat_changed;
-  if (kept_.file.reflection.k != scene_.reflection.k && light.bounces > 0)
-    return usage_error("--operator is another than that of --gbuffer: bounced light was traced with that one");
-  const color::ReflectionOperator* reflection = render::operator_or_null(scene_.reflection);
-  lay_out(shown.with_views);
   const Stopwatch judging;
   const render::BounceScale scale = scaler_.scale(shown.weights);
   result.scale_ms = 1000 * judging.elapsed_s();
   result.scaled = scale.changed, result.bounced_de00_p95 = scale.error_p95_de00;
-  const std::size_t floats = 4 * static_cast<std::size_t>(gbuffer_.width) * static_cast<std::size_t>(gbuffer_.height);
+  const std::size_t floats = 4 * static_cast<std::size_t>(light_.width) * static_cast<std::size_t>(light_.height);
   if (picture.data.size() != floats) {  // else it has the background, and shading changes all other pixels
-    picture = {gbuffer_.width, gbuffer_.height, 4, {}, {"R", "G", "B", "A"}};
+    picture = {light_.width, light_.height, 4, {}, {"R", "G", "B", "A"}};
     picture.data.assign(floats, 0);
-    put_background(gbuffer_, scene_, picture);
+    int top = 0;
+    for (const render::Gbuffer* sample : samples_)
+      put_background(*sample, scene_, std::exchange(top, top + sample->height), picture);
   }
   const Stopwatch shading;
-  shader_->shade(shown.paints, reflection, scale, 1, picture);
+  shader_.shade(shown.paints, render::operator_or_null(scene_.reflection), scale, 1, picture);
   result.frame_ms = 1000 * shading.elapsed_s();
   return result;
 }
 
 Json ViewShader::figures(const ShadedPaint& shaded, double tolerance) const {
-  const double points = static_cast<double>(kept_.light.places.size());
-  return {{"points", kept_.light.places.size()},
-          {"columns", kept_.light.columns.count()},
-          {"bytes_per_point", static_cast<double>(shader_->bytes()) / std::max<double>(1, points)},
+  const std::size_t points = light_.places.size();
+  return {{"points", points},
+          {"columns", light_.columns.count()},
+          {"bytes_per_point", static_cast<double>(shader_.bytes()) / std::max<double>(1, static_cast<double>(points))},
           {"load_ms", load_ms_},
           {"scale_ms", shaded.scale_ms},
           {"bounced_de00_p95", json_number(shaded.bounced_de00_p95)},
           {"trace_again", shaded.bounced_de00_p95 > tolerance}};
-}
-
-void tell_coat(cli::Session& session) {
-  session.warn(
-      "a paint has a coat and took the place of one without it, or the other way round: toward grazing the picture "
-      "is that of the paint whose light was traced");
-}
-
-Result<ShadedPaint> shaded_view(const KeptTransport& kept, const render::Gbuffer& gbuffer, const DressedMesh& dress,
-                                const render::Scene& scene, image::Image& picture, cli::Session& session) {
-  ViewShader shader(kept, gbuffer, scene);
-  GONIO_ASSIGN(const ShadedPaint shaded, shader.shade(dress, picture));
-  if (shaded.coat_changed) tell_coat(session);
-  const double tolerance = session.common().tolerance;
-  session.results()["transport"] = shader.figures(shaded, tolerance);
-  if (!shaded.scaled) {
-    session.say("bounced light is that of these paints");
-  } else if (shaded.bounced_de00_p95 <= tolerance) {
-    session.say(fmt::format("bounced light was traced in other paints and scaled to these: off by {:.2f} dE00 (p95)",
-                            shaded.bounced_de00_p95));
-  } else {
-    session.warn(fmt::format(
-        "bounced light was traced in other paints; scaled to these it is off by {:.2f} dE00 (p95), above --tolerance "
-        "{}: trace again with --aov transport in these paints",
-        shaded.bounced_de00_p95, tolerance));
-  }
-  return shaded;
 }
 
 }  // namespace goniochrome::tool

@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "base/clock.h"
 #include "base/result.h"
 #include "envmap/environment.h"
 #include "image/aov_file.h"
 #include "paints.h"
 #include "render/light_transport.h"
 #include "render/renderer.h"
+#include "request.h"
 #include "tool.h"
 
 namespace goniochrome::tool {
@@ -38,10 +40,11 @@ struct KeptTransport {
   render::LobeTransport light;
   image::AovFile file;  // without its pictures
 };
-// Nothing where there is no light, or where the command line has other light than the file, which is told.
-std::optional<KeptTransport> kept_transport(std::optional<render::LobeTransport> light, image::AovFile file,
-                                            const Options& options, const std::vector<render::Light>& lights,
-                                            cli::Session& session);
+// Nothing where there is no light, or where the command line has other light than the file, which is told. Error
+// (usage): bounced light was traced with another operator.
+Result<std::optional<KeptTransport>> kept_transport(std::optional<render::LobeTransport> light, image::AovFile file,
+                                                    const Options& options, const Request& request,
+                                                    cli::Session& session);
 
 // The results of shading a view in some paints.
 struct ShadedPaint {
@@ -51,36 +54,29 @@ struct ShadedPaint {
   bool coat_changed = false;          // whether a coat took the place of none, or none that of a coat
 };
 
-// Shows one view in any number of paints. What is given must outlive it; of the scene, the mesh's parts, the operator,
-// the environment and the background are read.
+// Shows the light of one view in any number of paints. What is given must outlive it, but for the light of the points,
+// which it lays out anew; of the scene, the mesh's parts, the operator, the environment and the background are read.
 class ViewShader {
  public:
-  ViewShader(const KeptTransport& kept, const render::Gbuffer& gbuffer, const render::Scene& scene);
+  // `samples` of the pixels, one G-buffer each, lie below each other in the light.
+  ViewShader(const render::LobeTransport& light, std::vector<const render::Gbuffer*> samples,
+             const render::Scene& scene);
 
   // Makes `picture` that of these paints, R G B A, with the scene's background. A picture that shade() made before is
-  // drawn over. Error: a paint that the transport cannot show.
+  // drawn over. Error: a paint that the light cannot show.
   Result<ShadedPaint> shade(const DressedMesh& dress, image::Image& picture);
 
   // `transport` of the report.
   Json figures(const ShadedPaint& shaded, double tolerance) const;
 
  private:
-  void lay_out(bool with_views);
-
-  const KeptTransport& kept_;
-  const render::Gbuffer& gbuffer_;
+  const render::LobeTransport& light_;
+  std::vector<const render::Gbuffer*> samples_;
   const render::Scene& scene_;
+  Stopwatch laying_;
+  render::TransportShader shader_;
+  double load_ms_;
   render::BounceScaler scaler_;
-  std::unique_ptr<render::TransportShader> shader_;  // none: not yet
-  bool with_views_ = false;                          // of the shader
-  double load_ms_ = 0;
 };
-
-// Warns of ShadedPaint::coat_changed.
-void tell_coat(cli::Session& session);
-
-// Shades one view, as ViewShader does, and tells what scaling the bounced light errs by.
-Result<ShadedPaint> shaded_view(const KeptTransport& kept, const render::Gbuffer& gbuffer, const DressedMesh& dress,
-                                const render::Scene& scene, image::Image& picture, cli::Session& session);
 
 }  // namespace goniochrome::tool

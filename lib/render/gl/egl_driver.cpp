@@ -1,4 +1,4 @@
-#include "render/gl/egl_driver.h"
+#include "render/gl/driver.h"
 
 #define EGL_NO_X11
 #include <EGL/egl.h>
@@ -129,7 +129,7 @@ bool draws_by_software(const Egl& egl) {
 }
 
 // A context on this display. Error: what it lacks.
-Result<std::shared_ptr<const GlDriver>> driver_on(const Egl& egl, EGLDisplay display, bool on_gpu) {
+Result<GlDriverPointer> driver_on(const Egl& egl, EGLDisplay display, bool on_gpu) {
   const auto failed = [&](const char* what) { return input_error("{} (EGL error 0x{:04x})", what, egl.error()); };
   if (egl.initialize(display, nullptr, nullptr) != EGL_TRUE) return failed("a device cannot be opened");
   if (!lists(egl.text(display, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context"))
@@ -152,12 +152,12 @@ Result<std::shared_ptr<const GlDriver>> driver_on(const Egl& egl, EGLDisplay dis
   if (egl.make_current(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) != EGL_TRUE)
     return failed("a context cannot be used");
   if (draws_by_software(egl) == on_gpu) return input_error("a device draws on {}", on_gpu ? "the processor" : "a GPU");
-  return std::shared_ptr<const GlDriver>(std::move(driver));
+  return GlDriverPointer(std::move(driver));
 }
 
 }  // namespace
 
-Result<std::shared_ptr<const GlDriver>> egl_driver(bool on_gpu) {
+Result<GlDriverPointer> egl_driver(bool on_gpu) {
   const auto none = [on_gpu](const std::string& why) {
     if (!on_gpu) return input_error("EGL has no software renderer: {}", why);
     return input_error(

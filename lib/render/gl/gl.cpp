@@ -1,13 +1,11 @@
 #include "render/gl/gl.h"
 
-#include "render/gl/gl_driver.h"
-
 namespace goniochrome::render {
 
-GlContext::GlContext(std::shared_ptr<const GlDriver> driver) : driver_(std::move(driver)) {}
+GlContext::GlContext(GlDriverPointer driver) : driver_(std::move(driver)) {}
 
 Result<GlContext> GlContext::create(OpenGlBy by) {
-  GONIO_ASSIGN(std::shared_ptr<const GlDriver> driver, make_gl_driver(by));
+  GONIO_ASSIGN(GlDriverPointer driver, gl_driver(by));
   GlContext gl(std::move(driver));
 #define GONIO_GL_LOAD(type, name)                                    \
   gl.name = reinterpret_cast<type>(gl.driver_->address("gl" #name)); \

@@ -8,7 +8,7 @@
 
 #include "base/result.h"
 #include "render/camera.h"
-#include "render/gl/gl_choice.h"
+#include "render/gl/driver.h"
 
 // Every OpenGL function in use. libepoxy aborts under OSMesa, so they are looked up here, by name.
 #define GONIO_GL_FUNCTIONS(X)                            \
@@ -46,15 +46,11 @@
   X(PFNGLTEXIMAGE2DPROC, TexImage2D)                     \
   X(PFNGLTEXPARAMETERIPROC, TexParameteri)               \
   X(PFNGLUNIFORM1IPROC, Uniform1i)                       \
-  X(PFNGLUNIFORM2FPROC, Uniform2f)                       \
   X(PFNGLUNIFORM3FPROC, Uniform3f)                       \
-  X(PFNGLUNIFORM4FPROC, Uniform4f)                       \
   X(PFNGLUSEPROGRAMPROC, UseProgram)                     \
   X(PFNGLVIEWPORTPROC, Viewport)
 
 namespace goniochrome::render {
-
-class GlDriver;
 
 // A core profile context without a window. Everything made in it goes with it.
 class GlContext {
@@ -91,8 +87,8 @@ class GlContext {
 #undef GONIO_GL_MEMBER
 
  private:
-  explicit GlContext(std::shared_ptr<const GlDriver> driver);
-  std::shared_ptr<const GlDriver> driver_;
+  explicit GlContext(GlDriverPointer driver);
+  GlDriverPointer driver_;
 };
 
 }  // namespace goniochrome::render

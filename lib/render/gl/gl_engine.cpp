@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
 #include "render/gl/disc_texture.h"
 #include "render/gl/exact_lookups.h"
 #include "render/gl/shader.h"
 #include "render/gl/shader_parts.h"
-#include "render/gl/tilt_shader.h"
-#include "render/internal/coat_stretch.h"
+#include "render/internal/tilt_table.h"
 #include "render/scene_effects.h"
 
 namespace goniochrome::render {
@@ -22,11 +20,11 @@ const EngineInfo GlEngine::kInfo = {
     .traces_rays = false,
     .needs_opengl = true,
     .needs_mesh = true,
-    .draws_placed_lamps = true,
+    .draws_placed_lamps = false,
     .make = [](Sight& sight) -> std::unique_ptr<Engine> { return std::make_unique<GlEngine>(sight.gl()); }};
 
-Result<void> GlEngine::can_shade(const Scene& scene) const {
-  if (gl_ != nullptr) return draws_placed_lamps(scene, kInfo.name);
+Result<void> GlEngine::can_shade(const Scene&) const {
+  if (gl_ != nullptr) return {};
   return usage_error("the engine gl draws the mesh: a G-buffer that is given is shaded by cpu");
 }
 
@@ -47,7 +45,12 @@ void GlEngine::upload(const envmap::CubeMap& map, const std::string& sampler) {
 
 Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
   GONIO_ASSIGN(const SceneMaps maps, scene_maps(scene, effects));
-  std::string text = shading_fragment_shader(scene, effects);
+  if (!tilt_exponents(scene, effects).empty())
+    return usage_error(
+        "the engine gl draws no tilted lobes, which stand for color maps and rough coats: take the engine cpu, or "
+        "leave "
+        "them out by --effects auto,-travel,-satin");
+  std::string text = shading_fragment_shader(effects, scene.reflection);
   if (gl_->on_gpu()) text = with_exact_lookups(text);
   if (text != text_) {
     if (program_ != 0) gl_->DeleteProgram(program_);
@@ -65,15 +68,9 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
       upload(*lobes.maps[i], fmt::format("lobe_{}", lobes.slots[i] - 1));
   }
   if (maps.mirror.size > 0) upload(*maps.mirror.maps[0], "mirror");
-  tilt_exponents_ = tilt_exponents(scene, effects);
-  for (const double exponent : tilt_exponents_) {
-    const std::string sampler = tilt_sampler(effects, tilt_exponents_, exponent);
-    if (sampler.starts_with("tilted_")) upload(scene.env->lobe(exponent)->map, sampler);
-  }
   effects_ = effects;
   const int units = gl_->integer(GL_MAX_TEXTURE_IMAGE_UNITS);
-  const std::size_t needed = 2 + (effects.anisotropy ? 1 : 0) + (tilt_exponents_.empty() ? 0 : 1) +
-                             (effects.discs() ? 1 : 0) + (finds_lamps(effects) ? 1 : 0) + cubes_.size();
+  const std::size_t needed = 2 + (effects.anisotropy ? 1 : 0) + (effects.discs() ? 1 : 0) + cubes_.size();
   if (static_cast<int>(needed) > units) {
     return input_error(
         "the paints use {} lobes, but OpenGL has only {} texture units: fit the paints to one common basis, or take "
@@ -84,71 +81,32 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
   return gl_->status("uploading the scene");
 }
 
-void GlEngine::upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts) {
-  const std::vector<float> texels = tilt_texels(tilts);
-  tilts_ = gl_->float_texture(static_cast<int>(texels.size() / (4 * tilts.size())), static_cast<int>(tilts.size()),
-                              texels.data());
-}
-
-void GlEngine::upload_tilted(const Scene& scene) {
-  const TiltTexture texture = tilt_texture(tilt_table(scene, effects_, tilt_exponents_), tilt_exponents_.size());
-  tilt_stride_ = static_cast<int>(texture.stride);
-  tilted_ = gl_->float_texture(static_cast<int>(kTiltTexels), static_cast<int>(texture.rgba.size() / (4 * kTiltTexels)),
-                               texture.rgba.data());
-}
-
-void GlEngine::upload_discs() {
-  const FloatTexture discs = disc_texture(lights_, effects_);
-  discs_ = gl_->float_texture(discs.columns, discs.rows, discs.rgba.data());
-}
-
-// Uploads the position of each pixel, as the processor finds it.
-void GlEngine::upload_positions(const Gbuffer& gbuffer) {
-  const auto wide = static_cast<std::size_t>(gbuffer.width), high = static_cast<std::size_t>(gbuffer.height);
-  std::vector<float> texels(4 * wide * high, 0.0F);
-  parallel_for(high, 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin * wide; i < end * wide; ++i) {
-      const auto x = static_cast<int>(i % wide), y = static_cast<int>(i / wide);
-      if (gbuffer.part(x, y) < 0) continue;
-      std::ranges::copy(from_origin(mesh_point(*mesh_, gbuffer, x, y).position, origin_), &texels[4 * i]);
-    }
-  });
-  gl_->DeleteTextures(1, &positions_);
-  positions_ = gl_->float_texture(gbuffer.width, gbuffer.height, texels.data());
-}
-
 void GlEngine::set_lamps() {
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     gl_->set(program_, fmt::format("light_direction[{}]", i), lights_[i].direction);
     gl_->set(program_, fmt::format("light_white[{}]", i), lights_[i].white);
-    const auto at = [&](const char* name) {
-      return gl_->GetUniformLocation(program_, fmt::format("{}[{}]", name, i).c_str());
-    };
     if (discs_ != 0) gl_->set(program_, fmt::format("light_disc[{}]", i), disc_uniform(lights_[i]));
-    if (placed_.empty()) continue;
-    const PlacedLamp& lamp = placed_[i];
-    gl_->Uniform4f(at("lamp_place"), lamp.position[0], lamp.position[1], lamp.position[2], lamp.reach2);
-    gl_->Uniform2f(at("lamp_size"), lamp.least2, lamp.radius2);
   }
 }
 
 void GlEngine::load_paints(const Scene& scene) {
-  const WeightTable table = weight_table(scene, effects_, stretched_parts(scene, effects_));
+  const WeightTable table = weight_table(scene, effects_);
   gl_->DeleteTextures(1, &weights_);
   weights_ = gl_->float_texture(2 * table.slots * table.segments, table.parts, table.rgba.data());
   gl_->DeleteTextures(1, &tilts_);
   tilts_ = 0;
-  if (effects_.anisotropy) upload_tilts(tilts_of(scene, effects_));
-  gl_->DeleteTextures(1, &tilted_);
-  tilted_ = 0;
-  if (!tilt_exponents_.empty()) upload_tilted(scene);
+  if (effects_.anisotropy) {
+    const std::vector<float> texels = tilt_texels(tilts_of(scene, effects_));
+    const auto rows = static_cast<int>(scene.paints.size());
+    tilts_ = gl_->float_texture(static_cast<int>(texels.size() / 4) / rows, rows, texels.data());
+  }
   lights_ = single_lights(scene, effects_);
-  mesh_ = finds_lamps(effects_) ? scene.mesh : nullptr;
-  origin_ = mesh_ != nullptr ? origin_of(*mesh_) : Vec3{};
-  placed_ = placed_lamps(lights_, origin_);
   gl_->DeleteTextures(1, &discs_);
   discs_ = 0;
-  if (effects_.discs() && !lights_.empty()) upload_discs();
+  if (effects_.discs() && !lights_.empty()) {
+    const FloatTexture discs = disc_texture(lights_, effects_);
+    discs_ = gl_->float_texture(discs.columns, discs.rows, discs.rgba.data());
+  }
   background_color_ = scene.background_color;
 }
 
@@ -164,7 +122,6 @@ Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, ima
   GONIO_TRY(resize(seen->width, seen->height));
   gl_->DeleteTextures(1, &gbuffer_);
   gbuffer_ = gl_->float_texture(seen->width, seen->height, seen->data.data());
-  if (mesh_ != nullptr) upload_positions(*seen);
   gain_ = gain;
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_);
   gl_->Viewport(0, 0, width_, height_);
@@ -180,12 +137,7 @@ Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, ima
   bind("gbuffer", GL_TEXTURE_2D, gbuffer_);
   bind("weights", GL_TEXTURE_2D, weights_);
   if (effects_.anisotropy) bind("tilts", GL_TEXTURE_2D, tilts_);
-  if (tilted_ != 0) {
-    bind("tilted", GL_TEXTURE_2D, tilted_);
-    gl_->Uniform1i(gl_->GetUniformLocation(program_, "tilt_stride"), tilt_stride_);
-  }
   if (discs_ != 0) bind("discs", GL_TEXTURE_2D, discs_);
-  if (mesh_ != nullptr) bind("positions", GL_TEXTURE_2D, positions_);
   for (const auto& [sampler, texture] : cubes_) bind(sampler, GL_TEXTURE_CUBE_MAP, texture);
   gl_->ActiveTexture(GL_TEXTURE0);
   set_lamps();

@@ -5,11 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "brdf/ward.h"
 #include "render/engine.h"
 #include "render/gl/gl.h"
 #include "render/internal/maps.h"
-#include "render/internal/placed_lamps.h"
 
 namespace goniochrome::render {
 
@@ -21,11 +19,10 @@ class GlEngine : public Engine {
   explicit GlEngine(const GlContext* gl) : gl_(gl) {}
 
   const EngineInfo& info() const override { return kInfo; }
-  // Error: there is no OpenGL, because the renderer was given a G-buffer; a paint shows the extent of a lamp at a
-  // place.
+  // Error: there is no OpenGL, because the renderer was given a G-buffer.
   Result<void> can_shade(const Scene& scene) const override;
-  // Uploads maps and weights, and compiles the program if it is another. Error: as scene_maps(), and more maps than
-  // there are texture units.
+  // Uploads maps and weights, and compiles the program if it is another. Error: as scene_maps(), tilted lobes, and
+  // more maps than there are texture units.
   Result<void> load(const Scene& scene, const Effects& effects) override;
   void load_paints(const Scene& scene) override;
   // Samples are summed in OpenGL; finish() reads their sum back and applies the gain.
@@ -34,26 +31,17 @@ class GlEngine : public Engine {
 
  private:
   Result<void> resize(int width, int height);
-  void upload_discs();
-  void upload_positions(const Gbuffer& gbuffer);
   void set_lamps();
-  void upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts);
-  void upload_tilted(const Scene& scene);
   void upload(const envmap::CubeMap& map, const std::string& sampler);
 
   const GlContext* gl_;
   Effects effects_;
   std::string text_;
-  GLuint program_ = 0, weights_ = 0, tilts_ = 0, tilted_ = 0, discs_ = 0, no_vertices_ = 0, texture_ = 0, target_ = 0;
+  GLuint program_ = 0, weights_ = 0, tilts_ = 0, discs_ = 0, no_vertices_ = 0, texture_ = 0, target_ = 0;
   std::vector<std::pair<std::string, GLuint>> cubes_;  // by the name of their sampler
-  GLuint gbuffer_ = 0, positions_ = 0;                 // of the sample that was shaded last
+  GLuint gbuffer_ = 0;                                 // of the sample that was shaded last
   std::vector<Light> lights_;
-  std::vector<PlacedLamp> placed_;
-  const mesh::Mesh* mesh_ = nullptr;  // which lamps at a place need
-  Vec3 origin_;
   color::Rgb background_color_;
-  std::vector<double> tilt_exponents_;  // of tilted lobes
-  int tilt_stride_ = 0;
   int width_ = 0, height_ = 0;
   float gain_ = 1;
 };

@@ -5,7 +5,6 @@
 #include "base/angles.h"
 #include "base/text.h"
 #include "render/gl/shader_parts.h"
-#include "render/gl/tilt_shader.h"
 
 namespace goniochrome::render {
 
@@ -97,7 +96,7 @@ std::string lobe_functions(const Effects& effects, bool shaded) {
 }
 
 // L = K_D pi P_1(n) + sum W_j P_Ej(r) + K_M F P_inf(r)
-std::string environment_terms(const Effects& effects, bool tilted, bool shaded) {
+std::string environment_terms(const Effects& effects, bool shaded) {
   std::string text = "\n  // the environment\n";
   const auto term = [&](int slot, const char* map, const std::string& direction, double exponent) {
     text += fmt::format("  products += {};\n", product_with_map(effects, slot, map, direction, exponent, shaded));
@@ -106,7 +105,6 @@ std::string environment_terms(const Effects& effects, bool tilted, bool shaded) 
   if (effects.diffuse && effects.coat) term(slots_of(effects).coat_diffuse_slot(), "coat_diffuse", "n", kDiffusePart);
   if (!effects.lobes.empty()) text += over_tilts(effects, "products", "lobes", ", n");
   if (effects.mirror) term(slots_of(effects).mirror_slot(), "mirror", "r", paint::kMirrorExponent);
-  if (tilted) text += "  products += tilted_lobes(r, n, wo);\n";
   return text;
 }
 
@@ -114,7 +112,7 @@ std::string environment_terms(const Effects& effects, bool tilted, bool shaded) 
 std::string lit_sum(const Effects& effects, bool shaded) {
   const char* share = shaded ? "(i < own_lamps ? 1.0 : lit) * " : "";
   return fmt::format("    products += {};\n  }}\n",
-                     product(effects, fmt::format("{}{} * {}", share, glsl(kPi), lamp_white(effects)), "reflected"));
+                     product(effects, fmt::format("{}{} * light_white[i]", share, glsl(kPi)), "reflected"));
 }
 
 // The terms of discs, with their mirror images.
@@ -143,13 +141,13 @@ std::string light_terms(const Effects& effects, bool shaded) {
       R"(
   // the lights
   for (int i = 0; i < {}; ++i) {{
-    vec3 l = {};
+    vec3 l = light_direction[i];
     float cos_i = dot(n, l);
     if (cos_i <= 0.0) continue;
     float base = cos_i{};
     vec3 reflected = {};
 )",
-      effects.single_lights(), lamp_direction(effects),
+      effects.single_lights(),
       effects.coat ? fmt::format(" * let_in(cos_i, W({}).a)", slots_of(effects).light_slot()) : "",
       effects.diffuse ? fmt::format("base * W({}).rgb", slots_of(effects).light_slot()) : "vec3(0.0)");
   if (!effects.lobes.empty()) {
@@ -168,14 +166,12 @@ std::string shading_vertex_shader() {
 )";
 }
 
-std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
-                                    const std::vector<double>& tilted, bool on_page) {
+std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op, bool on_page) {
   const bool lit_lobes = effects.single_lights() > 0 && !effects.lobes.empty(), shaded = is_shaded(effects, on_page);
   // 1. What the program is given, and the functions that it needs.
   std::string text = std::string(kHead) + "// goniochrome-rendering(7), \"RENDERING\"\n";
-  text += uniforms(effects) + tilt_uniforms(effects, tilted) + kPixel + kRays +
-          "layout(location = 0) out vec4 color;\n" + kWeight + page_functions(effects, on_page) +
-          placed_lamp_functions(effects);
+  text += uniforms(effects) + kPixel + kRays + "layout(location = 0) out vec4 color;\n" + kWeight +
+          page_functions(effects, on_page);
   if (effects.reflection) text += reflection_function(op);
   if (lit_gloss(effects)) text += fresnel_function();
   if (effects.coat && effects.single_lights() > 0) text += kLetIn;
@@ -183,7 +179,6 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   if (effects.single_lights() > 0 && effects.discs())
     text += disc_functions(effects.lobes.size()) + disc_weights(effects);
   if (!effects.lobes.empty()) text += lobe_functions(effects, shaded);
-  text += tilt_function(effects, tilted);
   const bool projected_ground = on_page && effects.background == Background::kEnvironment;
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
   if (projected_ground) text += kMeshColor;
@@ -195,13 +190,9 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   if (shaded) text += occlusion_start(effects);
   // 3. The sum of what the environment and the lights show.
   text += tilt_frame(effects);
-  if (effects.environment) text += environment_terms(effects, !tilted.empty(), shaded);
+  if (effects.environment) text += environment_terms(effects, shaded);
   if (effects.single_lights() > 0) text += light_terms(effects, shaded);
   return text + fmt::format("  color = vec4({}, 1.0);\n}}\n", color_of(effects, "products"));
-}
-
-std::string shading_fragment_shader(const Scene& scene, const Effects& effects) {
-  return shading_fragment_shader(effects, scene.reflection, tilt_exponents(scene, effects));
 }
 
 std::string for_opengl_es(const std::string& program) {

@@ -14,7 +14,7 @@ namespace goniochrome::render {
 namespace {
 
 constexpr double kSharpestBands = 8;  // exponent
-constexpr double kAsMirror = 20;      // A lobe so many times as sharp as the sharpest of all shows what the mirror does.
+constexpr double kAsMirror = 20;  // A lobe so many times as sharp as the sharpest of all shows what the mirror does.
 
 bool is_sharp(double exponent) {
   return exponent > 2 * kSharpestBands;
@@ -209,53 +209,15 @@ std::string background_colors(const Effects& effects, bool projected_ground) {
   return before + fmt::format("    vec4 shown = {};\n    vec3 sent = {};\n", shown, sent);
 }
 
-bool finds_lamps(const Effects& effects) {
-  return effects.placed && effects.lights > 0;
-}
-
-std::string placed_lamp_functions(const Effects& effects) {
-  if (!finds_lamps(effects)) return {};
-  return fmt::format(
-      R"(
-uniform sampler2D positions;  // of what is seen, from the middle of the mesh
-uniform vec4 lamp_place[{0}];  // from there; the square of the distance of light_white, 0: far away
-uniform vec2 lamp_size[{0}];  // squares of the distance within which it grows no brighter, and of the sphere's radius
-vec4 lamps[{0}];  // as they are seen here: direction, and light relative to light_white
-void see_lamps() {{
-  vec3 position = texelFetch(positions, ivec2(gl_FragCoord.xy), 0).xyz;
-  for (int i = 0; i < {0}; ++i) {{
-    vec3 to = lamp_place[i].xyz - position;
-    float squared = dot(to, to), distance2 = max(squared, lamp_size[i].x);
-    bool far = lamp_place[i].w == 0.0;
-    lamps[i] = far ? vec4(light_direction[i], 1.0)
-                   : vec4(to * inversesqrt(max(squared, 1e-30)), lamp_place[i].w / distance2);
-  }}
-}}
-)",
-      effects.single_lights());
-}
-
-std::string placed_lamp_start(const Effects& effects) {
-  return finds_lamps(effects) ? "  see_lamps();\n" : "";
-}
-
-const char* lamp_direction(const Effects& effects) {
-  return finds_lamps(effects) ? "lamps[i].xyz" : "light_direction[i]";
-}
-
-const char* lamp_white(const Effects& effects) {
-  return finds_lamps(effects) ? "lamps[i].w * light_white[i]" : "light_white[i]";
-}
-
 std::string disc_loop(const Effects& effects, const std::string& index2) {
   return fmt::format(
       R"(  for (int i = 0; i < {}; ++i) {{
-    vec3 l = {}, disc = light_disc[i];
+    vec3 l = light_direction[i], disc = light_disc[i];
     float cos_i = dot(n, l);
     if (cos_i <= -disc.x) continue;
     vec2 seen = cos_i >= disc.x ? vec2(cos_i, 1.0) : disc_horizon(i, asin(cos_i) / asin(disc.x));
 {})",
-      effects.single_lights(), lamp_direction(effects),
+      effects.single_lights(),
       // At the mean cosine of what is seen of the disc.
       effects.coat ? fmt::format("    seen.x *= let_in(min(seen.x / max(seen.y, 1e-6), 1.0), {});\n", index2) : "");
 }
@@ -276,9 +238,8 @@ void main() {{
   float c = dot(n, wo);  // = n.r
   vec3 r = 2.0 * c * n - wo;
   row = {} - 1;
-{}{})",
-                     more, beside, on_page ? "(int(abs(point.w)) & 7)" : "int(abs(point.w))", row_of_view(effects),
-                     placed_lamp_start(effects));
+{})",
+                     more, beside, on_page ? "(int(abs(point.w)) & 7)" : "int(abs(point.w))", row_of_view(effects));
 }
 
 std::string tilt_frame(const Effects& effects) {

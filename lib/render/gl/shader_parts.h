@@ -120,16 +120,6 @@ bool lit_gloss(const Effects& effects);
 // horizon, by the elevation of its middle relative to its radius: irradiance and part.
 std::string disc_functions(std::size_t lobes);
 
-// Lamps at a place: `lamps` holds the direction of each and its light relative to light_white, as they are at a point,
-// once see_lamps() was called. The texts are empty where every lamp is far away.
-std::string placed_lamp_functions(const Effects& effects);
-std::string placed_lamp_start(const Effects& effects);
-// Names of lamp i in the program: its direction, and the white that faces it.
-const char* lamp_direction(const Effects& effects);
-const char* lamp_white(const Effects& effects);
-// True if the program finds lamps at each point.
-bool finds_lamps(const Effects& effects);
-
 // The start of a loop over lamps that are discs: l, disc, and `seen`, the cosine as the coat lets it in and the part of
 // the disc above the horizon. `index2` is the square of the coat's index.
 std::string disc_loop(const Effects& effects, const std::string& index2);

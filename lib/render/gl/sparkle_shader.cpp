@@ -134,8 +134,7 @@ layout(location = 0) out vec4 color;
 }}
 )",
       color_of(effects,
-               product(effects, fmt::format("(i < own_lamps ? 1.0 : lit) * {} * {}", glsl(kPi), lamp_white(effects)),
-                       "weight")),
+               product(effects, fmt::format("(i < own_lamps ? 1.0 : lit) * {} * light_white[i]", glsl(kPi)), "weight")),
       glsl((kFlakeNodes - 1) / kMostFlakeChord), kFlakeNodes - 2, glsl(2 * std::sqrt(kPi)), glsl(2 * kPi));
   return text;
 }

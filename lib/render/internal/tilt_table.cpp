@@ -67,12 +67,6 @@ const paint::TiltedLobes* set_of(const paint::LobeFit& paint, int level) {
 
 }  // namespace
 
-std::size_t TiltTable::most() const {
-  std::size_t most = 0;
-  for (const std::vector<TiltLookup>& row : rows) most = std::max(most, row.size());
-  return most;
-}
-
 const paint::TiltedLobes* drawn_tilts(const paint::LobeFit& paint, const Effects& effects) {
   return effects.environment ? set_of(paint, effects.tilt_level) : nullptr;
 }

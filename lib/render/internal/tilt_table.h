@@ -1,4 +1,4 @@
-// The look-ups of tilted lobes, as all engines with prefiltered maps read them: for each part and each segment of the
+// The look-ups of tilted lobes, as the engine cpu reads them: for each part and each segment of the
 // view, the lobes that have any weight there. goniochrome-interference(7), "TILTED LOBES".
 #pragma once
 
@@ -23,8 +23,6 @@ struct TiltTable {
   std::vector<int> group_of_part;  // parts that wear the same are one group
   // (group * segments + segment), each in the order of the maps.
   std::vector<std::vector<TiltLookup>> rows;
-
-  std::size_t most() const;  // of a row
 };
 
 // The set that a paint is drawn with by these effects, or null: its lobes are.

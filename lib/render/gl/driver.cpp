@@ -1,11 +1,10 @@
-#include "render/gl/gl_driver.h"
+#include "render/gl/driver.h"
 
 #include <sys/mman.h>
 
 #include <cstdlib>
 
 #include "base/parallel.h"
-#include "render/gl/egl_driver.h"
 #include "render/gl/late_library.h"
 
 namespace goniochrome::render {
@@ -61,7 +60,7 @@ class OsmesaDriver : public GlDriver {
   OSMesaContext context_;
 };
 
-Result<std::shared_ptr<const GlDriver>> osmesa_driver() {
+Result<GlDriverPointer> osmesa_driver() {
   GONIO_ASSIGN(const OSMesa* library, osmesa());
   const int wanted[] = {kFormat, kRgba, kDepthBits, 0, kProfile, kCoreProfile, kMajorVersion, 3, kMinorVersion, 3, 0};
   const OSMesaContext context = library->create(wanted, nullptr);
@@ -69,7 +68,7 @@ Result<std::shared_ptr<const GlDriver>> osmesa_driver() {
     return input_error("OSMesa makes no OpenGL 3.3 core context: install libosmesa6 of Mesa 22 or later");
   auto driver = std::make_shared<const OsmesaDriver>(*library, context);
   driver->make_current();
-  return std::shared_ptr<const GlDriver>(std::move(driver));
+  return GlDriverPointer(std::move(driver));
 }
 
 // True if there is as much address space as Mesa takes beside its libraries: short of it, it crashes.
@@ -81,10 +80,10 @@ bool has_room() {
 
 }  // namespace
 
-Result<std::shared_ptr<const GlDriver>> make_gl_driver(OpenGlBy by) {
+Result<GlDriverPointer> gl_driver(OpenGlBy by) {
   // Read once, when the first context of the process is made.
   setenv("LP_NUM_THREADS", std::to_string(threads()).c_str(), 0);
-  const auto with_room = [](auto make) -> Result<std::shared_ptr<const GlDriver>> {
+  const auto with_room = [](auto make) -> Result<GlDriverPointer> {
     if (has_room()) return make();
     return input_error("OpenGL takes some 450 MB of address space, which are not there: give more memory");
   };
