@@ -105,7 +105,7 @@ class Tracing {
   // No more than there is time for; whether any.
   bool cut(double reserved_s, std::vector<int>& more) const { return cut_round(pace_.left(reserved_s), more, whole); }
 
-  // What needs no samples, of all points.
+  // Finds what needs no samples, at all points.
   void look() {
     const std::size_t points = batches_.size();
     draw_round(all_points(), nullptr, [&](std::size_t i) { look(i); });
@@ -293,7 +293,7 @@ class Tracing {
     batches_[i] += added;
   }
 
-  // What samples tell of a column, by one half of them.
+  // The light of a column that one half of the samples tells.
   struct ColumnLight {
     color::Rgb direct, bounced;
     color::Rgb sum() const { return direct + bounced; }
@@ -358,7 +358,7 @@ class Tracing {
   // Rays alone are a reference, and are shown as they were sampled.
   Filters filters() const { return open_ != nullptr ? Filters::kChosen : Filters::kNone; }
 
-  // What samples tell of a column at the points that are kept, smoothed.
+  // The light of a column that samples tell at the points that are kept, smoothed.
   struct SmoothColumn {
     std::vector<color::Rgb> sum, bounced;
   };

@@ -42,7 +42,7 @@ class TransportReader {
   std::unique_ptr<State> state_;
 };
 
-// The same of a file that was read with its layers.
+// The transport of a file that was read with its layers.
 Result<std::optional<LobeTransport>> transport_of(const image::AovFile& file);
 
 }  // namespace goniochrome::render
