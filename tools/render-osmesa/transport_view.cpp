@@ -99,18 +99,14 @@ bool same_light(const std::vector<image::AovLight>& kept, const std::vector<rend
 // The background around the mesh.
 void put_background(const render::Gbuffer& gbuffer, const render::Scene& scene, image::Image& picture) {
   if (scene.background == render::Background::kNone) return;
-  parallel_for(static_cast<std::size_t>(picture.height), 8, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < picture.width; ++x) {
-        if (gbuffer.part(x, y) >= 0) continue;
-        const Vec3 color = scene.background == render::Background::kColor
-                               ? scene.background_color
-                               : envmap::bilinear(scene.env->mirror.map, -gbuffer.to_viewer(x, y));
-        float* pixel = picture.pixel(x, y);
-        for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(color[c]);
-        pixel[3] = 1;
-      }
-    }
+  render::for_pixels(picture.width, picture.height, [&](int x, int y) {
+    if (gbuffer.part(x, y) >= 0) return;
+    const Vec3 color = scene.background == render::Background::kColor
+                           ? scene.background_color
+                           : envmap::bilinear(scene.env->mirror.map, -gbuffer.to_viewer(x, y));
+    float* pixel = picture.pixel(x, y);
+    for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(color[c]);
+    pixel[3] = 1;
   });
 }
 
