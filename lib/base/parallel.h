@@ -18,6 +18,14 @@ int threads();
 void parallel_for(std::size_t n, std::size_t chunk,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+// Calls visit(i) for each i of [0,n), `chunk` of them one after the other on a thread.
+template <class Visit>
+void parallel_each(std::size_t n, std::size_t chunk, const Visit& visit) {
+  parallel_for(n, chunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) visit(i);
+  });
+}
+
 // Calls work(). While it waits for loops of its own, its thread takes up no other work, such as the next chunk of a
 // loop that called this. So work() may hold a lock that such a chunk asks for too: elsewhere the thread would wait for
 // itself.

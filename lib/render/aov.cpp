@@ -124,9 +124,7 @@ Result<Gbuffer> gbuffer_of(const image::AovFile& buffers) {
     return {};
   };
   std::vector<char> is_bad(static_cast<std::size_t>(image.height), 0);
-  parallel_for(is_bad.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y) is_bad[y] = take_row(static_cast<int>(y)).ok() ? 0 : 1;
-  });
+  parallel_each(is_bad.size(), 16, [&](std::size_t y) { is_bad[y] = take_row(static_cast<int>(y)).ok() ? 0 : 1; });
   if (const auto bad = std::ranges::find(is_bad, 1); bad != is_bad.end())
     return take_row(static_cast<int>(bad - is_bad.begin())).error();
   return gbuffer;

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/vec3.h"
 #include "mesh/mesh.h"
 #include "render/camera.h"
@@ -62,6 +63,14 @@ struct Gbuffer {
   VisiblePoint point(int x, int y, const std::vector<TexturePlace>& places = {},
                      const mesh::Mesh* mesh = nullptr) const;
 };
+
+// Calls visit(x, y) for each pixel of a picture of this size, on all cores.
+template <class Visit>
+void for_pixels(int width, int height, const Visit& visit) {
+  parallel_each(static_cast<std::size_t>(height), 8, [&](std::size_t y) {
+    for (int x = 0; x < width; ++x) visit(x, static_cast<int>(y));
+  });
+}
 
 // A point of a mesh, in the mesh's own coordinates.
 struct MeshPoint {

@@ -61,35 +61,31 @@ void add_glints(const Scene& scene, const Effects& effects, const Gbuffer& gbuff
     paints.push_back(effects.coat ? paint : brdf::under_coat(paint, paint::kNoCoat));
   const Mirrors mirrors(gbuffer);
   const double of_sample = std::sqrt(static_cast<double>(weight));
-  parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < gbuffer.width; ++x) {
-        const int part = gbuffer.part(x, y);
-        if (part < 0) continue;
-        if (scene.layer != nullptr && scene.layer->surface(part).hides_paint()) continue;
-        const paint::LobeFit& paint = paints[static_cast<std::size_t>(part)];
-        if (!wears_lobe(paint, paint::kMirrorExponent, LobeWeight::kGloss)) continue;
-        const Vec3 r = mirrors.at(x, y);
-        color::Rgb sum;
-        double spread = -1;
-        for (const Light& light : scene.lights) {
-          if (!(light.radius_rad > 0) || length(r - light.direction) > 2 * (light.radius_rad + kWidest_rad)) continue;
-          if (spread < 0) spread = of_sample * mirrors.spread(x, y);
-          const double missing = mirrored_share(light, r, spread) - (light.meets(r) ? 1 : 0);
-          if (missing == 0) continue;
-          const double cos_o = std::clamp(dot(gbuffer.normal(x, y), gbuffer.to_viewer(x, y)), 0.0, 1.0);
-          const paint::LobeFit here = effects.views ? brdf::at_view(paint, std::acos(cos_o) / kDegree) : paint;
-          const double fresnel = brdf::fresnel_dielectric(effects.fresnel ? cos_o : std::numbers::sqrt2 / 2,
-                                                          brdf::mirror_index(paint.coat_index));
-          const paint::Lobe* mirror = find_lobe(here, paint::kMirrorExponent);
-          if (mirror == nullptr) continue;
-          const color::Rgb k = fresnel * mirror->gloss;
-          const color::Rgb light_seen = missing * light.radiance();
-          sum += effects.reflection ? color::reflected(scene.reflection, k, light_seen) : k * light_seen;
-        }
-        for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] += weight * static_cast<float>(sum[c]);
-      }
+  for_pixels(gbuffer.width, gbuffer.height, [&](int x, int y) {
+    const int part = gbuffer.part(x, y);
+    if (part < 0) return;
+    if (scene.layer != nullptr && scene.layer->surface(part).hides_paint()) return;
+    const paint::LobeFit& paint = paints[static_cast<std::size_t>(part)];
+    if (!wears_lobe(paint, paint::kMirrorExponent, LobeWeight::kGloss)) return;
+    const Vec3 r = mirrors.at(x, y);
+    color::Rgb sum;
+    double spread = -1;
+    for (const Light& light : scene.lights) {
+      if (!(light.radius_rad > 0) || length(r - light.direction) > 2 * (light.radius_rad + kWidest_rad)) continue;
+      if (spread < 0) spread = of_sample * mirrors.spread(x, y);
+      const double missing = mirrored_share(light, r, spread) - (light.meets(r) ? 1 : 0);
+      if (missing == 0) continue;
+      const double cos_o = std::clamp(dot(gbuffer.normal(x, y), gbuffer.to_viewer(x, y)), 0.0, 1.0);
+      const paint::LobeFit here = effects.views ? brdf::at_view(paint, std::acos(cos_o) / kDegree) : paint;
+      const double fresnel = brdf::fresnel_dielectric(effects.fresnel ? cos_o : std::numbers::sqrt2 / 2,
+                                                      brdf::mirror_index(paint.coat_index));
+      const paint::Lobe* mirror = find_lobe(here, paint::kMirrorExponent);
+      if (mirror == nullptr) continue;
+      const color::Rgb k = fresnel * mirror->gloss;
+      const color::Rgb light_seen = missing * light.radiance();
+      sum += effects.reflection ? color::reflected(scene.reflection, k, light_seen) : k * light_seen;
     }
+    for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] += weight * static_cast<float>(sum[c]);
   });
 }
 

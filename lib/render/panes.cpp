@@ -12,7 +12,6 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr std::size_t kPaneRowsAtOnce = 8;
 constexpr std::size_t kMostPanes = 64;  // one behind the other; ten let less than half of the light through
 
 struct Rectangle {
@@ -56,25 +55,21 @@ std::optional<BehindPanes> one_deeper(const rays::RayScene& whole, const Scene& 
   g.data.assign(4 * pixels, 0.0F), g.triangles.assign(pixels, kNoTriangle);
   deeper.passed.assign(pixels, 0.0F);
   const rays::Float3 eye = whole.local(g.rays.eye);
-  parallel_for(static_cast<std::size_t>(g.height), kPaneRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < g.width; ++x) {
-        const int u = box.left + x, v = box.top + y, part = before.part(u, v);
-        const float left_so_far = passed.empty() ? 1.0F : passed[before.index(u, v)];
-        if (part < 0 || !is_pane(scene, static_cast<std::size_t>(part)) || left_so_far < kLeastPassed) continue;
-        const rays::Float3 direction = -rays::float3(g.to_viewer(x, y));
-        const rays::Spot pane = spot_of(whole, scene, before, u, v, eye, direction);
-        const double cosine = std::clamp(dot(before.normal(u, v), before.to_viewer(u, v)), 0.0, 1.0);
-        const rays::Hit hit = through_pane(whole, pane, direction).hit;
-        const std::size_t at = g.index(x, y);
-        deeper.passed[at] = left_so_far * static_cast<float>(1 - pane_reflectance(cosine));
-        if (!hit.any() || hit.triangle == rays::kFloor) continue;
-        const rays::Spot spot = whole.spot(hit, pane.position, direction);
-        g.data[4 * at] = spot.shading.x, g.data[4 * at + 1] = spot.shading.y, g.data[4 * at + 2] = spot.shading.z;
-        g.data[4 * at + 3] = static_cast<float>(spot.inside ? -(spot.part + 1) : spot.part + 1);
-        g.triangles[at] = hit.triangle;
-      }
-    }
+  for_pixels(g.width, g.height, [&](int x, int y) {
+    const int u = box.left + x, v = box.top + y, part = before.part(u, v);
+    const float left_so_far = passed.empty() ? 1.0F : passed[before.index(u, v)];
+    if (part < 0 || !is_pane(scene, static_cast<std::size_t>(part)) || left_so_far < kLeastPassed) return;
+    const rays::Float3 direction = -rays::float3(g.to_viewer(x, y));
+    const rays::Spot pane = spot_of(whole, scene, before, u, v, eye, direction);
+    const double cosine = std::clamp(dot(before.normal(u, v), before.to_viewer(u, v)), 0.0, 1.0);
+    const rays::Hit hit = through_pane(whole, pane, direction).hit;
+    const std::size_t at = g.index(x, y);
+    deeper.passed[at] = left_so_far * static_cast<float>(1 - pane_reflectance(cosine));
+    if (!hit.any() || hit.triangle == rays::kFloor) return;
+    const rays::Spot spot = whole.spot(hit, pane.position, direction);
+    g.data[4 * at] = spot.shading.x, g.data[4 * at + 1] = spot.shading.y, g.data[4 * at + 2] = spot.shading.z;
+    g.data[4 * at + 3] = static_cast<float>(spot.inside ? -(spot.part + 1) : spot.part + 1);
+    g.triangles[at] = hit.triangle;
   });
   return deeper;
 }

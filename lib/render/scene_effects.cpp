@@ -291,10 +291,8 @@ WeightTable weight_table(const Scene& scene, const Effects& effects, const std::
   const auto is_like_last = [&](std::size_t part) {
     return part > 0 && same_wear(scene, part, part - 1) && is_stretched(part) == is_stretched(part - 1);
   };
-  parallel_for(scene.paints.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t part = begin; part < end; ++part)
-      if (!is_like_last(part))
-        fill_part(scene, effects, part, is_stretched(part), table, &table.rgba[part * part_size]);
+  parallel_each(scene.paints.size(), 1, [&](std::size_t part) {
+    if (!is_like_last(part)) fill_part(scene, effects, part, is_stretched(part), table, &table.rgba[part * part_size]);
   });
   for (std::size_t part = 0; part < scene.paints.size(); ++part)
     if (is_like_last(part)) std::copy_n(&table.rgba[(part - 1) * part_size], part_size, &table.rgba[part * part_size]);

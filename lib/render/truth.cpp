@@ -150,14 +150,12 @@ class Judge {
     PathOptions options;
     options.bounces = request_.bounces;
     std::vector<double> values(points.size());
-    parallel_for(values.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        PointTruth truth;
-        add_batches(over_floor, options, points[i], mixed(seed(), ~i), kFloorBatches, truth);
-        values[i] = noiseless(truth, truth, [&](const LightShares& shown, const LightShares&) {
-          return seen_difference(shown.sum(), backdrop.at(-points[i].to_viewer), white_);
-        });
-      }
+    parallel_each(values.size(), 1, [&](std::size_t i) {
+      PointTruth truth;
+      add_batches(over_floor, options, points[i], mixed(seed(), ~i), kFloorBatches, truth);
+      values[i] = noiseless(truth, truth, [&](const LightShares& shown, const LightShares&) {
+        return seen_difference(shown.sum(), backdrop.at(-points[i].to_viewer), white_);
+      });
     });
     floor_beside_ = percentile_95(std::move(values));
   }
@@ -191,13 +189,11 @@ class Judge {
     PathOptions options;
     options.bounces = request_.bounces;
     options.correction = !request_.whole;
-    parallel_for(truth.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto [x, y] = sample_.places[i];
-        const RayPoint at{spot_at(transport.rays(), *frame_.gbuffer, x, y),
-                          rays::float3(frame_.gbuffer->to_viewer(x, y))};
-        add_batches(transport, options, at, mixed(seed(), i), batches[i], truth[i]);
-      }
+    parallel_each(truth.size(), 1, [&](std::size_t i) {
+      const auto [x, y] = sample_.places[i];
+      const RayPoint at{spot_at(transport.rays(), *frame_.gbuffer, x, y),
+                        rays::float3(frame_.gbuffer->to_viewer(x, y))};
+      add_batches(transport, options, at, mixed(seed(), i), batches[i], truth[i]);
     });
   }
 

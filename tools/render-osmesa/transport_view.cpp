@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/angles.h"
-#include "base/parallel.h"
 #include "base/text.h"
 #include "envmap/cube_map.h"
 #include "render/aov.h"
@@ -99,18 +98,14 @@ bool same_light(const std::vector<image::AovLight>& kept, const std::vector<rend
 // The background around the mesh of a sample whose rows begin at `top`.
 void put_background(const render::Gbuffer& gbuffer, const render::Scene& scene, int top, image::Image& picture) {
   if (scene.background == render::Background::kNone) return;
-  parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < gbuffer.width; ++x) {
-        if (gbuffer.part(x, y) >= 0) continue;
-        const Vec3 color = scene.background == render::Background::kColor
-                               ? scene.background_color
-                               : envmap::bilinear(scene.env->mirror.map, -gbuffer.to_viewer(x, y));
-        float* pixel = picture.pixel(x, top + y);
-        for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(color[c]);
-        pixel[3] = 1;
-      }
-    }
+  render::for_pixels(gbuffer.width, gbuffer.height, [&](int x, int y) {
+    if (gbuffer.part(x, y) >= 0) return;
+    const Vec3 color = scene.background == render::Background::kColor
+                           ? scene.background_color
+                           : envmap::bilinear(scene.env->mirror.map, -gbuffer.to_viewer(x, y));
+    float* pixel = picture.pixel(x, top + y);
+    for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(color[c]);
+    pixel[3] = 1;
   });
 }
 

@@ -23,9 +23,7 @@ UnsetArray<float> interleaved(const std::vector<envmap::MapPointer>& maps, std::
   std::fill_n(&data[texels * stride], kBlock, 0.0F);
   for (std::size_t i = 0; stride > 4 * maps.size() && i < texels; ++i)
     std::fill_n(&data[i * stride + 4 * maps.size()], 4, 0.0F);
-  parallel_for(maps.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t map = begin; map < end; ++map) put_bordered(*maps[map], stride, &data[4 * map]);
-  });
+  parallel_each(maps.size(), 1, [&](std::size_t map) { put_bordered(*maps[map], stride, &data[4 * map]); });
   return data;
 }
 
@@ -324,10 +322,8 @@ void CpuEngine::shade(const Gbuffer& gbuffer, float gain, bool add, image::Image
   rgba.width = gbuffer.width, rgba.height = gbuffer.height, rgba.channels = 4;
   resize_on_large_pages(rgba.data,
                         static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height) * 4);
-  parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y) {
-      shade_row(gbuffer, static_cast<int>(y), gain, add, rgba.pixel(0, static_cast<int>(y)));
-    }
+  parallel_each(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t y) {
+    shade_row(gbuffer, static_cast<int>(y), gain, add, rgba.pixel(0, static_cast<int>(y)));
   });
 }
 

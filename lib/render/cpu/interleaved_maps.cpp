@@ -36,9 +36,8 @@ void put_face(const envmap::CubeMap& map, int face, std::size_t stride, float* t
 }  // namespace
 
 void put_bordered(const envmap::CubeMap& map, std::size_t stride, float* to) {
-  parallel_for(6, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t face = begin; face < end; ++face)
-      put_face(map, static_cast<int>(face), stride, to + face * bordered_texels(map.size) / 6 * stride);
+  parallel_each(6, 1, [&](std::size_t face) {
+    put_face(map, static_cast<int>(face), stride, to + face * bordered_texels(map.size) / 6 * stride);
   });
 }
 

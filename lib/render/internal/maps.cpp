@@ -32,13 +32,11 @@ envmap::MapPointer resized(envmap::MapPointer from, int size) {
   const envmap::CubeMap& map = *from;
   if (map.size == size) return from;
   envmap::CubeMap result(size);
-  parallel_for(static_cast<std::size_t>(6 * size), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const int face = static_cast<int>(i) / size, row = static_cast<int>(i) % size;
-      for (int column = 0; column < size; ++column) {
-        const Vec3 value = envmap::bilinear(map, envmap::cube_direction(face, column + 0.5, row + 0.5, size));
-        for (int c = 0; c < 3; ++c) result.at(face, row, column)[c] = static_cast<float>(value[c]);
-      }
+  parallel_each(static_cast<std::size_t>(6 * size), 16, [&](std::size_t i) {
+    const int face = static_cast<int>(i) / size, row = static_cast<int>(i) % size;
+    for (int column = 0; column < size; ++column) {
+      const Vec3 value = envmap::bilinear(map, envmap::cube_direction(face, column + 0.5, row + 0.5, size));
+      for (int c = 0; c < 3; ++c) result.at(face, row, column)[c] = static_cast<float>(value[c]);
     }
   });
   return std::make_shared<const envmap::CubeMap>(std::move(result));

@@ -115,8 +115,6 @@ struct BounceScaler::State {
 
 namespace {
 
-constexpr std::size_t kProbesAtOnce = 8;
-
 // The light of the classes at a probe in the paints worn there, before and after.
 struct OfClasses {
   std::vector<color::Rgb> before, after;
@@ -221,9 +219,7 @@ BounceScale BounceScaler::scale(const std::vector<Weights>& parts) {
   }
   const std::vector<Products> of_groups = products_of(s.op(), now), of_parts = products_of(s.op(), parts);
   const auto at_probes = [&](const auto& visit) {
-    parallel_for(t.probes.size(), kProbesAtOnce, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) visit(i, t.probes[i]);
-    });
+    parallel_each(t.probes.size(), 8, [&](std::size_t i) { visit(i, t.probes[i]); });
   };
   if (s.before.empty()) {
     s.worn = products_of(s.op(), t.worn.weights);

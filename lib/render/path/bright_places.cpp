@@ -153,10 +153,8 @@ std::shared_ptr<const BrightPlaces> BrightPlaces::find(const rays::RayScene& sce
   places->chance_.assign(kGroups, 0);
   places->density_.assign(kGroups * kGroups, 0), places->cumulative_.assign(kGroups * kGroups, 0);
   std::vector<double> logs(kGroups);
-  parallel_for(kGroups, 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t receiver = begin; receiver < end; ++receiver)
-      logs[receiver] = std::log(places->weigh(receiver, of_groups, seed));
-  });
+  parallel_each(kGroups, 4,
+                [&](std::size_t receiver) { logs[receiver] = std::log(places->weigh(receiver, of_groups, seed)); });
   double sum = 0, light = 0, area = 0;
   for (std::size_t group = 0; group < kGroups; ++group) {
     sum += places->area_[group] * logs[group], area += places->area_[group];
@@ -187,13 +185,11 @@ std::vector<double> BrightPlaces::sent_squares(const Sent& sent, std::uint64_t s
   const std::uint32_t count = pieces_.count(), step = (count + kMostPieces - 1) / kMostPieces;
   const Sequence sequence(mixed(seed, 0xB1), kMostPieces);
   std::vector<double> squares(count);
-  parallel_for((count + step - 1) / step, 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto first = static_cast<std::uint32_t>(i) * step;
-      if (!(piece_area_[first] > 0)) continue;
-      const double square = sent_square(sent, first, sequence, static_cast<std::uint32_t>(i));
-      for (std::uint32_t piece = first; piece < std::min(count, first + step); ++piece) squares[piece] = square;
-    }
+  parallel_each((count + step - 1) / step, 64, [&](std::size_t i) {
+    const auto first = static_cast<std::uint32_t>(i) * step;
+    if (!(piece_area_[first] > 0)) return;
+    const double square = sent_square(sent, first, sequence, static_cast<std::uint32_t>(i));
+    for (std::uint32_t piece = first; piece < std::min(count, first + step); ++piece) squares[piece] = square;
   });
   return squares;
 }
@@ -245,14 +241,12 @@ std::uint32_t BrightPlaces::drawn_piece(std::size_t group, double choice) const 
 
 std::vector<double> BrightPlaces::group_squares(const Sent& sent, std::uint64_t seed) const {
   std::vector<double> squares(kGroups);
-  parallel_for(kGroups, 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t group = begin; group < end; ++group) {
-      if (!(area_[group] > 0)) continue;
-      const Sequence sequence(mixed(mixed(seed, 0xB2), group), kPathsOfGroup);
-      for (std::uint32_t i = 0; i < kPathsOfGroup; ++i) {
-        const std::uint32_t piece = drawn_piece(group, sequence.point(i, 0)[2]);
-        squares[group] += sent_square(sent, piece, sequence, i) / kPathsOfGroup;
-      }
+  parallel_each(kGroups, 4, [&](std::size_t group) {
+    if (!(area_[group] > 0)) return;
+    const Sequence sequence(mixed(mixed(seed, 0xB2), group), kPathsOfGroup);
+    for (std::uint32_t i = 0; i < kPathsOfGroup; ++i) {
+      const std::uint32_t piece = drawn_piece(group, sequence.point(i, 0)[2]);
+      squares[group] += sent_square(sent, piece, sequence, i) / kPathsOfGroup;
     }
   });
   return squares;

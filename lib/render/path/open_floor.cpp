@@ -27,19 +27,17 @@ OpenFloor::OpenFloor(const rays::RayScene& scene, const Float3& eye, const Along
                      const AlongDirection& shown, const std::function<color::Rgb(const Float3& place)>& left)
     : scene_(&scene), eye_(eye), height_(scene.floor_distance(eye, {0, -1, 0})) {
   std::vector<Float3> hidden_texels(static_cast<std::size_t>(kSize) * kSize), lit_texels = hidden_texels;
-  parallel_for(kSize, 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin * kSize; i < end * kSize; ++i) {
-      const auto direction = [&](float right, float down) {
-        return HemisphereMap::place(static_cast<float>(i % kSize) + right, static_cast<float>(i / kSize) + down, kSize)
-            .direction;
-      };
-      color::Rgb behind, light;
-      for (const float right : {0.25F, 0.75F})
-        for (const float down : {0.25F, 0.75F})
-          behind += 0.25 * hidden(direction(right, down)), light += 0.25 * shown(direction(right, down));
-      hidden_texels[i] = rays::float3(behind);
-      lit_texels[i] = rays::float3(light * left(place(direction(0.5F, 0.5F))));
-    }
+  parallel_each(hidden_texels.size(), 4 * kSize, [&](std::size_t i) {
+    const auto direction = [&](float right, float down) {
+      return HemisphereMap::place(static_cast<float>(i % kSize) + right, static_cast<float>(i / kSize) + down, kSize)
+          .direction;
+    };
+    color::Rgb behind, light;
+    for (const float right : {0.25F, 0.75F})
+      for (const float down : {0.25F, 0.75F})
+        behind += 0.25 * hidden(direction(right, down)), light += 0.25 * shown(direction(right, down));
+    hidden_texels[i] = rays::float3(behind);
+    lit_texels[i] = rays::float3(light * left(place(direction(0.5F, 0.5F))));
   });
   coarse_ = blocks(kCoarse, hidden_texels, lit_texels), fine_ = blocks(kFine, hidden_texels, lit_texels);
   hidden_ = std::make_unique<const HemisphereMap>(kSize, hidden_texels);

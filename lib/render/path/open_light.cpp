@@ -149,17 +149,15 @@ void OpenLight::add_sums(const OpenView& view, int part, color::Rgb* light) cons
 double open_difference_de00(const OpenLight& a, const OpenLight& b, const LobeColumns& columns,
                             const std::vector<VisiblePoint>& points, double white_luminance) {
   std::vector<double> worst(points.size());
-  parallel_for(points.size(), 4, [&](std::size_t begin, std::size_t end) {
+  parallel_each(points.size(), 4, [&](std::size_t i) {
     std::vector<color::Rgb> of_a(columns.count()), of_b(columns.count());
-    for (std::size_t i = begin; i < end; ++i) {
-      const VisiblePoint& point = points[i];
-      a.at(point.normal, point.to_viewer, point.part, of_a.data());
-      b.at(point.normal, point.to_viewer, point.part, of_b.data());
-      for (std::size_t k = 0; k < columns.count(); ++k) {
-        const double weight = nominal_weight(columns, k), gray = columns.is_gloss(k) ? kNominalGray / kPi : 0;
-        worst[i] = std::max(worst[i], seen_difference(weight * of_a[k] + gray * of_a[0],
-                                                      weight * of_b[k] + gray * of_b[0], white_luminance));
-      }
+    const VisiblePoint& point = points[i];
+    a.at(point.normal, point.to_viewer, point.part, of_a.data());
+    b.at(point.normal, point.to_viewer, point.part, of_b.data());
+    for (std::size_t k = 0; k < columns.count(); ++k) {
+      const double weight = nominal_weight(columns, k), gray = columns.is_gloss(k) ? kNominalGray / kPi : 0;
+      worst[i] = std::max(worst[i], seen_difference(weight * of_a[k] + gray * of_a[0],
+                                                    weight * of_b[k] + gray * of_b[0], white_luminance));
     }
   });
   return percentile_95(std::move(worst));

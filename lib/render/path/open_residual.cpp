@@ -24,8 +24,6 @@ constexpr double kOfSums = 0.2;
 // Beyond so many sums those of other views are forgotten, and beyond so many surfaces those of other paints.
 constexpr std::size_t kMostSums = std::size_t{1} << 19, kMostSurfaces = 64;
 
-constexpr std::size_t kCellRowsAtOnce = 8, kSumsAtOnce = 16;
-
 int finer(int cells, double tolerance_de00) {
   const double scale = std::clamp(std::sqrt(kUsual_de00 / tolerance_de00), 0.5, 1.5);
   return static_cast<int>(std::lround(cells * scale));
@@ -141,23 +139,21 @@ std::size_t OpenResidual::count() const {
 
 // Each cell that a pixel lies in, once, in ascending order.
 std::vector<OpenResidual::Cell> OpenResidual::cells_of(const Gbuffer& seen) const {
-  const auto rows = static_cast<std::size_t>(seen.height);
-  std::vector<std::vector<Cell>> parts((rows + kCellRowsAtOnce - 1) / kCellRowsAtOnce);
-  parallel_for(rows, kCellRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    std::vector<Cell>& cells = parts[begin / kCellRowsAtOnce];
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < seen.width; ++x) {
-        const Wear* wear = wear_of(seen.part(x, y));
-        if (wear == nullptr) continue;
-        const Cell cell{static_cast<std::int32_t>(wear->surface),
-                        grid_.place(seen.normal(x, y), seen.to_viewer(x, y)).node};
-        if (cells.empty() || cells.back() != cell) cells.push_back(cell);
-      }
+  std::vector<std::vector<Cell>> rows(static_cast<std::size_t>(seen.height));
+  parallel_each(rows.size(), 8, [&](std::size_t row) {
+    std::vector<Cell>& cells = rows[row];
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < seen.width; ++x) {
+      const Wear* wear = wear_of(seen.part(x, y));
+      if (wear == nullptr) continue;
+      const Cell cell{static_cast<std::int32_t>(wear->surface),
+                      grid_.place(seen.normal(x, y), seen.to_viewer(x, y)).node};
+      if (cells.empty() || cells.back() != cell) cells.push_back(cell);
     }
     keep_once(cells);
   });
   std::vector<Cell> all;
-  for (const std::vector<Cell>& cells : parts) all.insert(all.end(), cells.begin(), cells.end());
+  for (const std::vector<Cell>& cells : rows) all.insert(all.end(), cells.begin(), cells.end());
   keep_once(all);
   return all;
 }
@@ -186,15 +182,14 @@ void OpenResidual::fill(const std::vector<Cell>& cells) {
 void OpenResidual::sum(Surface& surface) const {
   const std::size_t first = surface.sums.size() / floats();
   surface.sums.resize(surface.nodes.size() * floats());
-  parallel_for(surface.nodes.size() - first, kSumsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_each(surface.nodes.size() - first, 16, [&](std::size_t i) {
+    const std::size_t slot = first + i;
+    const auto [normal, to_viewer] = grid_.facing(surface.nodes[slot]);
+    const LobeAxis mirrored{2 * dot(normal, to_viewer) * normal - to_viewer, 1};
     std::vector<color::Rgb> light(columns_.count());
-    for (std::size_t slot = first + begin; slot < first + end; ++slot) {
-      const auto [normal, to_viewer] = grid_.facing(surface.nodes[slot]);
-      const LobeAxis mirrored{2 * dot(normal, to_viewer) * normal - to_viewer, 1};
-      light_->at(normal, to_viewer, {mirrored}, surface.coat_index, light.data());
-      float* to = &surface.sums[slot * floats()];
-      for (std::size_t k = 0; k < floats(); ++k) to[k] = static_cast<float>(light[k / 3][static_cast<int>(k % 3)]);
-    }
+    light_->at(normal, to_viewer, {mirrored}, surface.coat_index, light.data());
+    float* to = &surface.sums[slot * floats()];
+    for (std::size_t k = 0; k < floats(); ++k) to[k] = static_cast<float>(light[k / 3][static_cast<int>(k % 3)]);
   });
 }
 
@@ -251,15 +246,11 @@ color::Rgb OpenResidual::told(const Wear& wear, const ViewGrid::Place& place) co
 
 void OpenResidual::add(const Gbuffer& seen, float gain, image::Image& picture) {
   fill(cells_of(seen));
-  parallel_for(static_cast<std::size_t>(seen.height), kCellRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < seen.width; ++x) {
-        const Wear* wear = wear_of(seen.part(x, y));
-        if (wear == nullptr) continue;
-        const color::Rgb more = told(*wear, grid_.place(seen.normal(x, y), seen.to_viewer(x, y)));
-        for (int c = 0; c < 3; ++c) picture.pixel(x, y)[c] += gain * static_cast<float>(more[c]);
-      }
-    }
+  for_pixels(seen.width, seen.height, [&](int x, int y) {
+    const Wear* wear = wear_of(seen.part(x, y));
+    if (wear == nullptr) return;
+    const color::Rgb more = told(*wear, grid_.place(seen.normal(x, y), seen.to_viewer(x, y)));
+    for (int c = 0; c < 3; ++c) picture.pixel(x, y)[c] += gain * static_cast<float>(more[c]);
   });
 }
 

@@ -4,12 +4,6 @@
 
 namespace goniochrome::render {
 
-namespace {
-
-constexpr std::size_t kPointsTogether = 256;
-
-}  // namespace
-
 LobeTransport open_transport(const OpenLight& light, const LobeColumns& columns, const WornPaints& worn,
                              const std::vector<std::shared_ptr<const Gbuffer>>& samples) {
   LobeTransport t;
@@ -26,7 +20,7 @@ LobeTransport open_transport(const OpenLight& light, const LobeColumns& columns,
     }
   t.direct.resize(t.places.size() * t.floats());
   t.bounced.assign(t.places.size() * t.floats(), 0.0F);
-  parallel_for(t.places.size(), kPointsTogether, [&](std::size_t begin, std::size_t end) {
+  parallel_for(t.places.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<VisiblePoint> points;
     for (std::size_t k = begin; k < end; ++k) {
       const Gbuffer& seen = *samples[t.places[k] / of_sample];
@@ -49,12 +43,10 @@ void put_mean(const image::Image& stacked, int count, image::Image& picture) {
   const std::size_t floats = stacked.data.size() / static_cast<std::size_t>(count);
   picture.data.resize(floats);
   const float gain = 1.0F / static_cast<float>(count);
-  parallel_for(floats, std::size_t{1} << 15, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      float sum = 0;
-      for (int s = 0; s < count; ++s) sum += stacked.data[static_cast<std::size_t>(s) * floats + i];
-      picture.data[i] = gain * sum;
-    }
+  parallel_each(floats, std::size_t{1} << 15, [&](std::size_t i) {
+    float sum = 0;
+    for (int s = 0; s < count; ++s) sum += stacked.data[static_cast<std::size_t>(s) * floats + i];
+    picture.data[i] = gain * sum;
   });
 }
 

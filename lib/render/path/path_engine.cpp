@@ -109,23 +109,19 @@ void PathEngine::draw_background(const Rays& rays, int samples, image::Image& rg
   const rays::Float3 eye = transport_->eye().local(rays.eye);
   const Backdrop backdrop{effects_.background, scene_.background_color,
                           scene_.texels != nullptr ? &scene_.texels->environment() : nullptr};
-  parallel_for(static_cast<std::size_t>(rgba.height), 8, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < rgba.width; ++x) {
-        color::Rgb sum;
-        double clear = 0;
-        for (const auto& [dx, dy] : shifts) {
-          const Vec3 direction = rays.direction(x + 0.5 + dx, y + 0.5 + dy);
-          const double share = transport_->clear_share(eye, rays::float3(direction));
-          clear += share;
-          if (share > 0) sum += share * backdrop.at(rays::float3(direction));
-        }
-        const auto count = static_cast<double>(shifts.size());
-        float* pixel = rgba.pixel(x, y);
-        for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(sum[c] / count);
-        pixel[3] = static_cast<float>(effects_.background == Background::kNone ? 1 - clear / count : 1);
-      }
+  for_pixels(rgba.width, rgba.height, [&](int x, int y) {
+    color::Rgb sum;
+    double clear = 0;
+    for (const auto& [dx, dy] : shifts) {
+      const Vec3 direction = rays.direction(x + 0.5 + dx, y + 0.5 + dy);
+      const double share = transport_->clear_share(eye, rays::float3(direction));
+      clear += share;
+      if (share > 0) sum += share * backdrop.at(rays::float3(direction));
     }
+    const auto count = static_cast<double>(shifts.size());
+    float* pixel = rgba.pixel(x, y);
+    for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(sum[c] / count);
+    pixel[3] = static_cast<float>(effects_.background == Background::kNone ? 1 - clear / count : 1);
   });
 }
 

@@ -380,9 +380,7 @@ class Picture {
 
   template <class Visit>
   void each_point(const Visit& visit) const {
-    parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) visit(i);
-    });
+    parallel_each(points_.size(), 1024, visit);
   }
 
   // By its own samples.

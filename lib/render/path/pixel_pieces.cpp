@@ -19,10 +19,7 @@ bool are_one_piece(const float* a, const float* b, float cosine) {
 template <class Flag>
 PixelFlags flags_of(const Gbuffer& gbuffer, const Flag& flag) {
   PixelFlags flags(gbuffer.data.size() / 4, 0);
-  parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-      for (int x = 0; x < gbuffer.width; ++x) flags[gbuffer.index(x, y)] = flag(x, y) ? 1 : 0;
-  });
+  for_pixels(gbuffer.width, gbuffer.height, [&](int x, int y) { flags[gbuffer.index(x, y)] = flag(x, y) ? 1 : 0; });
   return flags;
 }
 

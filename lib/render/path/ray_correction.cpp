@@ -11,7 +11,6 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr std::size_t kCorrectedRowsAtOnce = 8;
 // The part of the tolerance that the effects may make up which the first pass shows to change so little.
 constexpr double kStopShare = 0.35;
 
@@ -64,17 +63,13 @@ void add_surroundings(const Transport& transport, PixelSamples samples, const Ba
     if (backdrop.background == Background::kNone) return std::nullopt;
     return backdrop.at(direction);
   };
-  parallel_for(static_cast<std::size_t>(first.height), kCorrectedRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < first.width; ++x) {
-        float* pixel = &picture.data[first.index(x, y) * static_cast<std::size_t>(picture.channels)];
-        for (const Gbuffer* sample : samples) {
-          const std::optional<color::Rgb> light = shown(*sample, x, y);
-          if (!light) continue;
-          if (picture.channels > 3) pixel[3] += gain;
-          for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>((*light)[c]);
-        }
-      }
+  for_pixels(first.width, first.height, [&](int x, int y) {
+    float* pixel = &picture.data[first.index(x, y) * static_cast<std::size_t>(picture.channels)];
+    for (const Gbuffer* sample : samples) {
+      const std::optional<color::Rgb> light = shown(*sample, x, y);
+      if (!light) continue;
+      if (picture.channels > 3) pixel[3] += gain;
+      for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>((*light)[c]);
     }
   });
 }

@@ -40,14 +40,11 @@ constexpr float kLargePart = 16;
 // The own variance of a point, divided by this, bounds its error from below: the mean over a neighborhood dilutes rare
 // bright samples.
 constexpr float kSpike = 4;
-constexpr std::size_t kPiecesAtOnce = 4096;
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
 
 template <class Visit>
 void each_point(std::size_t count, const Visit& visit) {
-  parallel_for(count, kPiecesAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) visit(n);
-  });
+  parallel_each(count, 4096, visit);
 }
 
 color::Rgb half(const Predicted& p, std::size_t which) {
@@ -109,10 +106,7 @@ void average(const SurfaceImage& fine, int x, int y, SurfaceImage& image) {
 
 SurfaceImage coarser(const SurfaceImage& fine) {
   SurfaceImage image((fine.width + 1) / 2, (fine.height + 1) / 2);
-  parallel_for(static_cast<std::size_t>(image.height), 8, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-      for (int x = 0; x < image.width; ++x) average(fine, x, y, image);
-  });
+  for_pixels(image.width, image.height, [&](int x, int y) { average(fine, x, y, image); });
   return image;
 }
 

@@ -199,10 +199,9 @@ template <class Value>
 void ShadedGround::fill(Grid& grid, const Value& value) const {
   const std::size_t columns = grid.x.size();
   grid.values.resize(columns * grid.z.size());
-  parallel_for(grid.z.size(), 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row)
-      for (std::size_t column = 0; column < columns; ++column)
-        grid.values[row * columns + column] = value(start_at(grid.x[column], grid.z[row]), row * columns + column);
+  parallel_each(grid.z.size(), 4, [&](std::size_t row) {
+    for (std::size_t column = 0; column < columns; ++column)
+      grid.values[row * columns + column] = value(start_at(grid.x[column], grid.z[row]), row * columns + column);
   });
 }
 
@@ -321,16 +320,14 @@ void ShadedGround::divide() {
     }
   }
   fine_.resize(curved.size() * kFineNodes * kFineNodes);
-  parallel_for(curved.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::size_t column = curved[k] % columns, row = curved[k] / columns;
-      for (std::size_t node = 0; node < kFineNodes * kFineNodes; ++node) {
-        const float right = static_cast<float>(node % kFineNodes) / kDivisions,
-                    down = static_cast<float>(node / kFineNodes) / kDivisions;
-        fine_[k * kFineNodes * kFineNodes + node] =
-            occluded(soft_, start_at(std::lerp(occluded_.x[column], occluded_.x[column + 1], right),
-                                     std::lerp(occluded_.z[row], occluded_.z[row + 1], down)));
-      }
+  parallel_each(curved.size(), 16, [&](std::size_t k) {
+    const std::size_t column = curved[k] % columns, row = curved[k] / columns;
+    for (std::size_t node = 0; node < kFineNodes * kFineNodes; ++node) {
+      const float right = static_cast<float>(node % kFineNodes) / kDivisions,
+                  down = static_cast<float>(node / kFineNodes) / kDivisions;
+      fine_[k * kFineNodes * kFineNodes + node] =
+          occluded(soft_, start_at(std::lerp(occluded_.x[column], occluded_.x[column + 1], right),
+                                   std::lerp(occluded_.z[row], occluded_.z[row + 1], down)));
     }
   });
 }

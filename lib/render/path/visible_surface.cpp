@@ -9,31 +9,27 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr std::size_t kSurfaceRowsAtOnce = 8;
-
 // Calls visit(pixel, hit, direction) for each pixel of which a ray, this far from its center, meets something.
 template <class Visit>
 void visit_hits(const rays::RayScene& scene, const Rays& rays, int width, int height,
                 const std::array<double, 2>& shift, const Visit& visit) {
   const rays::Float3 eye = scene.local(rays.eye);
-  parallel_for(static_cast<std::size_t>(height), kSurfaceRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y) {
-      for (int x = 0; x < width; x += 8) {
-        rays::Fan fan;
-        fan.origin = eye;
-        for (int i = 0; i < 8; ++i) {
-          const rays::Float3 d = rays::float3(
-              rays.direction(std::min(x + i, width - 1) + 0.5 + shift[0], static_cast<double>(y) + 0.5 + shift[1]));
-          fan.x[i] = d.x, fan.y[i] = d.y, fan.z[i] = d.z;
-          if (x + i < width) fan.wanted |= 1U << i;
-        }
-        rays::Hit hits[8];
-        scene.closest(fan, hits);
-        for (int i = 0; i < 8; ++i)
-          if (hits[i].any())
-            visit(y * static_cast<std::size_t>(width) + static_cast<std::size_t>(x + i), hits[i],
-                  rays::Float3{fan.x[i], fan.y[i], fan.z[i]});
+  parallel_each(static_cast<std::size_t>(height), 8, [&](std::size_t y) {
+    for (int x = 0; x < width; x += 8) {
+      rays::Fan fan;
+      fan.origin = eye;
+      for (int i = 0; i < 8; ++i) {
+        const rays::Float3 d = rays::float3(
+            rays.direction(std::min(x + i, width - 1) + 0.5 + shift[0], static_cast<double>(y) + 0.5 + shift[1]));
+        fan.x[i] = d.x, fan.y[i] = d.y, fan.z[i] = d.z;
+        if (x + i < width) fan.wanted |= 1U << i;
       }
+      rays::Hit hits[8];
+      scene.closest(fan, hits);
+      for (int i = 0; i < 8; ++i)
+        if (hits[i].any())
+          visit(y * static_cast<std::size_t>(width) + static_cast<std::size_t>(x + i), hits[i],
+                rays::Float3{fan.x[i], fan.y[i], fan.z[i]});
     }
   });
 }

@@ -29,17 +29,15 @@ double visible_white(const Transport& transport, const Gbuffer& g, int bounces, 
   options.white = true;
   const std::size_t count = std::min(kPoints, lit.size());
   std::vector<double> luminance(count);
-  parallel_for(count, 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::size_t i = lit[(2 * k + 1) * lit.size() / (2 * count)];
-      const int x = static_cast<int>(i % static_cast<std::size_t>(g.width)),
-                y = static_cast<int>(i / static_cast<std::size_t>(g.width));
-      const PointTransport at(transport, options, spot_at(scene, g, x, y), rays::float3(g.to_viewer(x, y)));
-      color::Rgb white = at.deterministic();
-      for (std::uint64_t batch = 0; batch < kBatches && !at.certain(); ++batch)
-        white += (1.0 / kBatches) * at.batch_shares(mixed(mixed(seed, i), batch)).sum();
-      luminance[k] = color::xyz_d65_from_rgb(white).Y;
-    }
+  parallel_each(count, 8, [&](std::size_t k) {
+    const std::size_t i = lit[(2 * k + 1) * lit.size() / (2 * count)];
+    const int x = static_cast<int>(i % static_cast<std::size_t>(g.width)),
+              y = static_cast<int>(i / static_cast<std::size_t>(g.width));
+    const PointTransport at(transport, options, spot_at(scene, g, x, y), rays::float3(g.to_viewer(x, y)));
+    color::Rgb white = at.deterministic();
+    for (std::uint64_t batch = 0; batch < kBatches && !at.certain(); ++batch)
+      white += (1.0 / kBatches) * at.batch_shares(mixed(mixed(seed, i), batch)).sum();
+    luminance[k] = color::xyz_d65_from_rgb(white).Y;
   });
   return math::median(std::move(luminance));
 }

@@ -254,16 +254,14 @@ PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
                 &result.shapes[(number * lobes + k) * kShapeFloats]);
   }
   result.colors.assign(result.color_floats() * texels, 0.0F);
-  parallel_for(texels, 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto [column, row] = at(i);
-      const brdf::SbrdfTexel texel = brdf::sbrdf_texel(texture, column, row);
-      float* to = &result.colors[result.color_floats() * i];
-      put_color(texel.surface.diffuse, 1, to);
-      to[kTexelAlpha] = result.covers ? 1 : texture.alpha[i];
-      for (std::size_t k = 0; k < lobes; ++k)
-        put_color(texel.surface.lobes[k].albedo, shapes.largest[shapes.of[i] * lobes + k], to += 4);
-    }
+  parallel_each(texels, 4096, [&](std::size_t i) {
+    const auto [column, row] = at(i);
+    const brdf::SbrdfTexel texel = brdf::sbrdf_texel(texture, column, row);
+    float* to = &result.colors[result.color_floats() * i];
+    put_color(texel.surface.diffuse, 1, to);
+    to[kTexelAlpha] = result.covers ? 1 : texture.alpha[i];
+    for (std::size_t k = 0; k < lobes; ++k)
+      put_color(texel.surface.lobes[k].albedo, shapes.largest[shapes.of[i] * lobes + k], to += 4);
   });
   result.shape = std::move(shapes.of);
   return result;

@@ -28,31 +28,26 @@ TextureLevel half_size(int width, int height, const TexelAt& texel, const std::v
                          : alpha[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
                                  static_cast<std::size_t>(column)];
   };
-  parallel_for(static_cast<std::size_t>(level.height), 4, [&](std::size_t begin, std::size_t end) {
-    for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
-      for (int column = 0; column < level.width; ++column) {
-        brdf::LobeSurface sum;
-        double covered = 0;
-        Vec3 normal;
-        for (const auto& [y, high] : brdf::covered_texels(row, level.height, height)) {
-          for (const auto& [x, wide] : brdf::covered_texels(column, level.width, width)) {
-            brdf::add_surface(sum, texel(x, y), wide * high), covered += wide * high * alpha_at(x, y);
-            const std::size_t from = 3 * static_cast<std::size_t>(y * width + x);
-            for (int c = 0; c < 3 && !normals.empty(); ++c)
-              normal[c] += wide * high * normals[from + static_cast<std::size_t>(c)];
-          }
-        }
-        const auto at = static_cast<std::size_t>(row * level.width + column);
-        level.texels[at] = brdf::merged(std::move(sum), most_lobes);
-        if (!alpha.empty()) level.alpha[at] = static_cast<float>(covered);
-        if (normals.empty()) continue;
-        const double size = length(normal);
-        for (brdf::TurnedLobe& lobe : level.texels[at].lobes) brdf::widen_by_normals(lobe.lobe, size);
-        for (int c = 0; c < 3; ++c)
-          level.normals[3 * at + static_cast<std::size_t>(c)] =
-              static_cast<float>(size > 0 ? normal[c] / size : c == 2);
+  for_pixels(level.width, level.height, [&](int column, int row) {
+    brdf::LobeSurface sum;
+    double covered = 0;
+    Vec3 normal;
+    for (const auto& [y, high] : brdf::covered_texels(row, level.height, height)) {
+      for (const auto& [x, wide] : brdf::covered_texels(column, level.width, width)) {
+        brdf::add_surface(sum, texel(x, y), wide * high), covered += wide * high * alpha_at(x, y);
+        const std::size_t from = 3 * static_cast<std::size_t>(y * width + x);
+        for (int c = 0; c < 3 && !normals.empty(); ++c)
+          normal[c] += wide * high * normals[from + static_cast<std::size_t>(c)];
       }
     }
+    const auto at = static_cast<std::size_t>(row * level.width + column);
+    level.texels[at] = brdf::merged(std::move(sum), most_lobes);
+    if (!alpha.empty()) level.alpha[at] = static_cast<float>(covered);
+    if (normals.empty()) return;
+    const double size = length(normal);
+    for (brdf::TurnedLobe& lobe : level.texels[at].lobes) brdf::widen_by_normals(lobe.lobe, size);
+    for (int c = 0; c < 3; ++c)
+      level.normals[3 * at + static_cast<std::size_t>(c)] = static_cast<float>(size > 0 ? normal[c] / size : c == 2);
   });
   return level;
 }

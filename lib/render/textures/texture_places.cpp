@@ -15,7 +15,6 @@ namespace {
 using Uv = std::array<double, 2>;
 
 // So many rows are done at a time.
-constexpr std::size_t kPlaceRowsAtOnce = 16;
 
 // The texture coordinates of a triangle's corners.
 class Unwrapped {
@@ -175,14 +174,10 @@ TexturePlace TextureLayout::place(const Gbuffer& gbuffer, int x, int y, bool foo
 template <class PlaceAt>
 std::vector<TexturePlace> TextureLayout::each_pixel(const Gbuffer& gbuffer, const PlaceAt& place_at) const {
   std::vector<TexturePlace> places(gbuffer.triangles.size());
-  parallel_for(static_cast<std::size_t>(gbuffer.height), kPlaceRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < gbuffer.width; ++x) {
-        const int part = gbuffer.part(x, y);
-        if (part < 0 || faces_[static_cast<std::size_t>(part)].empty()) continue;
-        places[gbuffer.index(x, y)] = place_at(x, y);
-      }
-    }
+  for_pixels(gbuffer.width, gbuffer.height, [&](int x, int y) {
+    const int part = gbuffer.part(x, y);
+    if (part < 0 || faces_[static_cast<std::size_t>(part)].empty()) return;
+    places[gbuffer.index(x, y)] = place_at(x, y);
   });
   return places;
 }
