@@ -155,7 +155,8 @@ PaintedPoint::Shares LobePoint::mirror() const {
 }
 
 std::size_t LobePoint::floor_lobes() const {
-  if (transport_.open_floor_ == nullptr || painted_.is_brushed()) return 0;
+  if (transport_.open_floor_ == nullptr || painted_.is_brushed() || !transport_.open_floor_->tells(spot_.start))
+    return 0;
   const auto wide = std::ranges::count_if(columns_.exponents, [](double e) { return e <= kWidestShared; });
   return std::min(static_cast<std::size_t>(wide), GroundReceiver::kMostLobes);
 }

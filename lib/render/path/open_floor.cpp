@@ -82,6 +82,13 @@ GroundColumns OpenFloor::columns(const GroundReceiver& point) const {
   return sum_ground(height > kLow * height_ ? coarse_ : fine_, point);
 }
 
+bool OpenFloor::tells(const Float3& position) const {
+  constexpr float kBlocks = 6, kAcross = 3.14159265F / kFine;  // rad, of a block from the eye
+  const float height = scene_->floor_distance(position, {0, -1, 0});
+  const Float3 way = position + height * Float3{0, -1, 0} - eye_;
+  return height > kBlocks * kAcross * rays::dot(way, way) / height_;
+}
+
 Float3 OpenFloor::lit(const Float3& from, const Float3& direction, float extent_sr, float number) const {
   const float distance = scene_->floor_distance(from, direction);
   const Float3 seen = from + distance * direction - eye_;
