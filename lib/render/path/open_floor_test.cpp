@@ -68,21 +68,27 @@ color::Rgb reference(const Floor& floor, const PaintedPoint& point, const Float3
   return sum;
 }
 
-TEST(OpenFloor, ItsBlocksAreTheSumOverAllDirections) {
-  const Floor floor;
+// Points at heights above the floor of `low` to `high`, and what the sum over blocks is off by, beside the light of the
+// floor.
+struct Errors {
+  std::vector<Float3> points;
+  std::vector<double> errors, control;  // control: without the floor
+};
+Errors errors_of_blocks(const Floor& floor, double low, double high) {
   const TracedPaint paint = TracedPaint::create(metallic(), 45, {}).value();
   std::mt19937 random(7);
   std::uniform_real_distribution<float> unit(-1, 1);
-  std::vector<double> errors, control;
+  Errors found;
   constexpr std::size_t kPoints = 40;
-  while (errors.size() < kPoints) {
+  while (found.errors.size() < kPoints) {
     const Float3 way{unit(random), unit(random), unit(random)}, view{unit(random), 0.6F * unit(random), unit(random)};
     const Float3 normal = rays::normalized(way), viewer = rays::normalized(view);
     if (rays::dot(normal, viewer) < 0.1F) continue;
-    const Float3 from = floor.scene.local({unit(random), -1.2 + 0.25 + 1.5 * std::abs(unit(random)), unit(random)});
+    const double x = unit(random), height = low + (high - low) * std::abs(unit(random));
+    const Float3 from = floor.scene.local({x, -1.2 + height, unit(random)});
     const PaintedPoint point(paint, normal, viewer);
     const auto lobes = point.wide_lobes(100, GroundReceiver::kMostLobes).value();
-    ASSERT_EQ(lobes.size(), 4U);
+    EXPECT_EQ(lobes.size(), 4U);
     GroundReceiver receiver{from, normal, viewer, point.mirrored(), static_cast<float>(point.coat_index())};
     for (const PaintedPoint::WideLobe& lobe : lobes) receiver.exponents[receiver.lobes++] = lobe.exponent;
     const GroundColumns columns = floor.open.columns(receiver);
@@ -92,10 +98,27 @@ TEST(OpenFloor, ItsBlocksAreTheSumOverAllDirections) {
               rays::vec3(lobes[j].gloss) * rays::vec3(columns.gloss[j]);
     double size = 1e-3;
     const color::Rgb truth = reference(floor, point, from, &size);
-    errors.push_back(std::abs(told.y - truth.y) / size), control.push_back(std::abs(truth.y) / size);
+    found.points.push_back(from);
+    found.errors.push_back(std::abs(told.y - truth.y) / size), found.control.push_back(std::abs(truth.y) / size);
   }
-  EXPECT_LT(percentile_95(errors), 0.03);
-  EXPECT_GT(percentile_95(control), 0.3) << "the control: without the floor";
+  return found;
+}
+
+TEST(OpenFloor, ItsBlocksAreTheSumOverAllDirections) {
+  const Floor floor;
+  const Errors found = errors_of_blocks(floor, 0.25, 1.75);
+  EXPECT_LT(percentile_95(found.errors), 0.03);
+  EXPECT_GT(percentile_95(found.control), 0.3) << "the control: without the floor";
+}
+
+TEST(OpenFloor, ItsBlocksTellNothingToPointsJustAboveIt) {
+  const Floor floor;
+  const Errors near = errors_of_blocks(floor, 0.01, 0.1), far = errors_of_blocks(floor, 1, 1.75);
+  const auto told = [&](const Float3& point) { return floor.open.tells(point); };
+  EXPECT_TRUE(std::ranges::none_of(near.points, told));
+  EXPECT_TRUE(std::ranges::any_of(far.points, told));
+  std::printf("off by %.3f near by, %.3f far off\n", percentile_95(near.errors), percentile_95(far.errors));
+  EXPECT_GT(percentile_95(near.errors), 2 * percentile_95(far.errors)) << "the control: by blocks all the same";
 }
 
 TEST(OpenFloor, OfADarkFloorTheHiddenLightIsMissing) {
