@@ -192,7 +192,7 @@ Result<void> read_pixels(Imf::MultiPartInputFile& file, int index, const std::st
   return {};
 }
 
-// `room` may have memory for the pixels.
+// The pixels take the memory of `room`, as far as it goes.
 Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const std::string& file_name,
                                std::size_t file_bytes, const ExrWanted& wanted, bool as_picture = false,
                                std::vector<float> room = {}) {
@@ -256,10 +256,6 @@ auto opened(const std::string& content, const std::string& name, Read&& read)
     return input_error("{}: cannot be read as EXR: {}", name, e.what());
   }
 }
-
-}  // namespace
-
-namespace {
 
 Result<void> visit_parts(const std::string& content, const std::string& name, const ExrWanted& wanted,
                          const ExrVisit& visit) {

@@ -70,8 +70,8 @@ class LobePoint : PointSampler {
   static LobeEstimate known(std::span<const LobePoint> points, const color::Rgb* open_mirrors, const color::Rgb* paint);
   // True if samples tell nothing more than this and the open light.
   static bool is_known(std::span<const LobePoint> points, bool with_open_light);
-  // By so many sequences of `directions` each, a power of two; both even. Each sequence starts from one of the points.
-  // The results of the even and of the odd ones are independent. `open_light` has the mean light of each column, of the
+  // By an even number of sequences, each of so many directions, a power of two, from one of the points. The results of
+  // the even and of the odd sequences are independent. `open_light` has the mean light of each column, of the
   // environment without any surface in the way, with add_open_floor(): what is sampled is what to add to it. Null: rays
   // alone.
   static std::array<LobeEstimate, 2> sampled(std::span<const LobePoint> points, const color::Rgb* open_light,

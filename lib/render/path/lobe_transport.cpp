@@ -27,8 +27,6 @@ constexpr int kDirections = kFan;  // of a batch
 // Two sequences of one batch tell how light scatters. Later rounds draw as few sequences as start from several samples
 // of a pixel, each of as many directions as it takes: the longer a sequence, the more evenly it covers the hemisphere.
 constexpr int kFirstBatches = 2, kSequences = 8, kMostAtOnce = 512;
-// The first round samples at least so many points; their neighbors tell the others.
-constexpr std::size_t kFirstPoints = 50000;
 // Directions at a probe; scaling is judged by ratios, in which the noise of a probe stands on both sides.
 constexpr int kProbeSequences = 4, kProbeDirections = 256;
 
@@ -314,9 +312,7 @@ class Tracing {
 
   template <class Visit>
   void each_kept(const Visit& visit) const {
-    parallel_for(kept_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) visit(n, std::size_t{kept_[n]});
-    });
+    parallel_each(kept_.size(), 1024, [&](std::size_t n) { visit(n, std::size_t{kept_[n]}); });
   }
 
   // Judges the light of the paints that are worn. Points of which no neighbor tells get samples first.

@@ -87,7 +87,7 @@ struct TracedLobes {
   double error_p95_de00 = 0;  // what 5 of 100 errors exceed in the paints that are worn, before white_luminance
   // The noise of a column is what its random error changes in the gray paint of nominal_weight(), one standard
   // deviation. That of a point is the largest over its columns. Errors of columns cancel in part in a paint: on a car
-  // the noisiest column had five times the error of the paint, and other paints 0.8 to 1.4 times that of the one worn.
+  // the noisiest column had five times the error of the paint, and other paints 0.9 to 1.5 times that of the one worn.
   double noise_p95_de00 = 0, noise_mean_de00 = 0;
   double samples_mean = 0, free_share = 0;  // directions of a point; points that samples tell nothing of
   double time_s = 0;

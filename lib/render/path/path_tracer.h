@@ -33,7 +33,7 @@ struct PathRequest {
   // If set, reconstruction() smooths the light along the surface, and the noise is the error that it measures.
   bool reconstruct = false;
   // The first round of such a picture samples at least so many of its points, and all at edges; neighbors tell others.
-  std::size_t first_points = 50000;
+  std::size_t first_points = kFirstPoints;
   // Told after each round: the errors so far, and the seconds.
   std::function<void(double error_de00, double seconds)> progress = {};
 };

@@ -59,7 +59,7 @@ Reconstruction reconstruction(const std::vector<ShownPoint>& points, const std::
                               const std::vector<color::Rgb>& beside, double white_luminance,
                               Filters filters = Filters::kChosen);
 
-// Two lights of each point, smoothed by filters that were chosen for others.
+// Smooths two lights of each point by filters that reconstruction() chose for other light there.
 std::vector<Halves> smoothed(const std::vector<ShownPoint>& points, const std::vector<Halves>& lights,
                              const std::array<const std::vector<FilterShares>*, 2>& shares);
 
