@@ -137,7 +137,7 @@ class Tracing {
     for (const Gbuffer& sample : samples_) samples.push_back(&sample);
     if (samples.empty()) samples.push_back(&surface_);
     const int spacing = filters() == Filters::kNone ? 1 : first_spacing(kept_.size(), kFirstPoints);
-    const PixelFlags told = told_by_corners(surface_, even_pixels(samples), spacing);
+    const PixelFlags told = told_by_corners(surface_, even_pixels(samples, kSamePiece), spacing);
     std::vector<int> more(batches_.size(), 0);
     for (const std::uint32_t i : kept_)
       if (exact_[i] == 0 && (spacing == 1 || told[result_.transport.places[i]] == 0)) more[i] = kFirstBatches;

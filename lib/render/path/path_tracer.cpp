@@ -28,13 +28,12 @@ constexpr double kFoursOfLook = 2;
 // and the last, and at so many where these two differ by more than this part of the tolerance without paths.
 constexpr unsigned kOfOnePiece = 4;
 constexpr double kAlike = 0.2;
+// Where less than this part is left of the light that a point shows without the mesh in the way, the sum of all that is
+// left has less noise than what is taken, and none of the error of maps.
+constexpr double kMostlyHidden = 0.5;
 constexpr std::size_t kMostOfPixel = 16;  // samples
 // Points at which the shares of the first round are compared.
 constexpr std::size_t kCompared = 4096;
-
-std::uint64_t seed_of(std::uint64_t seed, std::uint64_t point, int batch) {
-  return mixed(mixed(seed, point), static_cast<std::uint64_t>(batch));
-}
 
 class Picture {
  public:
@@ -46,7 +45,7 @@ class Picture {
         request_(request),
         deadline_(request.time_limit_s),
         count_(samples.size()) {
-    if (count_ > 1) even_ = even_pixels(samples);
+    if (count_ > 1) even_ = even_pixels(samples, kSamePiece), flat_ = even_pixels(samples, kToldByCorner);
     if (count_ == 1 && request.pixel_samples > 1) {
       shifts_ = sample_shifts(request.pixel_samples);
       count_ = shifts_.size(), seen_ = {};
@@ -65,6 +64,7 @@ class Picture {
       pace_.start();
       sample(more, first_round_);
       pace_.end(drawn() - before + (first_round_ ? kFoursOfLook * static_cast<double>(points_.size()) : 0));
+      if (first_round_ && base_ != nullptr && request_.options.correction) sum_where_hidden();
       if (first_round_ && request_.stop_de00 > 0) stop_shares();
       first_round_ = false;  // which no time limit cuts, so that every point is seen
       const Stopwatch judging;
@@ -104,15 +104,10 @@ class Picture {
       for (int x = 0; x < g.width; ++x) add_point(x, y);
     states_.resize(points_.size());
     if (!points_.empty()) left_ = std::ranges::min(points_, {}, &PathPoint::x).x;
-    if (request_.reconstruct) shown_.assign(points_.size(), {0, 0, {-1, {}, {}}});
-    for (std::size_t i = 0; i < points_.size() && !even_.empty(); ++i)
-      if (even_[place(points_[i])] != 0) states_[i].step = static_cast<unsigned>(count_) - 1;
-    options_ = whole_ = request_.options;
-    whole_.correction = false;
-    first_whole_ = whole_;
-    if (!request_.options.correction || base_ == nullptr || seen_.empty()) return;
-    const PixelFlags hidden = hidden_pixels(transport_, seen_);
-    for (std::size_t i = 0; i < points_.size(); ++i) states_[i].hidden = hidden[place(points_[i])] != 0;
+    if (request_.reconstruct) shown_.assign(points_.size(), kNotShown);
+    for (std::size_t i = 0; i < points_.size() && !flat_.empty(); ++i)
+      if (flat_[place(points_[i])] != 0) states_[i].step = static_cast<unsigned>(count_) - 1;
+    for (auto& of_shares : options_) of_shares[0] = of_shares[1] = request_.options, of_shares[1].correction = false;
   }
 
   // Light on a surface does not change with the resolution: a first round leaves points out that neighbors tell.
@@ -124,6 +119,39 @@ class Picture {
     for (std::size_t i = 0; i < points_.size(); ++i)
       if (told[place(points_[i])] != 0) fours[i] = 0;
     return fours;
+  }
+
+  // True where the mesh takes most of the light about a point on its part; at an edge, about it or in its own pixel.
+  bool is_hidden(std::size_t i) const {
+    // A pane shows what is behind it as well, of which the sum knows nothing.
+    for (const Gbuffer* sample : seen_)
+      if (transport_.meets_pane({sample->triangles[place(points_[i])]})) return false;
+    const bool even = is_even(i);
+    const auto part_of = [this](std::size_t k) { return first_seen_.at(points_[k].x, points_[k].y)[3]; };
+    double base = 0, added = 0;
+    by_pixel_.visit_around(points_[i].x, points_[i].y, [&](std::size_t k) {
+      if (is_unknown(k) || (even && !(is_even(k) && part_of(k) == part_of(i)))) return;
+      base += base_at(points_[k]).y, added += points_[k].radiance.y;
+    });
+    const auto is_most_taken = [](double from, double add) { return from + add < kMostlyHidden * from; };
+    return is_most_taken(base, added) || (!even && is_most_taken(base_at(points_[i]).y, points_[i].radiance.y));
+  }
+
+  // Hidden points begin anew, with samples that did not decide it.
+  void sum_where_hidden() {
+    each_point([&](std::size_t i) { show_own(i); });
+    std::vector<int> more(points_.size(), 0);
+    each_point([&](std::size_t i) { states_[i].hidden = !states_[i].certain && is_hidden(i); });
+    each_point([&](std::size_t i) {
+      State& state = states_[i];
+      if (!state.hidden) return;
+      state.looked = false;
+      if (request_.reconstruct) shown_[i] = kNotShown;
+      if (state.sampled == kNotSampled) return;
+      sampled_[state.sampled] = {};
+      more[i] = kFirstFours;
+    });
+    sample(more, true);
   }
 
   // Points that were left out and of which no neighbor tells get samples, which they show as they are.
@@ -143,9 +171,7 @@ class Picture {
 
   // The first samples of a point are of all shares.
   const PathOptions& options_of(std::size_t i) const {
-    const bool all = sums(i).fours() == 0 || states_[i].all_shares;
-    if (states_[i].hidden) return all ? first_whole_ : whole_;
-    return all ? request_.options : options_;
+    return options_[sums(i).fours() > 0 && !states_[i].all_shares][states_[i].hidden];
   }
 
   // Light that samples tell, of which there are none yet.
@@ -163,11 +189,11 @@ class Picture {
     points_.push_back(point);
   }
 
+  inline static const ShownPoint kNotShown{0, 0, {-1, {}, {}}};
   static constexpr std::uint32_t kNotSampled = ~0U;
   struct State {
-    color::Rgb deterministic;
-    color::Rgb sharp;   // what is known without samples of the light that the mesh takes and adds
-    double needed = 0;  // fours that bring the noise of the neighborhood to the tolerance
+    color::Rgb deterministic;  // what is known without samples of the light to be added to the base
+    double needed = 0;         // fours that bring the noise of the neighborhood to the tolerance
     std::uint32_t sampled = kNotSampled;
     bool certain = false;
     bool all_shares = false;      // Its first samples differ too much for any share to stop.
@@ -191,6 +217,7 @@ class Picture {
     return states_[i].sampled == kNotSampled ? Halves{} : sampled_[states_[i].sampled].kept;
   }
 
+  bool is_even(std::size_t i) const { return !even_.empty() && even_[place(points_[i])] != 0; }
   std::size_t place(const PathPoint& point) const { return place(point.x, point.y); }
   std::size_t place(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(first_seen_.width) + static_cast<std::size_t>(x);
@@ -210,16 +237,13 @@ class Picture {
   }
 
   // Keeps what the reconstruction needs of a sample that counts by `share` in its pixel.
-  void show(std::size_t i, const rays::Spot& spot, double share, const color::Rgb& deterministic,
-            const rays::Float3& to_viewer) {
+  void show(std::size_t i, const rays::Spot& spot, double share) {
     if (!request_.reconstruct) return;
-    State& state = states_[i];
     ShownPoint& shown = shown_[i];
-    const ShownPiece piece{spot.part, spot.shading, spot.position, static_cast<float>(share)};
+    const ShownPiece piece{2 * spot.part + (states_[i].hidden ? 1 : 0), spot.shading, spot.position,
+                           static_cast<float>(share)};
     if (shown.piece.part < 0) shown = {points_[i].x - left_, points_[i].y - points_.front().y, piece};
-    if (share < 1 && (even_.empty() || even_[place(points_[i])] == 0)) shown.pieces.push_back(piece);
-    state.sharp +=
-        share * (state.hidden ? SeenPoint(transport_, options_, spot, to_viewer).deterministic() : deterministic);
+    if (share < 1 && !is_even(i)) shown.pieces.push_back(piece);
   }
 
   void add_round(std::size_t i, const Round& round, const LightShares (&means)[Round::kSequences]) {
@@ -239,7 +263,6 @@ class Picture {
     if (const std::uint32_t n = states_[i].sampled; n != kNotSampled)
       shares = 0.5 * first_[n][0], shares += 0.5 * first_[n][1];
     shares.direct += states_[i].deterministic;
-    if (states_[i].hidden) shares.direct += -1.0 * base_at(points_[i]);
     return shares;
   }
 
@@ -273,10 +296,11 @@ class Picture {
   // The result of the first round stays for these shares.
   void draw_without(unsigned stopped) {
     drawn_ = kAllShares & ~stopped;
-    options_.into_lobes = options_.into_lobes && (drawn_ & 2U) != 0;
-    options_.into_diffuse = options_.into_diffuse && (drawn_ & 4U) != 0;
-    if (!options_.into_lobes && !options_.into_diffuse) options_.bounces = 0;
-    whole_ = options_, whole_.correction = false;
+    for (PathOptions& options : options_[1]) {
+      options.into_lobes = options.into_lobes && (drawn_ & 2U) != 0;
+      options.into_diffuse = options.into_diffuse && (drawn_ & 4U) != 0;
+      if (!options.into_lobes && !options.into_diffuse) options.bounces = 0;
+    }
     const Round round(kFirstFours);
     each_point([&](std::size_t i) {
       State& state = states_[i];
@@ -320,29 +344,30 @@ class Picture {
   }
 
   bool are_alike(std::size_t i, const Look& a, const Look& b) const {
-    const color::Rgb base = base_ != nullptr ? base_at(points_[i]) : color::Rgb{};
+    const color::Rgb base = base_ != nullptr && !states_[i].hidden ? base_at(points_[i]) : color::Rgb{};
     return seen_difference(base + a.at.deterministic(), base + b.at.deterministic(), request_.white_luminance) <=
            kAlike * request_.tolerance_de00;
   }
 
   // Each round at a point has sequences of its own. Samples of a pixel that show one piece have one light of the open
   // floor.
-  void add_fan(const SeenPoint& at, std::size_t i, const Round& round, int fan,
+  void add_fan(const SeenPoint& at, std::size_t i, const Round& round, int fan, double share,
                LightShares (&means)[Round::kSequences]) {
-    const int which = round.sequence_of(fan);
-    const Sequence sequence(seed_of(request_.seed, i, sums(i).fours() + which),
-                            static_cast<std::uint32_t>(kOfFour * round.length));
+    const int which = round.sequence_of(fan), batch = sums(i).fours() + which;
+    const Sequence sequence(
+        mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(states_[i].hidden ? ~batch : batch)),
+        static_cast<std::uint32_t>(kOfFour * round.length));
     LightShares shares =
         at.shares_of(sequence, round.first_of(fan), static_cast<std::uint32_t>(kOfFour * round.together()));
     std::optional<color::Rgb>& known = sampled_[states_[i].sampled].floor_light;
     const color::Rgb floor_light = known ? *known : at.floor_light();
-    if (count_ == 1 || (!even_.empty() && even_[place(points_[i])] != 0)) known = floor_light;
+    if (count_ == 1 || is_even(i)) known = floor_light;
     shares.from_floor += floor_light;
-    means[which] += (static_cast<double>(round.together()) / round.length) * shares;
+    means[which] += (share * round.together() / round.length) * shares;
   }
 
-  // The fans take the samples of the pixel in turn from one drawn by chance: the mean over all fans has the right
-  // expectation, and the differences between samples count as noise while not all have been seen.
+  // The fans take the uncertain samples of the pixel in turn from one drawn by chance: the mean over all fans has the
+  // right expectation, and the differences between samples count as noise while not all have been seen.
   void sample(std::size_t i, int fours) {
     State& state = states_[i];
     const Round round(fours);
@@ -357,25 +382,26 @@ class Picture {
     const bool first_time = !state.looked;
     state.looked = true;
     if (first_time) state.uncertain = 0, state.deterministic = {};
-    const unsigned first =
-        (static_cast<unsigned>(mixed(request_.seed, i) >> 32) + static_cast<unsigned>(sums(i).fours())) % count;
-    LightShares means[Round::kSequences];
-    for (unsigned k = 0; k < count; ++k) {
-      const unsigned sample = k * step;
+    for (unsigned sample = 0; first_time && sample < count_; sample += step) {
       if ((covered >> sample & 1U) == 0) continue;
-      auto fan = static_cast<int>((k + count - first) % count);
-      if (!first_time && (fan >= round.fans() || (state.uncertain >> sample & 1U) == 0)) continue;
       const auto& [spot, to_viewer, at] = look(sample);
-      if (first_time) {
-        state.deterministic += (1.0 / count) * at.deterministic();
-        show(i, spot, 1.0 / count, at.deterministic(), to_viewer);
-        if (!at.certain()) state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);
-      }
-      if (at.certain() || fours == 0) continue;
-      for (; fan < round.fans(); fan += static_cast<int>(count)) add_fan(at, i, round, fan, means);
+      state.deterministic += (1.0 / count) * at.deterministic();
+      show(i, spot, 1.0 / count);
+      if (!at.certain()) state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);
     }
+    if (first_time && state.hidden) state.deterministic += -1.0 * base_at(points_[i]);
     state.certain = state.uncertain == 0;
-    if (!state.certain && fours > 0) add_round(i, round, means);
+    if (state.certain || fours == 0) return;
+    const int uncertain = std::popcount(state.uncertain);
+    auto turn = static_cast<int>((mixed(request_.seed, i) >> 32) % static_cast<unsigned>(uncertain)) + sums(i).fours();
+    LightShares means[Round::kSequences];
+    for (int fan = 0; fan < round.fans(); ++fan, ++turn) {
+      unsigned left = state.uncertain;
+      for (int k = turn % uncertain; k > 0; --k) left &= left - 1;
+      add_fan(look(static_cast<std::size_t>(std::countr_zero(left))).at, i, round, fan,
+              static_cast<double>(uncertain) / count, means);
+    }
+    add_round(i, round, means);
   }
 
   template <class Visit>
@@ -386,7 +412,6 @@ class Picture {
   // By its own samples.
   void show_own(std::size_t i) {
     points_[i].radiance = states_[i].deterministic + sums(i).mean() + 0.5 * (kept(i)[0] + kept(i)[1]);
-    if (states_[i].hidden) points_[i].radiance += -1.0 * base_at(points_[i]);
     points_[i].samples = kOfFour * sums(i).fours();
   }
 
@@ -413,25 +438,23 @@ class Picture {
             std::hypot(std::max(largest_errors(mesh, request_.beside_de00), on_floor), found_.stopped_de00)};
   }
 
-  // Light that is known without samples stays sharp. Where all that is left was summed, the rest is the same light less
-  // what points show without the mesh in the way, as everywhere else.
+  // Light that is known without samples stays sharp. What is taken and what is left are never mixed.
   void reconstruct() {
     std::vector<Halves> halves(points_.size());
     std::vector<color::Rgb> beside(points_.size());
     each_point([&](std::size_t i) {
       const State& state = states_[i];
       const color::Rgb base = base_ != nullptr ? base_at(points_[i]) : color::Rgb{};
-      beside[i] = base + state.sharp;
+      beside[i] = base + state.deterministic;
       for (std::size_t k = 0; k < 2; ++k) {
         halves[i][k] = sums(i).halves()[k] + kept(i)[k];
-        if (state.hidden) halves[i][k] += state.deterministic - base - state.sharp;
         if (is_unknown(i)) halves[i][k] = kUnknown;
       }
     });
     const Reconstruction found = reconstruction(shown_, halves, beside, request_.white_luminance);
     each_point([&](std::size_t i) {
       const bool certain = states_[i].certain && sums(i).fours() == 0;
-      points_[i].radiance = states_[i].sharp + (certain ? halves[i][0] : found.light[i]);
+      points_[i].radiance = states_[i].deterministic + (certain ? halves[i][0] : found.light[i]);
       points_[i].noise_de00 = certain ? 0 : found.error_de00[i];
       states_[i].needed =
           certain ? 0 : needed_samples(counted(i), points_[i].noise_de00, found.spike_de00[i], tolerance());
@@ -542,8 +565,8 @@ class Picture {
 
   const Transport& transport_;
   const Gbuffer& first_seen_;
-  PathOptions options_, whole_, first_whole_;  // of what is drawn and, of a first round; the others without correction
-  PixelSamples seen_;                          // of each sample of a pixel; empty: rays find what is seen
+  PathOptions options_[2][2];  // of a first round and of the others, of what is taken and of all that is left
+  PixelSamples seen_;          // of each sample of a pixel; empty: rays find what is seen
   const image::Image* base_;
   const PathRequest& request_;
   Deadline deadline_;
@@ -554,7 +577,7 @@ class Picture {
   std::size_t count_ = 1;                      // of the pixels' samples
   std::vector<std::array<double, 2>> shifts_;  // of these, where rays find what is seen
   Coverage coverage_;
-  PixelFlags even_;  // empty but where surfaces of all samples are given
+  PixelFlags even_, flat_;  // empty but where surfaces of all samples are given
   PixelPoints by_pixel_;
   std::vector<PathPoint> points_;
   std::vector<State> states_;

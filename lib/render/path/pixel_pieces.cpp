@@ -9,9 +9,6 @@ namespace goniochrome::render {
 
 namespace {
 
-// Points whose normals have at least this cosine tell the first round of each other: well within the filters' reach.
-constexpr float kToldByCorner = 0.998F;
-
 bool are_one_piece(const float* a, const float* b, float cosine) {
   return a[3] != 0 && a[3] == b[3] && a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > cosine;
 }
@@ -39,11 +36,11 @@ Coverage coverage(PixelSamples samples) {
   return result;
 }
 
-PixelFlags even_pixels(PixelSamples samples) {
+PixelFlags even_pixels(PixelSamples samples, float cosine) {
   const Gbuffer& first = *samples.front();
   return flags_of(first, [&](int x, int y) {
     return std::ranges::all_of(
-        samples, [&](const Gbuffer* sample) { return are_one_piece(sample->at(x, y), first.at(x, y), kSamePiece); });
+        samples, [&](const Gbuffer* sample) { return are_one_piece(sample->at(x, y), first.at(x, y), cosine); });
   });
 }
 
@@ -58,28 +55,6 @@ PixelFlags told_by_corners(const Gbuffer& gbuffer, const PixelFlags& even, int s
     const int left = x - x % spacing, top = y - y % spacing;
     return (left != x || top != y) && even[gbuffer.index(x, y)] != 0 && even[gbuffer.index(left, top)] != 0 &&
            are_one_piece(gbuffer.at(x, y), gbuffer.at(left, top), kToldByCorner);
-  });
-}
-
-PixelFlags hidden_pixels(const Transport& transport, PixelSamples samples) {
-  constexpr int kBlock = 2;
-  const Gbuffer& gbuffer = *samples.front();
-  const auto shows_pane = [&](std::size_t i) {
-    return std::ranges::any_of(samples, [&](const Gbuffer* s) { return transport.meets_pane({s->triangles[i]}); });
-  };
-  const auto is_hidden = [&](int x, int y) {
-    const std::size_t i = gbuffer.index(x, y);
-    const auto seen = std::ranges::find_if(samples, [&](const Gbuffer* s) { return s->triangles[i] != kNoTriangle; });
-    return seen != samples.end() && !shows_pane(i) &&
-           transport.open_share(spot_at(transport.rays(), **seen, x, y)) < kMostlyHidden;
-  };
-  const auto decides = [](int x, int y) { return x % kBlock == 0 && y % kBlock == 0; };
-  const PixelFlags decided = flags_of(gbuffer, [&](int x, int y) { return decides(x, y) && is_hidden(x, y); });
-  return flags_of(gbuffer, [&](int x, int y) {
-    const int left = x - x % kBlock, top = y - y % kBlock;
-    const float part = gbuffer.at(left, top)[3];
-    const bool told = decides(x, y) || (part != 0 && part == gbuffer.at(x, y)[3]);
-    return told && !shows_pane(gbuffer.index(x, y)) ? decided[gbuffer.index(left, top)] != 0 : is_hidden(x, y);
   });
 }
 

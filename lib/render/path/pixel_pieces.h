@@ -21,8 +21,10 @@ using PixelFlags = std::vector<std::uint8_t>;
 // Which samples meet the scene or its floor.
 Coverage coverage(PixelSamples samples);
 
-// Pixels whose samples all show one piece, by part and normal.
-PixelFlags even_pixels(PixelSamples samples);
+// Pixels whose samples all show one part, and normals with at least this cosine to that of the first.
+PixelFlags even_pixels(PixelSamples samples, float cosine);
+// Points whose normals have at least this cosine tell the first round of each other: well within the filters' reach.
+constexpr float kToldByCorner = 0.998F;
 
 // The distance of pixels that are sampled first, a power of two: at least `least` of so many points are left.
 int first_spacing(std::size_t points, std::size_t least);
@@ -32,14 +34,5 @@ constexpr std::size_t kFirstPoints = 50000;
 // Even pixels that a first round leaves out, because the pixel at the corner of their square of so many pixels is even
 // too and shows the same piece at nearly the same normal.
 PixelFlags told_by_corners(const Gbuffer& gbuffer, const PixelFlags& even, int spacing);
-
-// A point that gets less than this part of even light (Transport::open_share) is corrected by the sum of all that is
-// left instead of what is taken: where most is taken, that has less noise.
-constexpr double kMostlyHidden = 0.5;
-
-// Pixels of the mesh that are so hidden, by their first sample. Both sums have the same mean, so that one pixel decides
-// for others beside it on its part. Where a pane is seen, the picture has what is behind as well, and no pixel is
-// hidden.
-PixelFlags hidden_pixels(const Transport& transport, PixelSamples samples);
 
 }  // namespace goniochrome::render

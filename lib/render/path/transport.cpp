@@ -133,40 +133,6 @@ void Transport::shade_ground(GroundRequest request, int bounces) {
       });
 }
 
-// Directions even by the cosine. Light from the ground counts by what the mesh leaves of it.
-double Transport::open_share(const Spot& spot) const {
-  if (!rays_->has_floor() && !rays_->any_above(spot.start, spot.shading, 0)) return 1;
-  constexpr std::uint32_t kDirections = 8;
-  const Sequence::Set sequence = Sequence(0x09E4, kDirections).set(0);
-  const rays::Frame frame = rays::frame_about(spot.shading);
-  double open = 0;
-  for (std::uint32_t first = 0; first < kDirections; first += kFan) {
-    rays::Fan fan;
-    fan.origin = spot.start;
-    Float3 directions[kFan];
-    for (std::uint32_t i = 0; i < kFan; ++i) {
-      const std::array<double, 4> numbers = sequence.point(first + i);
-      const auto across = static_cast<float>(std::sqrt(numbers[0])),
-                 phi = 2 * rays::kFloatPi * static_cast<float>(numbers[1]);
-      directions[i] = (across * std::cos(phi)) * frame.x + (across * std::sin(phi)) * frame.y +
-                      std::sqrt(1 - across * across) * spot.shading;
-      fan.x[i] = directions[i].x, fan.y[i] = directions[i].y, fan.z[i] = directions[i].z;
-    }
-    fan.wanted = (1U << kFan) - 1;
-    Hit hits[kFan];
-    rays_->closest(fan, hits);
-    for (std::uint32_t i = 0; i < kFan; ++i) {
-      if (!hits[i].any()) {
-        ++open;
-      } else if (shaded_ != nullptr && is_projected(hits[i])) {
-        const Float3 place = spot.start + hits[i].distance * directions[i];
-        open += shaded_->met(place, 0.5).left.y;
-      }
-    }
-  }
-  return open / kDirections;
-}
-
 LightShares Transport::shaded_ground(const Spot& spot) const {
   if (spot.inside) return {};
   return shown_ground(spot, shaded_->seen(spot.position));

@@ -135,8 +135,6 @@ class Transport {
   // those of a transport whose mesh and emitting parts are the same, and which outlives this one; null: by lobes alone.
   void draw_toward(std::shared_ptr<const BrightPlaces> places) { places_ = std::move(places); }
   const BrightPlaces* bright_places() const { return places_.get(); }
-  // About what part of even light a point gets past the mesh.
-  double open_share(const rays::Spot& spot) const;
 
  private:
   friend class PointSampler;
