@@ -29,7 +29,7 @@ constexpr float kToldByCorner = 0.998F;
 // The distance of pixels that are sampled first, a power of two: at least `least` of so many points are left.
 int first_spacing(std::size_t points, std::size_t least);
 // The least number, unless another is asked for.
-constexpr std::size_t kFirstPoints = 50000;
+constexpr std::size_t kFirstPoints = 25000;
 
 // Even pixels that a first round leaves out, because the pixel at the corner of their square of so many pixels is even
 // too and shows the same piece at nearly the same normal.
