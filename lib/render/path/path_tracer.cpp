@@ -206,8 +206,8 @@ class Picture {
   // A point that gets samples; most points of a large picture get none.
   struct Sampled {
     Gathered sums;
-    std::optional<color::Rgb> floor_light;  // of any sample of the pixel; none: not known, or of each another
-    Halves kept{};                          // of shares that stopped
+    color::Rgb floor_light;  // that needs no samples; one point stands for all that lie on one piece
+    Halves kept{};           // of shares that stopped
   };
   const Gathered& sums(std::size_t i) const {
     static const Gathered none;
@@ -349,21 +349,14 @@ class Picture {
            kAlike * request_.tolerance_de00;
   }
 
-  // Each round at a point has sequences of its own. Samples of a pixel that show one piece have one light of the open
-  // floor.
   void add_fan(const SeenPoint& at, std::size_t i, const Round& round, int fan, double share,
                LightShares (&means)[Round::kSequences]) {
     const int which = round.sequence_of(fan), batch = sums(i).fours() + which;
     const Sequence sequence(
         mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(states_[i].hidden ? ~batch : batch)),
         static_cast<std::uint32_t>(kOfFour * round.length));
-    LightShares shares =
-        at.shares_of(sequence, round.first_of(fan), static_cast<std::uint32_t>(kOfFour * round.together()));
-    std::optional<color::Rgb>& known = sampled_[states_[i].sampled].floor_light;
-    const color::Rgb floor_light = known ? *known : at.floor_light();
-    if (count_ == 1 || is_even(i)) known = floor_light;
-    shares.from_floor += floor_light;
-    means[which] += (share * round.together() / round.length) * shares;
+    means[which] += (share * round.together() / round.length) *
+                    at.shares_of(sequence, round.first_of(fan), static_cast<std::uint32_t>(kOfFour * round.together()));
   }
 
   // The fans take the uncertain samples of the pixel in turn from one drawn by chance: the mean over all fans has the
@@ -378,29 +371,36 @@ class Picture {
     if (!state.looked && state.step > 1 && !are_alike(i, look(0), look(count_ - 1)))
       state.step = std::max(1U, static_cast<unsigned>(count_ - 1) / (kOfOnePiece - 1));
     const unsigned step = state.step, count = (static_cast<unsigned>(count_) + step - 1) / step;
-    const unsigned covered = coverage_.any[place(points_[i].x, points_[i].y)];
+    const double share = 1.0 / count;
+    const unsigned covered = coverage_.any[place(points_[i])];
     const bool first_time = !state.looked;
     state.looked = true;
     if (first_time) state.uncertain = 0, state.deterministic = {};
     for (unsigned sample = 0; first_time && sample < count_; sample += step) {
       if ((covered >> sample & 1U) == 0) continue;
       const auto& [spot, to_viewer, at] = look(sample);
-      state.deterministic += (1.0 / count) * at.deterministic();
-      show(i, spot, 1.0 / count);
+      state.deterministic += share * at.deterministic();
+      show(i, spot, share);
       if (!at.certain()) state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);
     }
     if (first_time && state.hidden) state.deterministic += -1.0 * base_at(points_[i]);
     state.certain = state.uncertain == 0;
     if (state.certain || fours == 0) return;
     const int uncertain = std::popcount(state.uncertain);
-    auto turn = static_cast<int>((mixed(request_.seed, i) >> 32) % static_cast<unsigned>(uncertain)) + sums(i).fours();
-    LightShares means[Round::kSequences];
-    for (int fan = 0; fan < round.fans(); ++fan, ++turn) {
+    const auto uncertain_look = [&](int turn) -> const Look& {
       unsigned left = state.uncertain;
       for (int k = turn % uncertain; k > 0; --k) left &= left - 1;
-      add_fan(look(static_cast<std::size_t>(std::countr_zero(left))).at, i, round, fan,
-              static_cast<double>(uncertain) / count, means);
-    }
+      return look(static_cast<std::size_t>(std::countr_zero(left)));
+    };
+    color::Rgb& floor_light = sampled_[state.sampled].floor_light;
+    const int floors = is_even(i) ? 1 : uncertain;
+    for (int k = 0; sums(i).fours() == 0 && k < floors; ++k)
+      floor_light += (share * uncertain / floors) * uncertain_look(k).at.floor_light();
+    auto turn = static_cast<int>((mixed(request_.seed, i) >> 32) % static_cast<unsigned>(uncertain)) + sums(i).fours();
+    LightShares means[Round::kSequences];
+    for (int fan = 0; fan < round.fans(); ++fan)
+      add_fan(uncertain_look(turn + fan).at, i, round, fan, share * uncertain, means);
+    for (LightShares& mean : means) mean.from_floor += floor_light;
     add_round(i, round, means);
   }
 

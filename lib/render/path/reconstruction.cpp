@@ -366,7 +366,8 @@ Reconstruction reconstruction(const std::vector<ShownPoint>& points, const std::
       error.fill(HUGE_VALF);
       if (!std::isnan(predicted[0][n][0])) error[0] = std::max(errors.mean_variances[n][0], 1e-6F);
     }
-    if (const float own = errors.variances[n][0]; own > kLargePart * errors.mean_variances[n][0])
+    const float own = errors.variances[n][0];
+    if (filters == Filters::kChosen && own > kLargePart * errors.mean_variances[n][0])
       result.spike_de00[n] = std::sqrt(own);
     const float least = *std::ranges::min_element(error);
     if (std::isinf(least)) {
