@@ -10,7 +10,7 @@ namespace goniochrome::render {
 
 class PointTransport : PointSampler {
  public:
-  // `to_viewer` is unit. The transport and the options must outlive the point.
+  // `to_viewer` is unit. The transport must outlive the point.
   PointTransport(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
                  const rays::Float3& to_viewer);
 
@@ -43,7 +43,7 @@ class PointTransport : PointSampler {
   color::Rgb lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
   color::Rgb sharp_floor_light(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
 
-  const PathOptions& options_;
+  PathOptions options_;
   bool correction_;                   // whether samples tell what the mesh changes: as asked, or of a floor
   bool over_ground_;                  // over a floor whose ground is shaded
   std::uint32_t mirror_samples_ = 0;  // in a batch

@@ -12,7 +12,7 @@ namespace goniochrome::render {
 
 class SeenPoint {
  public:
-  // `spot` is of transport.eye(), and `to_viewer` is unit. The arguments but for these two must outlive the point.
+  // `spot` is of transport.eye(), and `to_viewer` is unit. The transport must outlive the point.
   SeenPoint(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
             const rays::Float3& to_viewer)
       : front_(transport, options, spot, to_viewer) {
