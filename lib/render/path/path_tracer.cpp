@@ -107,7 +107,7 @@ class Picture {
     if (request_.reconstruct) shown_.assign(points_.size(), kNotShown);
     for (std::size_t i = 0; i < points_.size() && !flat_.empty(); ++i)
       if (flat_[place(points_[i])] != 0) states_[i].step = static_cast<unsigned>(count_) - 1;
-    for (auto& of_shares : options_) of_shares[0] = of_shares[1] = request_.options, of_shares[1].correction = false;
+    options_ = request_.options;
   }
 
   // Light on a surface does not change with the resolution: a first round leaves points out that neighbors tell.
@@ -170,8 +170,10 @@ class Picture {
   }
 
   // The first samples of a point are of all shares.
-  const PathOptions& options_of(std::size_t i) const {
-    return options_[sums(i).fours() > 0 && !states_[i].all_shares][states_[i].hidden];
+  PathOptions options_of(std::size_t i) const {
+    PathOptions options = sums(i).fours() == 0 || states_[i].all_shares ? request_.options : options_;
+    options.correction = options.correction && !states_[i].hidden;
+    return options;
   }
 
   // Light that samples tell, of which there are none yet.
@@ -296,11 +298,9 @@ class Picture {
   // The result of the first round stays for these shares.
   void draw_without(unsigned stopped) {
     drawn_ = kAllShares & ~stopped;
-    for (PathOptions& options : options_[1]) {
-      options.into_lobes = options.into_lobes && (drawn_ & 2U) != 0;
-      options.into_diffuse = options.into_diffuse && (drawn_ & 4U) != 0;
-      if (!options.into_lobes && !options.into_diffuse) options.bounces = 0;
-    }
+    options_.into_lobes = options_.into_lobes && (drawn_ & 2U) != 0;
+    options_.into_diffuse = options_.into_diffuse && (drawn_ & 4U) != 0;
+    if (!options_.into_lobes && !options_.into_diffuse) options_.bounces = 0;
     const Round round(kFirstFours);
     each_point([&](std::size_t i) {
       State& state = states_[i];
@@ -565,8 +565,8 @@ class Picture {
 
   const Transport& transport_;
   const Gbuffer& first_seen_;
-  PathOptions options_[2][2];  // of a first round and of the others, of what is taken and of all that is left
-  PixelSamples seen_;          // of each sample of a pixel; empty: rays find what is seen
+  PathOptions options_;  // of what is drawn after a first round
+  PixelSamples seen_;    // of each sample of a pixel; empty: rays find what is seen
   const image::Image* base_;
   const PathRequest& request_;
   Deadline deadline_;
