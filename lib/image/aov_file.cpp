@@ -192,21 +192,11 @@ Result<AovFile> file_of(const std::string& path, ImagePart& first) {
 
 }  // namespace
 
-Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::string>& channels,
-                              const TakeLayer& take) {
-  std::optional<AovFile> file;
-  const auto visit = [&](ImagePart& part) -> Result<void> {
-    if (!file) {
-      GONIO_ASSIGN(file, file_of(path, part));
-      return {};
-    }
-    if (file->transport.empty()) return {};
-    if (take) return take(*file, part);
-    file->layers.push_back(std::move(part));
-    return {};
-  };
-  GONIO_TRY(visit_exr(path, {.part = {}, .channels = channels}, visit));
-  return *std::move(file);
+Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::string>& channels) {
+  GONIO_ASSIGN(OpenExr exr, open_exr(path, channels));
+  GONIO_ASSIGN(AovFile file, file_of(path, exr.first));
+  if (!file.transport.empty()) file.layer = std::move(exr.other);
+  return file;
 }
 
 }  // namespace goniochrome::image

@@ -35,16 +35,19 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
                                const render::Gbuffer& seen, int samples, double white_luminance, int bounces,
                                cli::Session& session);
 
-// The transport of --gbuffer and what its file says of the light.
+// The transport of --gbuffer, at first without light, and what its file says of the light.
 struct KeptTransport {
   render::LobeTransport light;
   image::AovFile file;  // without its pictures
 };
 // Nothing where there is no light, or where the command line has other light than the file, which is told. Error
 // (usage): bounced light was traced with another operator.
-Result<std::optional<KeptTransport>> kept_transport(std::optional<render::LobeTransport> light, image::AovFile file,
+Result<std::optional<KeptTransport>> kept_transport(std::optional<render::LobeTransport> points, image::AovFile file,
                                                     const Options& options, const Request& request,
                                                     cli::Session& session);
+
+// Reads the light that this dress of the mesh weighs; without one, that of all lobes. Error: as render::read_light().
+Result<void> read_light(const DressedMesh* dress, const mesh::Mesh& mesh, KeptTransport& transport);
 
 // The results of shading a view in some paints.
 struct ShadedPaint {

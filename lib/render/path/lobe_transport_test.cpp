@@ -395,9 +395,9 @@ TEST(LobeTransport, HoldsAFloorThatShowsTheEnvironment) {
         const auto& own = weights[static_cast<std::size_t>(t.part[i])];
         const color::Rgb direct = shown(t, i, own, false), bounced = shown(t, i, own, true) - direct;
         const color::Rgb ours = direct + bounce_factor(t, i, scale) * bounced;
-        color::Rgb classes;
-        for (std::size_t k = 0; k < 3 * t.worn.groups.classes(); ++k)
-          classes[static_cast<int>(k % 3)] += t.classes[3 * i * t.worn.groups.classes() + k];
+        color::Rgb classes = t.has_lobes(i) ? color::Rgb{} : bounced;
+        for (std::size_t k = 0; t.has_lobes(i) && k < 3 * t.worn.groups.classes(); ++k)
+          classes[static_cast<int>(k % 3)] += t.classes_of(i)[k];
         if (&paint == &paints.front()) {
           EXPECT_NEAR(classes.y, bounced.y, 1e-5 + 1e-3 * bounced.y) << "the classes are all of it";
         }

@@ -14,7 +14,7 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr double kVersion = 1;
+constexpr double kVersion = 2;
 constexpr int kMantissa = 10;          // bits of a half
 constexpr int kMostDropped = 4;        // of them; a lobe that few points show would be off by percents there
 constexpr int kProbeDropped = 2;       // of probes, which are averaged
@@ -54,12 +54,6 @@ float scale_of(double weight, float largest) {
   auto scale = static_cast<float>(std::ldexp(1.0, exponent));
   while (largest * scale >= 0.99F * kLargest) scale /= 2;
   return scale;
-}
-
-float largest_of(const std::vector<float>& values) {
-  float largest = 0;
-  for (const float value : values) largest = std::max(largest, std::abs(value));
-  return largest;
 }
 
 class Writer {
@@ -176,9 +170,11 @@ double rounding_error(const LobeTransport& t, std::size_t column, bool bounced, 
   const double weight = nominal_weight(t.columns, column);
   const std::size_t stride = 1 + t.places.size() / kJudged;
   for (std::size_t i = 0; i < t.places.size(); i += stride) {
+    const auto at = t.at(i, column);
+    if (!at) continue;
     color::Rgb seen = weight * t.light(i, column), rounded;
     if (t.columns.is_gloss(column)) seen += (kNominalGray / kPi) * t.light(i, LobeColumns::diffuse());
-    const float* light = &(bounced ? t.bounced : t.direct)[i * t.floats() + 3 * column];
+    const float* light = &(bounced ? t.bounced : t.direct)[column][*at];
     for (int c = 0; c < 3; ++c) rounded[c] = rounding.value(rounding.number(light[c])) - light[c];
     errors.push_back(seen_difference(seen, seen + weight * rounded, t.white_luminance));
   }
@@ -186,10 +182,7 @@ double rounding_error(const LobeTransport& t, std::size_t column, bool bounced, 
 }
 
 Rounding rounding_of(const LobeTransport& t, std::size_t column, bool bounced) {
-  const std::vector<float>& light = bounced ? t.bounced : t.direct;
-  float largest = 0;
-  for (std::size_t i = 0; i < t.places.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(light[i * t.floats() + 3 * column + c]));
+  const float largest = largest_of((bounced ? t.bounced : t.direct)[column]);
   Rounding rounding{scale_of(nominal_weight(t.columns, column), largest), kMostDropped};
   while (rounding.dropped > 0 && rounding_error(t, column, bounced, rounding) > kPackedError_de00) --rounding.dropped;
   return rounding;
@@ -233,11 +226,11 @@ bool read_worn(LobeTransport& t, Reader& from) {
 
 // The share of each class in a point's bounced light.
 void write_classes(const LobeTransport& t, Writer& to) {
-  const std::size_t stride = 3 * t.worn.groups.classes();
-  std::vector<float> sums(3 * t.places.size(), 0.0F);
-  for (std::size_t i = 0; i < t.places.size(); ++i)
+  const std::size_t stride = 3 * t.worn.groups.classes(), points = t.points_of(t.columns.mirror()).size();
+  std::vector<float> sums(3 * points, 0.0F);
+  for (std::size_t i = 0; i < points; ++i)
     for (std::size_t k = 0; k < stride; ++k) sums[3 * i + k % 3] += std::max(0.0F, t.classes[i * stride + k]);
-  std::vector<int> shares(t.places.size());
+  std::vector<int> shares(points);
   for (std::size_t k = 0; k < stride; ++k) {
     for (std::size_t i = 0; i < shares.size(); ++i) {
       const float sum = sums[3 * i + k % 3];
@@ -286,15 +279,16 @@ LobeTransport of_points(const LobeTransport& t, const std::vector<std::uint32_t>
   LobeTransport some;
   some.width = t.width, some.height = t.height, some.columns = t.columns, some.worn = t.worn;
   some.white_luminance = t.white_luminance, some.unit = t.unit, some.bounces = t.bounces;
-  const std::size_t classes = 3 * t.worn.groups.classes();
-  const auto copy = [&](const std::vector<float>& from, std::size_t stride, std::vector<float>& to) {
-    for (const std::uint32_t point : points)
-      to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(point * stride),
-                from.begin() + static_cast<std::ptrdiff_t>((point + 1) * stride));
-  };
-  copy(t.direct, t.floats(), some.direct), copy(t.bounced, t.floats(), some.bounced);
-  copy(t.classes, classes, some.classes);
   for (const std::uint32_t point : points) some.places.push_back(t.places[point]), some.part.push_back(t.part[point]);
+  some.make_room();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t k = 0; k < t.columns.count(); ++k) {
+      const auto from = t.at(points[i], k), to = some.at(i, k);
+      for (std::size_t c = 0; from && c < 3; ++c)
+        some.direct[k][*to + c] = t.direct[k][*from + c], some.bounced[k][*to + c] = t.bounced[k][*from + c];
+    }
+    if (t.has_lobes(points[i])) std::copy_n(t.classes_of(points[i]), 3 * t.worn.groups.classes(), some.classes_of(i));
+  }
   return some;
 }
 
@@ -316,13 +310,13 @@ Result<std::string> packed_view(const LobeTransport& t, const std::vector<float>
   std::vector<int> angles;
   for (const float angle : view_deg) angles.push_back(static_cast<int>(std::lrint(kAngleSteps * angle)));
   to.plane(angles);
-  std::vector<float> plane(points);
   for (const bool bounced : {false, true}) {
-    const std::vector<float>& light = bounced ? t.bounced : t.direct;
     for (std::size_t k = 0; k < t.columns.count() && (!bounced || t.bounces > 0); ++k) {
+      const std::vector<float>& light = (bounced ? t.bounced : t.direct)[k];
       const Rounding rounding = rounding_of(t, k, bounced);
+      std::vector<float> plane(light.size() / 3);
       for (std::size_t c = 0; c < 3; ++c) {
-        for (std::size_t i = 0; i < points; ++i) plane[i] = light[i * t.floats() + 3 * k + c];
+        for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = light[3 * i + c];
         to.light(plane, rounding);
       }
     }
@@ -360,21 +354,20 @@ Result<UnpackedView> unpacked_view(std::string_view bytes) {
     if (seen[i] < 0 || static_cast<std::size_t>(seen[i]) > t.worn.groups.of_part.size()) return damaged;
     t.places.push_back(static_cast<std::uint32_t>(i)), t.part.push_back(seen[i] - 1);
   }
-  const std::size_t points = t.places.size(), floats = t.floats();
+  const std::size_t points = t.places.size();
   if (points > kMostPagePoints) return damaged;
   for (const int angle : from.plane(points)) view.view_deg.push_back(static_cast<float>(angle) / kAngleSteps);
-  t.direct.resize(points * floats), t.bounced.resize(points * floats);
+  t.make_room();
   for (const bool bounced : {false, true})
     for (std::size_t k = 0; k < t.columns.count() && (!bounced || t.bounces > 0); ++k)
       for (std::size_t c = 0; c < 3 && from.ok(); ++c) {
-        float* to = (bounced ? t.bounced : t.direct).data() + 3 * k + c;
-        from.light(points, [=](std::size_t i, float value) { to[i * floats] = value; });
+        std::vector<float>& to = (bounced ? t.bounced : t.direct)[k];
+        from.light(to.size() / 3, [&](std::size_t i, float value) { to[3 * i + c] = value; });
       }
   const std::size_t stride = 3 * t.worn.groups.classes();
-  t.classes.resize(points * stride);
   if (t.bounces > 0) {
     for (std::size_t k = 0; k < stride && from.ok(); ++k) {
-      const std::vector<int> shares = from.plane(points);
+      const std::vector<int> shares = from.plane(t.classes.size() / stride);
       for (std::size_t i = 0; i < shares.size(); ++i) t.classes[i * stride + k] = static_cast<float>(shares[i]);
     }
     if (!read_probes(t, from)) return damaged;

@@ -102,7 +102,7 @@ TEST(PackedView, ShowsOtherPaintsAsTheTransportDoes) {
     EXPECT_NEAR(ours.scale.error_p95_de00, exact.scale.error_p95_de00, 0.02 * exact.scale.error_p95_de00);
     // The control: the same without bounced light.
     LobeTransport direct = after;
-    std::ranges::fill(direct.bounced, 0.0F);
+    for (std::vector<float>& column : direct.bounced) std::ranges::fill(column, 0.0F);
     least_control =
         std::min(least_control, percentile_95(differences(before, exact.picture, picture_of(direct, parts).picture)));
   }
@@ -185,8 +185,10 @@ TEST(TransportShader, ShowsLightBeyondTheRangeOfHalves) {
   const std::vector<PartPaint> parts(6, {&traced().ball, {}, 45, "", ""});
   constexpr float kBrighter = 0x1p30F;
   LobeTransport bright = light;
-  for (std::vector<float>* of : {&bright.direct, &bright.bounced, &bright.classes})
-    for (float& value : *of) value *= kBrighter;
+  for (std::size_t k = 0; k < light.columns.count(); ++k)
+    for (std::vector<float>* of : {&bright.direct[k], &bright.bounced[k]})
+      for (float& value : *of) value *= kBrighter;
+  for (float& value : bright.classes) value *= kBrighter;
   const Pictured all = picture_of(light, parts), sun = picture_of(bright, parts);
   double sum = 0;
   for (const std::uint32_t place : light.places)

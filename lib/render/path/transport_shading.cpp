@@ -16,23 +16,6 @@ namespace {
 
 constexpr std::size_t kBlocksAtOnce = 64;
 
-// The largest magnitude of each of `stride` values of a point.
-std::vector<float> largest_of(const std::vector<float>& values, std::size_t stride) {
-  constexpr std::size_t kPointsAtOnce = 8192;
-  if (stride == 0) return {};
-  const std::size_t points = values.size() / stride, chunks = (points + kPointsAtOnce - 1) / kPointsAtOnce;
-  std::vector<std::vector<float>> of_chunk(chunks, std::vector<float>(stride, 0));
-  parallel_for(points, kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
-    std::vector<float>& largest = of_chunk[begin / kPointsAtOnce];
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t k = 0; k < stride; ++k) largest[k] = std::max(largest[k], std::abs(values[i * stride + k]));
-  });
-  std::vector<float> largest(stride, 0);
-  for (const std::vector<float>& chunk : of_chunk)
-    for (std::size_t k = 0; k < stride; ++k) largest[k] = std::max(largest[k], chunk[k]);
-  return largest;
-}
-
 // The power of two, 1 or less, that brings these values within the range of halves.
 float half_scale(float largest) {
   constexpr float kMostHalf = 65504;
@@ -48,12 +31,15 @@ float half_scale(float largest) {
 struct TransportShader::State {
   struct Block {
     int part = 0;
-    std::size_t direct = 0, bounced = 0;  // number of the block among those that have such light
     bool is_bounced = false;
+    std::size_t columns = 0;                           // that its points have
+    std::size_t direct = 0, bounced = 0, classes = 0;  // where its light begins
     std::uint32_t points[kTransportLanes] = {};
     std::uint32_t count = 0;
   };
-  std::size_t columns = 0, classes = 0, mirror = 0;
+  std::vector<std::size_t> columns;  // those that were read, the diffuse one first
+  std::size_t classes = 0, mirror = 0, floor_class = 0;
+  int floor = -1;  // the part of a floor that shows the environment
   float unit = 1;
   std::vector<Block> blocks;
   std::vector<float> scales;                               // of the columns, whose light is kept times these
@@ -67,60 +53,55 @@ struct TransportShader::State {
 };
 
 void TransportShader::State::gather(const LobeTransport& t) {
-  const std::size_t points = t.places.size(), floats = t.floats();
-  std::vector<std::vector<std::uint32_t>> kinds;  // part and whether light bounces there
-  std::size_t direct_blocks = 0, bounced_blocks = 0;
-  for (std::size_t i = 0; i < points; ++i) {
-    const float* light = &t.bounced[i * floats];
-    const bool lit = std::any_of(light, light + floats, [](float value) { return value != 0; });
-    const std::size_t kind = 2 * static_cast<std::size_t>(t.part[i]) + (lit ? 1 : 0);
-    if (kind >= kinds.size()) kinds.resize(kind + 1);
-    kinds[kind].push_back(static_cast<std::uint32_t>(i));
-  }
+  std::vector<std::uint8_t> lit(t.places.size());
+  parallel_each(lit.size(), std::size_t{1} << 14, [&](std::size_t i) {
+    for (const std::size_t k : columns)
+      if (const auto at = t.at(i, k); at && lit[i] == 0)
+        lit[i] = std::any_of(&t.bounced[k][*at], &t.bounced[k][*at] + 3, [](float value) { return value != 0; });
+  });
+  std::vector<std::vector<std::uint32_t>> kinds(2 * t.worn.groups.of_part.size());  // part and whether light bounces
+  for (std::size_t i = 0; i < lit.size(); ++i)
+    kinds[2 * static_cast<std::size_t>(t.part[i]) + lit[i]].push_back(static_cast<std::uint32_t>(i));
+  Block next;
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    next.part = static_cast<int>(kind / 2), next.is_bounced = kind % 2 == 1;
+    next.columns = next.part == floor ? 1 : columns.size();
     for (std::size_t first = 0; first < kinds[kind].size(); first += kTransportLanes) {
-      Block block;
-      block.part = static_cast<int>(kind / 2), block.is_bounced = kind % 2 == 1;
-      block.direct = direct_blocks++, block.bounced = block.is_bounced ? bounced_blocks++ : 0;
-      block.count = static_cast<std::uint32_t>(std::min(kTransportLanes, kinds[kind].size() - first));
+      next.count = static_cast<std::uint32_t>(std::min(kTransportLanes, kinds[kind].size() - first));
       for (std::size_t k = 0; k < kTransportLanes; ++k)
-        block.points[k] = kinds[kind][std::min(first + k, kinds[kind].size() - 1)];
-      blocks.push_back(block);
+        next.points[k] = kinds[kind][std::min(first + k, kinds[kind].size() - 1)];
+      blocks.push_back(next);
+      const std::size_t halves = 3 * kTransportLanes;
+      next.direct += halves * next.columns;
+      if (next.is_bounced) next.bounced += halves * next.columns;
+      if (next.is_bounced && next.part != floor) next.classes += halves * classes;
     }
   }
+  direct.resize(next.direct), bounced.resize(next.bounced), of_classes.resize(next.classes);
 }
 
 void TransportShader::State::lay_out(const LobeTransport& t) {
-  scales.assign(columns, 1);
-  for (const std::vector<float>* light : {&t.direct, &t.bounced}) {
-    const std::vector<float> largest = largest_of(*light, t.floats());
-    for (std::size_t k = 0; k < columns; ++k)
-      scales[k] = std::min(scales[k], half_scale(*std::max_element(&largest[3 * k], &largest[3 * k] + 3)));
-  }
-  // Classes are factors of a mean, which no common scale changes.
-  const std::vector<float> of_classes_largest = largest_of(t.classes, 3 * classes);
-  const float largest_class = of_classes_largest.empty() ? 0 : *std::ranges::max_element(of_classes_largest);
-  const std::vector<float> of_class(classes, half_scale(largest_class));
-  std::size_t bounced_blocks = 0;
-  for (const Block& block : blocks) bounced_blocks += block.is_bounced ? 1 : 0;
-  const auto spread = [&](const std::vector<float>& from, const std::vector<float>& scale, bool all,
-                          std::vector<std::uint16_t>& half) {
-    const std::size_t stride = 3 * scale.size(), size = stride * kTransportLanes;
-    half.resize((all ? blocks.size() : bounced_blocks) * size);
-    parallel_for(blocks.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b) {
-        const Block& block = blocks[b];
-        if (!all && !block.is_bounced) continue;
-        std::uint16_t* to = half.data() + (all ? block.direct : block.bounced) * size;
-        for (std::size_t lane = 0; lane < kTransportLanes; ++lane)
-          for (std::size_t k = 0; k < stride; ++k)
-            to[k * kTransportLanes + lane] = Imath::half(scale[k / 3] * from[block.points[lane] * stride + k]).bits();
-      }
-    });
+  scales.resize(columns.size());
+  parallel_each(columns.size(), 1, [&](std::size_t k) {
+    scales[k] = half_scale(std::max(largest_of(t.direct[columns[k]]), largest_of(t.bounced[columns[k]])));
+  });
+  const float of_class = half_scale(largest_of(t.classes));  // classes are factors of a mean, which it does not change
+  const auto put = [](std::uint16_t* to, float scale, const float* from, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) to[k * kTransportLanes] = Imath::half(scale * from[k]).bits();
   };
-  spread(t.direct, scales, true, direct);
-  spread(t.bounced, scales, false, bounced);
-  spread(t.classes, of_class, false, of_classes);
+  parallel_for(blocks.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const Block& block = blocks[b];
+      for (std::size_t k = 0; k < block.columns; ++k)
+        for (std::size_t lane = 0; lane < kTransportLanes; ++lane) {
+          const std::size_t at = *t.at(block.points[lane], columns[k]), to = 3 * k * kTransportLanes + lane;
+          put(&direct[block.direct + to], scales[k], &t.direct[columns[k]][at], 3);
+          if (block.is_bounced) put(&bounced[block.bounced + to], scales[k], &t.bounced[columns[k]][at], 3);
+        }
+      for (std::size_t lane = 0; lane < kTransportLanes && block.is_bounced && block.part != floor; ++lane)
+        put(&of_classes[block.classes + lane], of_class, t.classes_of(block.points[lane]), 3 * classes);
+    }
+  });
 }
 
 Result<TransportPaint> transport_paint(const LobeColumns& columns, const paint::LobeFit& paint, double gloss_deg) {
@@ -152,8 +133,12 @@ std::vector<float> view_angles_deg(const LobeTransport& t, const std::vector<con
 TransportShader::TransportShader(const LobeTransport& t, std::vector<float> view_deg)
     : state_(std::make_unique<State>()) {
   State& s = *state_;
-  s.columns = t.columns.count(), s.mirror = t.columns.mirror(), s.classes = t.worn.groups.classes(),
-  s.unit = static_cast<float>(t.unit);
+  for (std::size_t k = 0; k < t.columns.count(); ++k)
+    if (!t.direct[k].empty()) s.columns.push_back(k);
+  s.mirror = static_cast<std::size_t>(std::ranges::find(s.columns, t.columns.mirror()) - s.columns.begin());
+  s.classes = t.worn.groups.classes(), s.unit = static_cast<float>(t.unit);
+  if (t.worn.floor_is_projected)
+    s.floor = static_cast<int>(t.worn.brushed.size()), s.floor_class = t.worn.floor_class();
   s.emission = t.worn.emission, s.emission.resize(t.worn.groups.of_part.size());
   s.places = t.places, s.view_deg = std::move(view_deg);
   s.gather(t);
@@ -179,12 +164,13 @@ void TransportShader::shade(const std::vector<TransportPaint>& paints, const col
   for (std::size_t part = 0; part < paints.size(); ++part) {
     for (const auto& weights : paints[part].weights) {
       Set set;
-      for (std::size_t k = 0; k < weights.size(); ++k) {
-        const color::Matrix3 m = color::reflection_matrix(reflection != nullptr ? *reflection : plain, weights[k]);
+      for (std::size_t k = 0; k < s.columns.size(); ++k) {
+        const color::Rgb& weight = weights[s.columns[k]];
+        const color::Matrix3 m = color::reflection_matrix(reflection != nullptr ? *reflection : plain, weight);
         for (const auto& row : m)
           for (const double value : row)
             set.matrices.push_back(gain * s.unit / s.scales[k] * static_cast<float>(value));
-        set.dark.push_back(weights[k] == color::Rgb{} ? 1 : 0);
+        set.dark.push_back(weight == color::Rgb{} ? 1 : 0);
       }
       sets[part].push_back(std::move(set));
     }
@@ -192,22 +178,25 @@ void TransportShader::shade(const std::vector<TransportPaint>& paints, const col
   std::vector<float> factors;
   for (const color::Rgb& factor : scale.of_class)
     for (int c = 0; c < 3; ++c) factors.push_back(static_cast<float>(factor[c]));
-  const std::size_t of_block = 3 * s.columns * kTransportLanes, of_class = 3 * s.classes * kTransportLanes;
+  std::uint16_t one_class[3 * kTransportLanes];
+  std::ranges::fill(one_class, Imath::half(1).bits());
   parallel_for(s.blocks.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
     float rgb[3 * kTransportLanes], mixed[3 * kTransportLanes];
     for (std::size_t b = begin; b < end; ++b) {
       const State::Block& block = s.blocks[b];
       const auto part = static_cast<std::size_t>(block.part);
       TransportBlock light;
-      light.direct = s.direct.data() + block.direct * of_block;
+      const bool is_floor = block.part == s.floor;
+      light.direct = s.direct.data() + block.direct;
       if (block.is_bounced) {
-        light.bounced = s.bounced.data() + block.bounced * of_block;
-        light.classes = s.of_classes.data() + block.bounced * of_class;
+        light.bounced = s.bounced.data() + block.bounced;
+        light.classes = is_floor ? one_class : s.of_classes.data() + block.classes;
       }
       const auto shaded = [&](std::size_t set, float* to) {
-        shade_transport(
-            light, {s.columns, s.classes, sets[part][set].matrices.data(), sets[part][set].dark.data(), factors.data()},
-            to);
+        shade_transport(light,
+                        {block.columns, is_floor ? 1 : s.classes, sets[part][set].matrices.data(),
+                         sets[part][set].dark.data(), factors.data() + (is_floor ? 3 * s.floor_class : 0)},
+                        to);
       };
       const std::vector<double>& views = paints[part].view_deg;
       if (views.size() == 1) {
@@ -230,7 +219,7 @@ void TransportShader::shade(const std::vector<TransportPaint>& paints, const col
         }
       }
       const std::vector<float>& by_view = paints[part].mirror_by_view;
-      if (!by_view.empty() && sets[part].front().dark[s.mirror] == 0) {
+      if (!by_view.empty() && s.mirror < s.columns.size() && sets[part].front().dark[s.mirror] == 0) {
         const std::size_t skipped = 3 * s.mirror * kTransportLanes;
         light.direct += skipped;
         if (block.is_bounced) light.bounced += skipped;
