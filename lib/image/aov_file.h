@@ -26,7 +26,7 @@ struct AovLight {
 
 struct AovFile {
   std::string path;
-  Image image;  // R G B A and the buffers
+  Image image;  // R G B A and the buffers; those of kPointsName last
   // From the file's header; where it does not tell them, the exposure is 0 and the white is 1.
   double exposure_stops = 0, white_luminance = 1;
   // Stops that bring the light of the buffers to the exposure of a PNG that is exposed automatically.
@@ -64,6 +64,9 @@ std::string drawn_by_rays(const ImagePart& picture);
 bool is_drawn(const ImagePart& picture, const std::string& effect);
 // AovFile::left_out of such a picture; nothing where it does not tell.
 std::optional<std::vector<std::string>> left_out(const ImagePart& picture);
+
+// The part beside the picture that has the normals and the parts of a transport's points.
+inline constexpr const char* kPointsName = "points";
 
 // The file, or of its picture and buffers only the channels named, in that order and as far as it has them. Error: it
 // is not an EXR file, or its header is not one that render-osmesa writes.

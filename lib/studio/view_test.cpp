@@ -48,7 +48,7 @@ render::LobeTransport made_light() {
   for (std::size_t i = 0; i < t.places.size(); ++i) {
     for (std::size_t k = 0; k < 3 * t.columns.count(); ++k)
       t.direct[k / 3][3 * i + k % 3] = any(3), t.bounced[k / 3][3 * i + k % 3] = any(0.5);
-    for (std::size_t k = 0; k < 3 * t.worn.groups.classes(); ++k) t.classes_of(i)[k] = any(0.1);
+    for (std::size_t k = 0; k < 3 * t.worn.groups.classes(); ++k) t.classes[k / 3][3 * i + k % 3] = any(0.1);
   }
   const std::size_t pairs = 3 * 2 * t.columns.count() * t.columns.count();
   for (const std::uint32_t point : {7U, 1000U}) {

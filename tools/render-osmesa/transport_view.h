@@ -57,8 +57,8 @@ struct ShadedPaint {
   bool coat_changed = false;          // whether a coat took the place of none, or none that of a coat
 };
 
-// Shows the light of one view in any number of paints. What is given must outlive it, but for the light of the points,
-// which it lays out anew; of the scene, the mesh's parts, the operator, the environment and the background are read.
+// Shows the light of one view in any number of paints. What is given must outlive it; of the scene, the mesh's parts,
+// the operator, the environment and the background are read.
 class ViewShader {
  public:
   // `samples` of the pixels, one G-buffer each, lie below each other in the light.

@@ -250,8 +250,8 @@ BounceScale bounce_scale(const LobeTransport& t, const std::vector<Weights>& par
 color::Rgb bounce_factor(const LobeTransport& t, std::size_t point, const BounceScale& scale) {
   if (!t.has_lobes(point)) return scale.of_class[t.worn.floor_class()];
   color::Rgb weighted, all;
-  const float* light = t.classes_of(point);
-  for (std::size_t k = 0; k < t.worn.groups.classes(); ++k, light += 3) {
+  for (std::size_t k = 0; k < t.classes.size(); ++k) {
+    const float* light = &t.classes[k][std::size_t{3} * t.with_lobes[point]];
     const color::Rgb shown{light[0], light[1], light[2]};
     all += shown, weighted += shown * scale.of_class[k];
   }

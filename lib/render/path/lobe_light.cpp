@@ -1,15 +1,6 @@
 #include "render/path/lobe_light.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace goniochrome::render {
-
-float largest_of(const std::vector<float>& values) {
-  float largest = 0;
-  for (const float value : values) largest = std::max(largest, std::abs(value));
-  return largest;
-}
 
 void LobeTransport::make_room(const std::vector<bool>& wanted) {
   with_lobes.clear();
@@ -22,8 +13,8 @@ void LobeTransport::make_room(const std::vector<bool>& wanted) {
   for (std::size_t k = 0; k < columns.count(); ++k)
     if (k == LobeColumns::diffuse() || wanted.empty() || wanted[k])
       direct[k].assign(3 * (k == LobeColumns::diffuse() ? places.size() : lobes), 0);
-  bounced = direct;
-  classes.assign(3 * worn.groups.classes() * lobes, 0);
+  bounced = bounces > 0 ? direct : std::vector<std::vector<float>>(columns.count());
+  classes.assign(bounces > 0 ? worn.groups.classes() : 0, std::vector<float>(3 * lobes));
 }
 
 std::vector<std::uint32_t> LobeTransport::points_of(std::size_t column) const {

@@ -47,8 +47,8 @@ struct LobeTransport {
   std::vector<int> part;                            // of each point
   std::vector<std::uint32_t> with_lobes;            // number of each point among those with lobes
   std::vector<std::vector<float>> direct, bounced;  // by column: R G B of the points that have it; empty: not read
+  std::vector<std::vector<float>> classes;  // by class of PaintGroups: R G B of bounced light, as the picture shows it
   WornPaints worn;
-  std::vector<float> classes;       // point with lobes, class of PaintGroups, channel: bounced light of the picture
   std::vector<float> noise_de00;    // of each point, the largest over the columns: see LobeTransportRequest
   std::vector<BounceProbe> probes;  // those that see a surface
   int probed = 0;                   // all of them
@@ -58,6 +58,7 @@ struct LobeTransport {
   int samples = 1;  // of a pixel, as sample_shifts() has them
 
   // Makes room for the light of the points, all 0, in the diffuse column and those wanted; without a list, in all.
+  // Bounced light and its classes have none without bounces.
   void make_room(const std::vector<bool>& wanted = {});
 
   std::array<int, 2> pixel(std::size_t point) const {
@@ -75,15 +76,10 @@ struct LobeTransport {
     const auto i = at(point, column);
     if (!i) return {};
     color::Rgb sum{direct[column][*i], direct[column][*i + 1], direct[column][*i + 2]};
-    if (with_bounced) sum += color::Rgb{bounced[column][*i], bounced[column][*i + 1], bounced[column][*i + 2]};
+    if (with_bounced && bounces > 0)
+      sum += color::Rgb{bounced[column][*i], bounced[column][*i + 1], bounced[column][*i + 2]};
     return sum;
   }
-  // The classes of a point with lobes.
-  float* classes_of(std::size_t point) { return &classes[3 * worn.groups.classes() * with_lobes[point]]; }
-  const float* classes_of(std::size_t point) const { return &classes[3 * worn.groups.classes() * with_lobes[point]]; }
 };
-
-// The largest magnitude.
-float largest_of(const std::vector<float>& values);
 
 }  // namespace goniochrome::render

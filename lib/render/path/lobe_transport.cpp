@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <span>
 
 #include "base/angles.h"
 #include "base/clock.h"
@@ -241,15 +240,19 @@ class Tracing {
         LobePoint::known(seen.points, mirrors.empty() ? nullptr : mirrors.data(), worn_by(t.part[i]).data());
     for (std::size_t k = 0; k < t.columns.mirror(); ++k) known.direct[k] += open[k];
     for (std::size_t k = 0; k < t.columns.count(); ++k) add_light(i, k, known.direct[k], known.bounced[k]);
-    if (t.has_lobes(i)) put(known.classes, t.classes_of(i));
+    for (std::size_t k = 0; k < t.classes.size() && t.has_lobes(i); ++k) add_class(i, k, known.classes[k]);
   }
   void add_light(std::size_t i, std::size_t k, const color::Rgb& direct, const color::Rgb& bounced) {
     LobeTransport& t = result_.transport;
     const auto at = t.at(i, k);
     for (std::size_t c = 0; at && c < 3; ++c) {
       t.direct[k][*at + c] += static_cast<float>(direct[static_cast<int>(c)]);
-      t.bounced[k][*at + c] += static_cast<float>(bounced[static_cast<int>(c)]);
+      if (t.bounces > 0) t.bounced[k][*at + c] += static_cast<float>(bounced[static_cast<int>(c)]);
     }
+  }
+  void add_class(std::size_t i, std::size_t k, const color::Rgb& light) {
+    float* to = &result_.transport.classes[k][std::size_t{3} * result_.transport.with_lobes[i]];
+    for (int c = 0; c < 3; ++c) to[c] += static_cast<float>(light[c]);
   }
 
   // The open light of a point that is sampled is kept, and what completed it.
@@ -430,7 +433,7 @@ class Tracing {
         if (exact_[i] == 0) add_light(i, k, smooth_[k].sum[n] - smooth_[k].bounced[n], smooth_[k].bounced[n]);
       });
     // Classes are smoothed as the paints show them, two at a time.
-    const std::size_t classes = t.worn.groups.classes();
+    const std::size_t classes = t.classes.size();
     for (std::size_t k = 0; k < classes; k += 2) {
       std::vector<Halves> light(kept_.size());
       each_kept([&](std::size_t n, std::size_t i) {
@@ -443,8 +446,8 @@ class Tracing {
       const std::vector<Halves> smooth = smoothed(shown_, light, {&shares_, &shares_});
       each_kept([&](std::size_t n, std::size_t i) {
         if (exact_[i] != 0 || !t.has_lobes(i)) return;
-        for (std::size_t c = 0; c < 3 * std::min<std::size_t>(2, classes - k); ++c)
-          t.classes_of(i)[3 * k + c] += static_cast<float>(smooth[n][c / 3][static_cast<int>(c % 3)]);
+        for (std::size_t which = 0; which < 2 && k + which < classes; ++which)
+          add_class(i, k + which, smooth[n][which]);
       });
     }
     each_kept([&](std::size_t, std::size_t i) {
@@ -459,16 +462,14 @@ class Tracing {
     color::Rgb bounced, sum;
     for (std::size_t k = 0; k < matrices.size(); ++k)
       bounced += color::product(matrices[k], t.light(i, k) - t.light(i, k, false));
-    const std::size_t floats = 3 * t.worn.groups.classes();
-    const std::span of_point(t.classes_of(i), floats);
-    for (std::size_t k = 0; k < floats; ++k) {
-      of_point[k] = std::max(0.0F, of_point[k]);
-      sum[static_cast<int>(k % 3)] += of_point[k];
-    }
-    for (std::size_t k = 0; k < floats; ++k) {
-      const int c = static_cast<int>(k % 3);
-      if (sum[c] > 0 && bounced[c] > 0) of_point[k] *= static_cast<float>(bounced[c] / sum[c]);
-    }
+    const std::size_t at = std::size_t{3} * t.with_lobes[i];
+    for (std::vector<float>& light : t.classes)
+      for (int c = 0; c < 3; ++c)
+        sum[c] += light[at + static_cast<std::size_t>(c)] = std::max(0.0F, light[at + static_cast<std::size_t>(c)]);
+    for (std::vector<float>& light : t.classes)
+      for (int c = 0; c < 3; ++c)
+        if (sum[c] > 0 && bounced[c] > 0)
+          light[at + static_cast<std::size_t>(c)] *= static_cast<float>(bounced[c] / sum[c]);
   }
 
   // Plans the batches of the next round, and returns true if there are any.

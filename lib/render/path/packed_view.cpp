@@ -56,6 +56,12 @@ float scale_of(double weight, float largest) {
   return scale;
 }
 
+float largest_of(const std::vector<float>& values) {
+  float largest = 0;
+  for (const float value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
 class Writer {
  public:
   std::string bytes;
@@ -226,16 +232,14 @@ bool read_worn(LobeTransport& t, Reader& from) {
 
 // The share of each class in a point's bounced light.
 void write_classes(const LobeTransport& t, Writer& to) {
-  const std::size_t stride = 3 * t.worn.groups.classes(), points = t.points_of(t.columns.mirror()).size();
-  std::vector<float> sums(3 * points, 0.0F);
-  for (std::size_t i = 0; i < points; ++i)
-    for (std::size_t k = 0; k < stride; ++k) sums[3 * i + k % 3] += std::max(0.0F, t.classes[i * stride + k]);
-  std::vector<int> shares(points);
-  for (std::size_t k = 0; k < stride; ++k) {
+  std::vector<float> sums(t.direct[t.columns.mirror()].size(), 0.0F);
+  for (const std::vector<float>& light : t.classes)
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += std::max(0.0F, light[i]);
+  std::vector<int> shares(sums.size() / 3);
+  for (std::size_t k = 0; k < 3 * t.classes.size(); ++k) {
     for (std::size_t i = 0; i < shares.size(); ++i) {
-      const float sum = sums[3 * i + k % 3];
-      shares[i] =
-          sum > 0 ? static_cast<int>(std::lrint(kShareSteps * std::max(0.0F, t.classes[i * stride + k]) / sum)) : 0;
+      const float sum = sums[3 * i + k % 3], light = std::max(0.0F, t.classes[k / 3][3 * i + k % 3]);
+      shares[i] = sum > 0 ? static_cast<int>(std::lrint(kShareSteps * light / sum)) : 0;
     }
     to.plane(shares);
   }
@@ -284,10 +288,13 @@ LobeTransport of_points(const LobeTransport& t, const std::vector<std::uint32_t>
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t k = 0; k < t.columns.count(); ++k) {
       const auto from = t.at(points[i], k), to = some.at(i, k);
-      for (std::size_t c = 0; from && c < 3; ++c)
-        some.direct[k][*to + c] = t.direct[k][*from + c], some.bounced[k][*to + c] = t.bounced[k][*from + c];
+      if (!from) continue;
+      std::copy_n(&t.direct[k][*from], 3, &some.direct[k][*to]);
+      if (t.bounces > 0) std::copy_n(&t.bounced[k][*from], 3, &some.bounced[k][*to]);
     }
-    if (t.has_lobes(points[i])) std::copy_n(t.classes_of(points[i]), 3 * t.worn.groups.classes(), some.classes_of(i));
+    for (std::size_t k = 0; k < t.classes.size() && t.has_lobes(points[i]); ++k)
+      std::copy_n(&t.classes[k][std::size_t{3} * t.with_lobes[points[i]]], 3,
+                  &some.classes[k][std::size_t{3} * some.with_lobes[i]]);
   }
   return some;
 }
@@ -364,14 +371,12 @@ Result<UnpackedView> unpacked_view(std::string_view bytes) {
         std::vector<float>& to = (bounced ? t.bounced : t.direct)[k];
         from.light(to.size() / 3, [&](std::size_t i, float value) { to[3 * i + c] = value; });
       }
-  const std::size_t stride = 3 * t.worn.groups.classes();
-  if (t.bounces > 0) {
-    for (std::size_t k = 0; k < stride && from.ok(); ++k) {
-      const std::vector<int> shares = from.plane(t.classes.size() / stride);
-      for (std::size_t i = 0; i < shares.size(); ++i) t.classes[i * stride + k] = static_cast<float>(shares[i]);
-    }
-    if (!read_probes(t, from)) return damaged;
+  for (std::size_t k = 0; k < 3 * t.classes.size() && from.ok(); ++k) {
+    std::vector<float>& to = t.classes[k / 3];
+    const std::vector<int> shares = from.plane(to.size() / 3);
+    for (std::size_t i = 0; i < shares.size(); ++i) to[3 * i + k % 3] = static_cast<float>(shares[i]);
   }
+  if (t.bounces > 0 && !read_probes(t, from)) return damaged;
   if (from.count(1) == 1) {
     const std::vector<std::size_t> pixels = pixels_beside(seen);
     view.beside = {t.width, t.height, 4, std::vector<float>(4 * seen.size(), 0.0F), {}};
@@ -407,18 +412,6 @@ PackingError packing_error(const LobeTransport& t, const std::vector<float>& vie
     error.p95_de00 = std::max(error.p95_de00, percentile_95(std::move(differences)));
   }
   return error;
-}
-
-LobeTransport of_probes(const LobeTransport& t) {
-  std::vector<std::uint32_t> points;
-  for (const BounceProbe& probe : t.probes) points.push_back(probe.point);
-  std::ranges::sort(points);
-  points.erase(std::ranges::unique(points).begin(), points.end());
-  LobeTransport some = of_points(t, points);
-  some.probed = t.probed, some.probes = t.probes;
-  for (BounceProbe& probe : some.probes)
-    probe.point = static_cast<std::uint32_t>(std::ranges::lower_bound(points, probe.point) - points.begin());
-  return some;
 }
 
 Thinned thinned(const LobeTransport& t, int n) {

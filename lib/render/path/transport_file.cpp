@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <span>
 
 #include "base/angles.h"
 #include "base/json.h"
@@ -31,8 +32,9 @@ std::string part_name(const LobeColumns& columns, std::size_t column, bool bounc
   return fmt::format("{}{}-{:03}", head, columns.is_gloss(column) ? "gloss" : "flake", (column - 1) / 2);
 }
 
-std::string class_name(int group) {
-  return fmt::format("bounced-class-{:03}", group);
+// Of the group that has this class.
+std::string class_name(std::size_t k) {
+  return fmt::format("bounced-class-{:03}", k / PaintGroups::kKinds);
 }
 
 // The change of the gray paint of a column by rounding to halves, the 95th percentile.
@@ -82,9 +84,9 @@ std::string header_of(const LobeTransport& t) {
   return json_text(header);
 }
 
-// A part of the rectangle around these points with some of their `stride` floats each, relative to the diffuse white.
+// A part of the rectangle around these points with their light, R G B each, relative to the diffuse white.
 image::ImagePart point_part(const LobeTransport& t, std::string name, const std::vector<std::uint32_t>& points,
-                            const float* light, std::size_t stride, std::vector<std::string> channels) {
+                            std::span<const std::vector<float>> light, std::vector<std::string> channels) {
   const std::size_t count = channels.size();
   image::ImagePart part{std::move(name), {1, 1, static_cast<int>(count), {}, std::move(channels)}, {}};
   image::Image& image = part.image;
@@ -96,11 +98,10 @@ image::ImagePart point_part(const LobeTransport& t, std::string name, const std:
   }
   image.data.assign(count * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height), 0.0F);
   const auto scale = static_cast<float>(1 / t.white_luminance);
-  for (const std::uint32_t point : points) {
-    const auto [x, y] = t.pixel(point);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto [x, y] = t.pixel(points[i]);
     float* pixel = image.pixel(x - part.left, y - part.top);
-    for (std::size_t c = 0; c < count; ++c) pixel[c] = scale * light[c];
-    light += stride;
+    for (std::size_t c = 0; c < count; ++c) pixel[c] = scale * light[c / 3][3 * i + c % 3];
   }
   return part;
 }
@@ -108,10 +109,10 @@ image::ImagePart point_part(const LobeTransport& t, std::string name, const std:
 image::ImagePart light_part(const LobeTransport& t, std::size_t column, bool bounced, TransportParts& all) {
   const std::vector<float>& light = (bounced ? t.bounced : t.direct)[column];
   image::ImagePart part =
-      point_part(t, part_name(t.columns, column, bounced), t.points_of(column), light.data(), 3, {"R", "G", "B"});
+      point_part(t, part_name(t.columns, column, bounced), t.points_of(column), {&light, 1}, {"R", "G", "B"});
   part.attributes[kColumnAttribute] = t.columns.name(column);
   part.attributes["colorInteropID"] = kColorSpace;
-  const bool fits = largest_of(part.image.data) < 65504;
+  const bool fits = std::ranges::all_of(part.image.data, [](float value) { return std::abs(value) < 65504; });
   const double error = fits ? half_error(t, column, light) : HUGE_VAL;
   if (error > kHalfError_de00) {
     part.type = image::PixelType::kFloat;
@@ -123,14 +124,14 @@ image::ImagePart light_part(const LobeTransport& t, std::size_t column, bool bou
   return part;
 }
 
-image::ImagePart class_part(const LobeTransport& t, int group, TransportParts& all) {
+image::ImagePart class_part(const LobeTransport& t, std::size_t k, TransportParts& all) {
   std::vector<std::string> channels;
   for (const char* kind : kKindNames)
     for (const char* channel : {"R", "G", "B"}) channels.push_back(fmt::format("{}.{}", kind, channel));
   const std::vector<std::uint32_t> points = t.points_of(t.columns.mirror());
   all.bytes_per_point += 2 * static_cast<double>(channels.size() * points.size());
-  image::ImagePart part = point_part(t, class_name(group), points, t.classes.data() + 9 * group,
-                                     3 * t.worn.groups.classes(), std::move(channels));
+  image::ImagePart part =
+      point_part(t, class_name(k), points, {&t.classes[k], PaintGroups::kKinds}, std::move(channels));
   part.attributes[kColumnAttribute] = "class";
   return part;
 }
@@ -180,15 +181,16 @@ class Reading {
 
   Result<void> light(const std::vector<bool>& wanted) {
     t_.make_room(wanted);
+    const std::vector<std::uint32_t> all = t_.points_of(LobeColumns::diffuse()),
+                                     some = t_.points_of(t_.columns.mirror());
     for (const bool bounced : {false, true})
-      for (std::size_t k = 0; k < t_.columns.count() && (!bounced || t_.bounces > 0); ++k) {
+      for (std::size_t k = 0; k < t_.columns.count(); ++k) {
         std::vector<float>& to = (bounced ? t_.bounced : t_.direct)[k];
-        if (!to.empty()) GONIO_TRY(read_light(part_name(t_.columns, k, bounced), t_.points_of(k), to.data(), 3, 3));
+        if (to.empty()) continue;
+        GONIO_TRY(read_light(part_name(t_.columns, k, bounced), k == LobeColumns::diffuse() ? all : some, {&to, 1}));
       }
-    const std::vector<std::uint32_t> with_lobes = t_.points_of(t_.columns.mirror());
-    for (int group = 0; group < t_.worn.groups.count && t_.bounces > 0; ++group)
-      GONIO_TRY(
-          read_light(class_name(group), with_lobes, t_.classes.data() + 9 * group, 3 * t_.worn.groups.classes(), 9));
+    for (std::size_t k = 0; k < t_.classes.size(); k += PaintGroups::kKinds)
+      GONIO_TRY(read_light(class_name(k), some, {&t_.classes[k], PaintGroups::kKinds}));
     return t_.probes.empty() ? Result<void>{} : read_probes();
   }
 
@@ -257,9 +259,10 @@ class Reading {
     return found ? Result<void>{} : wrong(fmt::format("it lacks the part {}", name));
   }
 
-  // Brings the channels of these points to so many floats of `stride` each.
-  Result<void> read_light(const std::string& name, const std::vector<std::uint32_t>& points, float* to,
-                          std::size_t stride, std::size_t channels) {
+  // Reads the light of these points, R G B each.
+  Result<void> read_light(const std::string& name, const std::vector<std::uint32_t>& points,
+                          std::span<std::vector<float>> to) {
+    const std::size_t channels = 3 * to.size();
     GONIO_TRY(read_part(name));
     const image::Image& image = part_.image;
     const int left = part_.left, top = part_.top, right = left + image.width, bottom = top + image.height;
@@ -287,7 +290,7 @@ class Reading {
       }
       const float* values = image.pixel(x - left, y - top);
       for (std::size_t c = 0; c < channels; ++c) {
-        to[i * stride + c] = values[from[c]];
+        to[c / 3][3 * i + c % 3] = values[from[c]];
         if (!std::isfinite(values[from[c]])) worst = i;
       }
     });
@@ -327,8 +330,7 @@ TransportParts transport_parts(const LobeTransport& t) {
   for (const bool bounced : {false, true})
     for (std::size_t k = 0; k < t.columns.count() && (!bounced || t.bounces > 0); ++k)
       all.parts.push_back(light_part(t, k, bounced, all));
-  for (int group = 0; group < t.worn.groups.count && t.bounces > 0; ++group)
-    all.parts.push_back(class_part(t, group, all));
+  for (std::size_t k = 0; k < t.classes.size(); k += PaintGroups::kKinds) all.parts.push_back(class_part(t, k, all));
   all.bytes_per_point /= std::max<double>(1, static_cast<double>(t.places.size()));
   if (!t.probes.empty()) all.parts.push_back(probe_part(t));
   return all;

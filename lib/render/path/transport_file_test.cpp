@@ -267,7 +267,7 @@ TEST(TransportFile, KeepsOneColumnOfAFloorThatShowsTheEnvironment) {
   }
   t.make_room();
   std::mt19937_64 random(5);
-  for (std::vector<float>* of : {&t.direct[0], &t.direct[1], &t.direct[2], &t.direct[3], &t.bounced[0], &t.classes})
+  for (std::vector<float>* of : {&t.direct[0], &t.direct[1], &t.direct[2], &t.direct[3], &t.bounced[0], &t.classes[0]})
     for (float& value : *of) value = static_cast<float>(random() % 64) / 16;
   EXPECT_EQ(t.direct[LobeColumns::diffuse()].size(), 3 * 300U);
   EXPECT_EQ(t.direct[t.columns.mirror()].size(), 3 * 35U);
