@@ -190,10 +190,6 @@ Result<AovFile> file_of(const std::string& path, ImagePart& first) {
   return file;
 }
 
-}  // namespace
-
-namespace {
-
 // Brings the channels that are wanted from a picture of the same size.
 void add_channels(Image more, const std::vector<std::string>& wanted, Image& image) {
   if (image.channels == 0 && more.channel_names == wanted) return void(image = std::move(more));

@@ -1,5 +1,7 @@
 #include "render/path/lobe_light.h"
 
+#include "base/parallel.h"
+
 namespace goniochrome::render {
 
 void LobeTransport::make_room(const std::vector<bool>& wanted) {
@@ -9,12 +11,14 @@ void LobeTransport::make_room(const std::vector<bool>& wanted) {
     with_lobes.push_back(lobes);
     if (has_lobes(i)) ++lobes;
   }
-  direct.assign(columns.count(), {});
-  for (std::size_t k = 0; k < columns.count(); ++k)
-    if (k == LobeColumns::diffuse() || wanted.empty() || wanted[k])
-      direct[k].assign(3 * (k == LobeColumns::diffuse() ? places.size() : lobes), 0);
-  bounced = bounces > 0 ? direct : std::vector<std::vector<float>>(columns.count());
-  classes.assign(bounces > 0 ? worn.groups.classes() : 0, std::vector<float>(3 * lobes));
+  const std::size_t count = columns.count();
+  direct.assign(count, {}), bounced.assign(count, {}), classes.assign(bounces > 0 ? worn.groups.classes() : 0, {});
+  parallel_each(2 * count + classes.size(), 1, [&](std::size_t n) {
+    if (n >= 2 * count) return classes[n - 2 * count].assign(3 * lobes, 0);
+    const std::size_t k = n / 2, points = k == LobeColumns::diffuse() ? places.size() : lobes;
+    if (k != LobeColumns::diffuse() && !wanted.empty() && !wanted[k]) return;
+    if (n % 2 == 0 || bounces > 0) (n % 2 == 0 ? direct : bounced)[k].assign(3 * points, 0);
+  });
 }
 
 std::vector<std::uint32_t> LobeTransport::points_of(std::size_t column) const {

@@ -32,7 +32,7 @@ std::string part_name(const LobeColumns& columns, std::size_t column, bool bounc
   return fmt::format("{}{}-{:03}", head, columns.is_gloss(column) ? "gloss" : "flake", (column - 1) / 2);
 }
 
-// Of the group that has this class.
+// The part of the group that has this class.
 std::string class_name(std::size_t k) {
   return fmt::format("bounced-class-{:03}", k / PaintGroups::kKinds);
 }

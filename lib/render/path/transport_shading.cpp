@@ -28,6 +28,7 @@ std::vector<float> view_angles_deg(const LobeTransport& t, const std::vector<con
              of_sample = wide * static_cast<std::uint32_t>(samples.front()->height);
   std::vector<float> angles(t.places.size());
   parallel_each(angles.size(), std::size_t{1} << 14, [&](std::size_t i) {
+    if (!t.has_lobes(i)) return;
     const Gbuffer& seen = *samples[t.places[i] / of_sample];
     const auto x = static_cast<int>(t.places[i] % wide), y = static_cast<int>(t.places[i] % of_sample / wide);
     const Vec3 n = seen.normal(x, y), v = seen.to_viewer(x, y);
@@ -135,7 +136,7 @@ class Shading {
     for (std::size_t k = 0; k < columns; ++k) {
       const std::size_t column = columns_[k], at = *t_.at(first, column);
       lying.direct.push_back(t_.direct[column].data() + at);
-      lying.bounced.push_back(t_.bounced[column].data() + at);
+      if (t_.bounces > 0) lying.bounced.push_back(t_.bounced[column].data() + at);
     }
     for (const std::vector<float>& light : t_.classes)
       lying.classes.push_back(light.data() + std::size_t{3} * t_.with_lobes[first]);

@@ -21,8 +21,8 @@ struct TransportPaint {
 // Error: as column_weights().
 Result<TransportPaint> transport_paint(const LobeColumns& columns, const paint::LobeFit& paint, double gloss_deg);
 
-// The angle of the viewer from the normal at each point, by the buffers that the points were seen in, one for each
-// sample of the pixels.
+// The angle of the viewer from the normal at each point with lobes, else 0, by the buffers that the points were seen
+// in, one for each sample of the pixels.
 std::vector<float> view_angles_deg(const LobeTransport& transport, const std::vector<const Gbuffer*>& samples);
 
 // Shades the columns of a transport that were read; it must outlive the shader.
