@@ -14,7 +14,6 @@
 #include <optional>
 #include <utility>
 
-#include "base/large_pages.h"
 #include "base/paths.h"
 #include "base/text.h"
 
@@ -191,7 +190,6 @@ Result<std::string> InputFile::rest(std::size_t most) {
   struct stat status;  // the room is taken at once where the size is known
   if (fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0)
     content.reserve(std::min(static_cast<std::size_t>(status.st_size), most) + kChunk);
-  prefer_large_pages(content.data(), content.capacity());
   for (;;) {
     GONIO_ASSIGN(const std::size_t count, read(content, kChunk));
     if (count == 0) return content;

@@ -319,13 +319,9 @@ Result<ImagePart> decoded_exr_picture(const std::string& content, const std::str
 }
 
 Result<std::vector<ImagePart>> read_exr(const std::string& path) {
-  return read_exr(path, {});
-}
-
-Result<std::vector<ImagePart>> read_exr(const std::string& path, const ExrWanted& wanted) {
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
   GONIO_ASSIGN(const std::string content, content_of(input));
-  return decoded_exr(content, input.name(), wanted);
+  return decoded_exr(content, input.name());
 }
 
 Result<OpenExr> open_exr(const std::string& path, const std::vector<std::string>& channels) {

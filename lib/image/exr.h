@@ -21,7 +21,6 @@ struct ExrWanted {
 // All parts of an EXR file held in memory; `name` is what errors call it. A part that is not wanted has no pixels.
 Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name,
                                            const ExrWanted& wanted = {});
-Result<std::vector<ImagePart>> read_exr(const std::string& path, const ExrWanted& wanted);
 
 // Decodes the part of that name, and returns false where there is none. The pixels that `part` had are room for those
 // of the new one: memory that is new costs more than decoding does.
