@@ -5,10 +5,10 @@
 namespace goniochrome::render {
 
 void LobeTransport::make_room(const std::vector<bool>& wanted) {
-  with_lobes.clear();
+  with_lobes.resize(places.size());
   std::uint32_t lobes = 0;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    with_lobes.push_back(lobes);
+    with_lobes[i] = lobes;
     if (has_lobes(i)) ++lobes;
   }
   const std::size_t count = columns.count();
@@ -23,6 +23,7 @@ void LobeTransport::make_room(const std::vector<bool>& wanted) {
 
 std::vector<std::uint32_t> LobeTransport::points_of(std::size_t column) const {
   std::vector<std::uint32_t> points;
+  points.reserve(places.size());
   for (std::size_t i = 0; i < places.size(); ++i)
     if (column == LobeColumns::diffuse() || has_lobes(i)) points.push_back(static_cast<std::uint32_t>(i));
   return points;

@@ -160,6 +160,8 @@ class Reading {
     GONIO_TRY(read_header(file_.transport));
     t_.width = file_.image.width, t_.height = file_.image.height;
     GONIO_ASSIGN(const int part_channel, file_.channel("part"));
+    const std::size_t pixels = static_cast<std::size_t>(t_.width) * static_cast<std::size_t>(t_.height);
+    t_.places.reserve(pixels), t_.part.reserve(pixels);
     for (int y = 0; y < t_.height; ++y) {
       for (int x = 0; x < t_.width; ++x) {
         const float part = file_.image.pixel(x, y)[part_channel];
