@@ -7,7 +7,7 @@ builds=$(realpath -m "${GONIOCHROME_BUILD_FOLDER:-$top/build}")
 
 build_packages=(
   g++ cmake ninja-build ccache pkg-config
-  libcgal-dev libceres-dev libcli11-dev libdraco-dev libegl-dev libeigen3-dev libembree-dev libfmt-dev libhwy-dev libimath-dev libjpeg-dev liblcms2-dev
+  libcgal-dev libceres-dev libcli11-dev libdeflate-dev libdraco-dev libegl-dev libeigen3-dev libembree-dev libfmt-dev libhwy-dev libimath-dev libjpeg-dev liblcms2-dev
   libmeshoptimizer-dev libopencolorio-dev libopenexr-dev libpng-dev libtbb-dev libtiff-dev libtinygltf-dev libxml2-dev libzip-dev mandoc nlohmann-json3-dev
   zlib1g-dev
 )

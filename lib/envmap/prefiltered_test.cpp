@@ -188,7 +188,7 @@ TEST_F(EnvFile, PartsOfAnotherVersionAreLeftAloneAndThoseOfAnotherSizeAreRefused
   keep_open_maps(env);
   ASSERT_TRUE(write_env(path("kept.env.exr"), env, "test").ok());
   const auto changed = [&](const std::string& name, auto change) {
-    auto parts = image::read_exr(path("kept.env.exr"), {});
+    auto parts = image::read_exr(path("kept.env.exr"));
     EXPECT_TRUE(parts.ok());
     for (image::ImagePart& part : *parts)
       if (part.name == "open-lobe-001") change(part);

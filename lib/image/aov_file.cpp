@@ -190,23 +190,37 @@ Result<AovFile> file_of(const std::string& path, ImagePart& first) {
   return file;
 }
 
+// Brings the channels that are wanted from a picture of the same size.
+void add_channels(Image more, const std::vector<std::string>& wanted, Image& image) {
+  if (image.channels == 0 && more.channel_names == wanted) return void(image = std::move(more));
+  Image all{image.width, image.height, image.channels, {}, image.channel_names};
+  std::vector<int> taken;
+  for (int c = 0; c < more.channels; ++c) {
+    const std::string& name = more.channel_names[static_cast<std::size_t>(c)];
+    if (wanted.empty() || std::ranges::find(wanted, name) != wanted.end())
+      taken.push_back(c), all.channel_names.push_back(name), ++all.channels;
+  }
+  for (auto own = image.data.cbegin(), other = more.data.cbegin(); other != more.data.cend(); other += more.channels) {
+    all.data.insert(all.data.end(), own, own + image.channels), own += image.channels;
+    for (const int c : taken) all.data.push_back(other[c]);
+  }
+  image = std::move(all);
+}
+
 }  // namespace
 
-Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::string>& channels,
-                              const TakeLayer& take) {
-  std::optional<AovFile> file;
-  const auto visit = [&](ImagePart& part) -> Result<void> {
-    if (!file) {
-      GONIO_ASSIGN(file, file_of(path, part));
-      return {};
-    }
-    if (file->transport.empty()) return {};
-    if (take) return take(*file, part);
-    file->layers.push_back(std::move(part));
-    return {};
-  };
-  GONIO_TRY(visit_exr(path, {.part = {}, .channels = channels}, visit));
-  return *std::move(file);
+Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::string>& channels) {
+  GONIO_ASSIGN(OpenExr exr, open_exr(path, channels));
+  GONIO_ASSIGN(AovFile file, file_of(path, exr.first));
+  if (file.transport.empty()) return file;
+  file.layer = std::move(exr.other);
+  ImagePart points;
+  GONIO_ASSIGN(const bool found, file.layer(kPointsName, points));
+  if (!found) return file;
+  if (points.image.width != file.image.width || points.image.height != file.image.height)
+    return input_error("{}: its parts picture and {} differ in size: render the buffers again", file.path, kPointsName);
+  add_channels(std::move(points.image), channels, file.image);
+  return file;
 }
 
 }  // namespace goniochrome::image

@@ -2,7 +2,6 @@
 // angles, parts), and what the header tells of camera, lights and effects. goniochrome-sketches(7), "SKETCH FITTING".
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "base/result.h"
 #include "base/vec3.h"
 #include "color/reflection.h"
+#include "image/exr.h"
 #include "image/image.h"
 
 namespace goniochrome::image {
@@ -26,7 +26,7 @@ struct AovLight {
 
 struct AovFile {
   std::string path;
-  Image image;  // R G B A and the buffers
+  Image image;  // R G B A and the buffers; those of kPointsName last
   // From the file's header; where it does not tell them, the exposure is 0 and the white is 1.
   double exposure_stops = 0, white_luminance = 1;
   // Stops that bring the light of the buffers to the exposure of a PNG that is exposed automatically.
@@ -47,8 +47,8 @@ struct AovFile {
   // "shadow (dE00 6.2), bounce (dE00 1.3)"; "" for none. A pixel's color is then not told by its normal alone.
   std::string drawn_by_rays;
   color::ReflectionOperator reflection = color::iso_rgb_operator();  // with which the effect "operator" was drawn
-  std::string transport;          // what the header says of a transport, JSON; "" where the file has none
-  std::vector<ImagePart> layers;  // the parts after the picture: those of a transport
+  std::string transport;  // what the header says of a transport, JSON; "" where the file has none
+  ExrPart layer;          // the parts after the picture: those of a transport
 
   // The channel's place in a pixel. Error: the file lacks it; the message has the command that makes it.
   Result<int> channel(const std::string& name) const;
@@ -65,11 +65,11 @@ bool is_drawn(const ImagePart& picture, const std::string& effect);
 // AovFile::left_out of such a picture; nothing where it does not tell.
 std::optional<std::vector<std::string>> left_out(const ImagePart& picture);
 
+// The part beside the picture that has the normals and the parts of a transport's points.
+inline constexpr const char* kPointsName = "points";
+
 // The file, or of its picture and buffers only the channels named, in that order and as far as it has them. Error: it
-// is not an EXR file, or its header is not one that render-osmesa writes. With `take`, AovFile::layers stays empty: the
-// parts of a transport are handed over one by one, as visit_exr() does.
-using TakeLayer = std::function<Result<void>(const AovFile& file, const ImagePart& layer)>;
-Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::string>& channels = {},
-                              const TakeLayer& take = {});
+// is not an EXR file, or its header is not one that render-osmesa writes.
+Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::string>& channels = {});
 
 }  // namespace goniochrome::image

@@ -143,13 +143,15 @@ ExrWindow window_of(const Imath::Box2i& box) {
 }
 
 // True if a part is shown as it is stored. All parts share one display window, so that parts of sizes of their own, as
-// those of an environment, begin at its corner; in the pictures of other programs these are crops.
+// those of an environment, begin at its corner; in the pictures of other programs these are crops. Parts of this
+// program may also stand elsewhere in a picture.
 bool fills_its_window(const Imf::MultiPartInputFile& file, int index, const Attributes& attributes, bool as_picture) {
   const Imath::Box2i &data = file.header(index).dataWindow(), &display = file.header(index).displayWindow();
   if (data == display) return true;
-  if (file.parts() == 1 || data.min != display.min) return false;
-  const auto is_own = [](const auto& entry) { return entry.first.starts_with("goniochrome:"); };
-  return !as_picture || attributes.contains("envmap") || std::ranges::any_of(attributes, is_own);
+  const bool is_own =
+      std::ranges::any_of(attributes, [](const auto& entry) { return entry.first.starts_with("goniochrome:"); });
+  if (file.parts() == 1 || (data.min != display.min && (as_picture || !is_own))) return false;
+  return !as_picture || attributes.contains("envmap") || is_own;
 }
 
 // Brings the pixels of a data window into the display window. A forged window must not ask for all memory.
@@ -211,6 +213,7 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
   }
 
   Image& image = part.image;
+  part.left = window.min.x - header.displayWindow().min.x, part.top = window.min.y - header.displayWindow().min.y;
   image.width = window.max.x - window.min.x + 1;
   image.height = window.max.y - window.min.y + 1;
   const bool some = index == wanted.channels_of && !wanted.channels.empty();
@@ -235,21 +238,18 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
   for (const std::string& name : image.channel_names)
     if (header.channels()[name.c_str()].type != Imf::HALF) part.type = PixelType::kFloat;
   GONIO_TRY(read_pixels(file, index, where, image));
-  if (!fills_its_window(file, index, part.attributes, as_picture)) GONIO_TRY(place_in_window(header, where, image));
+  if (!fills_its_window(file, index, part.attributes, as_picture)) {
+    part.left = part.top = 0;
+    GONIO_TRY(place_in_window(header, where, image));
+  }
   return part;
 }
 
-// Opens a file in memory and hands it to `read`; what the library throws becomes an error.
+// Turns what the library throws into an error.
 template <class Read>
-auto opened(const std::string& content, const std::string& name, Read&& read)
-    -> decltype(read(std::declval<Imf::MultiPartInputFile&>())) {
-  // The library itself tells that a file is no EXR file at all.
-  if (is_exr(content) && !is_sound_exr_header(content))
-    return input_error("{}: its header is damaged or cut off", name);
+auto guarded(const std::string& name, Read&& read) -> decltype(read()) {
   try {
-    MemoryInput stream(content, name);
-    Imf::MultiPartInputFile file(stream, threads());
-    return read(file);
+    return read();
   } catch (const std::bad_alloc&) {
     return input_error("{}: is too large for the memory there is", name);
   } catch (const std::exception& e) {
@@ -257,37 +257,52 @@ auto opened(const std::string& content, const std::string& name, Read&& read)
   }
 }
 
-Result<void> visit_parts(const std::string& content, const std::string& name, const ExrWanted& wanted,
-                         const ExrVisit& visit) {
-  return opened(content, name, [&](Imf::MultiPartInputFile& file) -> Result<void> {
-    std::vector<float> room;
-    for (int i = 0; i < file.parts(); ++i) {
-      GONIO_ASSIGN(auto part, decoded_part(file, i, name, content.size(), wanted, false, std::move(room)));
-      GONIO_TRY(visit(part));
-      room = std::move(part.image.data);
-    }
-    return {};
-  });
+struct OpenedExr {
+  OpenedExr(const std::string& content, const std::string& name) : stream(content, name), file(stream, threads()) {}
+  MemoryInput stream;
+  Imf::MultiPartInputFile file;
+};
+
+// Opens a file in memory and hands it to `read`.
+template <class Read>
+auto opened(const std::string& content, const std::string& name, Read&& read)
+    -> decltype(read(std::make_shared<OpenedExr>(content, name))) {
+  // The library itself tells that a file is no EXR file at all.
+  if (is_exr(content) && !is_sound_exr_header(content))
+    return input_error("{}: its header is damaged or cut off", name);
+  return guarded(name, [&] { return read(std::make_shared<OpenedExr>(content, name)); });
 }
 
-ExrVisit keeping(std::vector<ImagePart>& parts) {
-  return [&parts](ImagePart& part) -> Result<void> {
-    parts.push_back(std::move(part));
-    return {};
-  };
+// Error: a part beside the chosen one is not there as a whole.
+Result<void> check_others(Imf::MultiPartInputFile& file, int chosen, const std::string& name) {
+  const ExrWanted none{[](const std::string&, const Attributes&) { return false; }};
+  for (int i = 0; i < file.parts(); ++i)
+    if (i != chosen) GONIO_TRY(decoded_part(file, i, name, 0, none));
+  return {};
+}
+
+Result<std::string> content_of(InputFile& input) {
+  GONIO_ASSIGN(std::string content, input.rest(std::string::npos));
+  if (content.empty()) return input_error("{}: is empty: name an EXR file", input.name());
+  return content;
 }
 
 }  // namespace
 
 Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name,
                                            const ExrWanted& wanted) {
-  std::vector<ImagePart> parts;
-  GONIO_TRY(visit_parts(content, name, wanted, keeping(parts)));
-  return parts;
+  return opened(content, name, [&](const auto& exr) -> Result<std::vector<ImagePart>> {
+    std::vector<ImagePart> parts;
+    for (int i = 0; i < exr->file.parts(); ++i) {
+      GONIO_ASSIGN(parts.emplace_back(), decoded_part(exr->file, i, name, content.size(), wanted));
+    }
+    return parts;
+  });
 }
 
 Result<ImagePart> decoded_exr_picture(const std::string& content, const std::string& name, const std::string& layer) {
-  return opened(content, name, [&](Imf::MultiPartInputFile& file) -> Result<ImagePart> {
+  return opened(content, name, [&](const auto& exr) -> Result<ImagePart> {
+    Imf::MultiPartInputFile& file = exr->file;
     std::vector<ExrPartNames> names;
     for (int i = 0; i < file.parts(); ++i) {
       const Imf::Header& header = file.header(i);
@@ -295,9 +310,7 @@ Result<ImagePart> decoded_exr_picture(const std::string& content, const std::str
     }
     GONIO_ASSIGN(const ExrLayer picture, color_layer(names, layer, name));
     const int chosen = static_cast<int>(picture.part);
-    const ExrWanted none{[](const std::string&, const Attributes&) { return false; }};
-    for (int i = 0; i < file.parts(); ++i)
-      if (i != chosen) GONIO_TRY(decoded_part(file, i, name, content.size(), none));
+    GONIO_TRY(check_others(file, chosen, name));
     GONIO_ASSIGN(ImagePart part,
                  decoded_part(file, chosen, name, content.size(), {{}, picture.channels, chosen}, true));
     part.image.channel_names = picture.as;
@@ -306,20 +319,30 @@ Result<ImagePart> decoded_exr_picture(const std::string& content, const std::str
 }
 
 Result<std::vector<ImagePart>> read_exr(const std::string& path) {
-  return read_exr(path, {});
-}
-
-Result<std::vector<ImagePart>> read_exr(const std::string& path, const ExrWanted& wanted) {
-  std::vector<ImagePart> parts;
-  GONIO_TRY(visit_exr(path, wanted, keeping(parts)));
-  return parts;
-}
-
-Result<void> visit_exr(const std::string& path, const ExrWanted& wanted, const ExrVisit& visit) {
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
-  GONIO_ASSIGN(const std::string content, input.rest(std::string::npos));
-  if (content.empty()) return input_error("{}: is empty: name an EXR file", input.name());
-  return visit_parts(content, input.name(), wanted, visit);
+  GONIO_ASSIGN(const std::string content, content_of(input));
+  return decoded_exr(content, input.name());
+}
+
+Result<OpenExr> open_exr(const std::string& path, const std::vector<std::string>& channels) {
+  GONIO_ASSIGN(InputFile input, InputFile::open(path));
+  GONIO_ASSIGN(std::string all, content_of(input));
+  const auto content = std::make_shared<const std::string>(std::move(all));
+  return opened(*content, input.name(), [&](const auto& exr) -> Result<OpenExr> {
+    GONIO_TRY(check_others(exr->file, 0, input.name()));
+    GONIO_ASSIGN(ImagePart first, decoded_part(exr->file, 0, input.name(), content->size(), {{}, channels}));
+    const auto decode = [exr, content, file = input.name()](const std::string& name, ImagePart& part) {
+      return guarded(file, [&]() -> Result<bool> {
+        for (int i = 1; i < exr->file.parts(); ++i) {
+          if (exr->file.header(i).name() != name) continue;
+          GONIO_ASSIGN(part, decoded_part(exr->file, i, file, content->size(), {}, false, std::move(part.image.data)));
+          return true;
+        }
+        return false;
+      });
+    };
+    return OpenExr{std::move(first), decode};
+  });
 }
 
 namespace {
@@ -395,10 +418,14 @@ void set_attributes(Imf::Header& header, const Attributes& attributes) {
   }
 }
 
+Imath::Box2i window_of(const ImagePart& part) {
+  const Imath::V2i corner(part.left, part.top);
+  return {corner, corner + Imath::V2i(part.image.width - 1, part.image.height - 1)};
+}
+
 Imf::Header header_of(const ImagePart& part, PixelType type, const std::vector<std::string>& names,
                       const Imath::Box2i& display, ExrStorage storage) {
-  const Imath::Box2i data(Imath::V2i(0, 0), Imath::V2i(part.image.width - 1, part.image.height - 1));
-  Imf::Header header(display, data);
+  Imf::Header header(display, window_of(part));
   set_attributes(header, part.attributes);
   const bool packed = storage == ExrStorage::kZip && is_compressible(part, type);
   header.compression() = packed ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
@@ -430,8 +457,8 @@ void write_part(Imf::MultiPartOutputFile& file, int index, const ImagePart& part
       as_half ? reinterpret_cast<const char*>(rounded.data()) : reinterpret_cast<const char*>(image.data.data());
   Imf::FrameBuffer buffer;
   for (int c = 0; c < image.channels; ++c)
-    buffer.insert(names[c], Imf::Slice(as_half ? Imf::HALF : Imf::FLOAT, const_cast<char*>(base) + c * size,
-                                       size * image.channels, size * image.channels * image.width));
+    buffer.insert(names[c], Imf::Slice::Make(as_half ? Imf::HALF : Imf::FLOAT, base + c * size, window_of(part),
+                                             size * image.channels, size * image.channels * image.width));
   Imf::OutputPart output(file, index);
   output.setFrameBuffer(buffer);
   output.writePixels(image.height);
@@ -464,7 +491,7 @@ Result<std::string> encoded(const std::vector<ImagePart>& given, ExrStorage stor
   Imath::Box2i display(Imath::V2i(0, 0), Imath::V2i(0, 0));
   const bool is_picture = !parts.empty() && parts.front().name == "picture";
   for (const ImagePart& part : std::span(parts).first(is_picture ? 1 : parts.size()))
-    display.extendBy(Imath::V2i(part.image.width - 1, part.image.height - 1));
+    display.extendBy(window_of(part).max);
   std::vector<PixelType> types;
   std::vector<std::vector<std::string>> names;
   std::vector<Imf::Header> headers;

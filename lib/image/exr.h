@@ -21,12 +21,17 @@ struct ExrWanted {
 // All parts of an EXR file held in memory; `name` is what errors call it. A part that is not wanted has no pixels.
 Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name,
                                            const ExrWanted& wanted = {});
-Result<std::vector<ImagePart>> read_exr(const std::string& path, const ExrWanted& wanted);
 
-// Hands the parts over one by one, in their order. What `visit` leaves of a part's pixels is room for those of the
-// next: memory that is new costs more than decoding does. An error of `visit` ends it.
-using ExrVisit = std::function<Result<void>(ImagePart& part)>;
-Result<void> visit_exr(const std::string& path, const ExrWanted& wanted, const ExrVisit& visit);
+// Decodes the part of that name, and returns false where there is none. The pixels that `part` had are room for those
+// of the new one: memory that is new costs more than decoding does.
+using ExrPart = std::function<Result<bool>(const std::string& name, ImagePart& part)>;
+// The first part, with the channels that are wanted of it, and the others when they are asked for. Error: as
+// read_exr(); each part is there as a whole.
+struct OpenExr {
+  ImagePart first;
+  ExrPart other;
+};
+Result<OpenExr> open_exr(const std::string& path, const std::vector<std::string>& channels);
 
 // The picture of an EXR file: its colors, with alpha where there is one, in its display window. `layer` names them, or
 // is empty for the only ones or those without a layer.

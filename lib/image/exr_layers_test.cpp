@@ -11,6 +11,7 @@
 
 #include "base/scratch_for_test.h"
 #include "image/color_space.h"
+#include "image/exr.h"
 
 namespace goniochrome::image::exr_layers_test {
 namespace {
@@ -134,16 +135,33 @@ TEST_F(ExrPicture, OfWholeNumbersIsRefused) {
   EXPECT_TRUE(read_image(written({"R", "G", "B"}, whole_, whole_)).ok()) << "control";
 }
 
+ImagePart bright(const char* name, int width, int height) {
+  return {name,
+          {width, height, 1, std::vector<float>(static_cast<std::size_t>(width * height), 1.0F), {"Y"}},
+          {},
+          PixelType::kFloat};
+}
+
+TEST_F(ExrPicture, HasPartsThatStandElsewhereInIt) {
+  ImagePart crop = bright("crop", 2, 1);
+  crop.left = 2, crop.top = 1, crop.attributes["goniochrome:column"] = "mirror";
+  const std::string path = folder_.path("crop.exr");
+  ASSERT_TRUE(write_exr(path, {bright("picture", 4, 2), crop}).ok());
+  auto read = open_exr(path, {});
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  ImagePart part;
+  EXPECT_FALSE(*read->other("none", part));
+  ASSERT_TRUE(*read->other("crop", part));
+  EXPECT_EQ(part.left, 2);
+  EXPECT_EQ(part.top, 1);
+  EXPECT_THAT(part.image.data, ElementsAre(1, 1));
+  EXPECT_THAT(read_image(path + "[crop]")->image.data, ElementsAre(0, 0, 0, 0, 0, 0, 1, 1)) << "as it is shown";
+}
+
 // Numbers of a transport, in a part wider than its picture, made the picture wide in every other program.
 TEST_F(ExrPicture, IsShownAsLargeAsItIsWhateverFollows) {
-  const auto part = [](const char* name, int width, int height) {
-    return ImagePart{name,
-                     {width, height, 1, std::vector<float>(static_cast<std::size_t>(width * height), 1.0F), {"Y"}},
-                     {},
-                     PixelType::kFloat};
-  };
   const std::string path = folder_.path("wide.exr");
-  ASSERT_TRUE(write_exr(path, {part("picture", 4, 2), part("numbers", 9, 5)}).ok());
+  ASSERT_TRUE(write_exr(path, {bright("picture", 4, 2), bright("numbers", 9, 5)}).ok());
   EXPECT_EQ(Imf::MultiPartInputFile(path.c_str()).header(0).displayWindow(), whole_);
   const auto read = read_exr(path);
   ASSERT_TRUE(read.ok()) << read.error().message;

@@ -2,11 +2,12 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfPartType.h>
-#include <zlib.h>
+#include <libdeflate.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -108,18 +109,25 @@ void put_lines(const SplitBytes& bytes, const Block& block, const Layout& layout
   }
 }
 
+// The memory that a thread unpacks blocks in.
+struct Room {
+  std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> unpacker{
+      libdeflate_alloc_decompressor(), libdeflate_free_decompressor};
+  UnsetArray<std::uint8_t> bytes;
+};
+
 // A block that packing does not make smaller is stored as it is.
-void decode(const std::uint8_t* packed, const Block& block, const Layout& layout, UnsetArray<std::uint8_t>& room,
-            Image& image) {
+void decode(const std::uint8_t* packed, const Block& block, const Layout& layout, Room& room, Image& image) {
   const std::size_t count = layout.line_bytes * static_cast<std::size_t>(block.lines);
   if (block.size == count) return put_lines<2>({packed, packed + 1}, block, layout, image);
-  if (room.size() < count) room = UnsetArray<std::uint8_t>(count);
-  uLongf unpacked = static_cast<uLongf>(count);
-  if (block.size > count || uncompress(room.data(), &unpacked, packed, static_cast<uLong>(block.size)) != Z_OK ||
-      unpacked != count)
+  if (room.unpacker == nullptr) throw std::bad_alloc();
+  if (room.bytes.size() < count) room.bytes = UnsetArray<std::uint8_t>(count);
+  std::uint8_t* bytes = room.bytes.data();
+  if (block.size > count ||
+      libdeflate_zlib_decompress(room.unpacker.get(), packed, block.size, bytes, count, nullptr) != LIBDEFLATE_SUCCESS)
     throw std::runtime_error("its packed pixels are damaged");
-  add_up(room.data(), count);
-  put_lines<1>({room.data(), room.data() + count / 2}, block, layout, image);
+  add_up(bytes, count);
+  put_lines<1>({bytes, bytes + count / 2}, block, layout, image);
 }
 
 }  // namespace
@@ -153,7 +161,7 @@ void read_rows(Imf::MultiPartInputFile& file, int index, Image& image) {
   constexpr std::size_t kBlockLines = 16;
   const std::size_t together = kBlockLines / static_cast<std::size_t>(lines);
   parallel_for(blocks.size(), together, [&](std::size_t begin, std::size_t end) {
-    UnsetArray<std::uint8_t> room;
+    Room room;
     for (std::size_t i = begin; i < end; ++i) decode(content.data() + blocks[i].begin, blocks[i], layout, room, image);
   });
 }

@@ -59,9 +59,9 @@ TEST_F(ExrRows, AreWhatTheLibraryReads) {
        {Imf::PIZ_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::NO_COMPRESSION}) {
     write(path("x.exr"), compression);
     for (const std::vector<std::string>& channels : {std::vector<std::string>{"half", "float"}, {"float"}, {"half"}}) {
-      const auto read = read_exr(path("x.exr"), {.part = {}, .channels = channels});
+      const auto read = open_exr(path("x.exr"), channels);
       ASSERT_TRUE(read.ok()) << read.error().message;
-      const ImagePart& part = read->front();
+      const ImagePart& part = read->first;
       EXPECT_EQ(part.type, channels.size() == 1 && channels[0] == "half" ? PixelType::kHalf : PixelType::kFloat);
       ASSERT_EQ(part.image.data.size(), channels.size() * kPixels);
       std::vector<std::uint32_t> bits;

@@ -49,6 +49,7 @@ struct ImagePart {
   Image image;
   Attributes attributes;
   PixelType type = PixelType::kHalf;
+  int left = 0, top = 0;  // where its pixels begin in the picture that the parts show
 };
 
 // The text of an attribute; "" where there is none, or no text.

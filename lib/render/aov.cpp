@@ -60,7 +60,9 @@ void add_channels(image::Image& picture, const std::vector<std::string>& names, 
   wider.data.resize(static_cast<std::size_t>(wider.width) * wider.height * channels);
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x)
-      put(x, y, std::copy_n(picture.pixel(x, y), picture.channels, wider.pixel(x, y)));
+      put(x, y,
+          std::copy_n(picture.data.data() + (wider.pixel(x, y) - wider.data.data()) / channels * picture.channels,
+                      picture.channels, wider.pixel(x, y)));
   picture = std::move(wider);
 }
 

@@ -54,22 +54,31 @@ image::AovFile buffers_of(const std::vector<Lit>& pixels, const std::optional<co
     t.worn.weights.back().front() = *floor;
   }
   t.white_luminance = kWhite;
-  const auto put = [&](const color::Rgb& light) {
-    for (int c = 0; c < 3; ++c) t.direct.push_back(static_cast<float>(light[c]));
-  };
-  for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+  for (std::uint32_t i = 0; i < pixels.size(); ++i)
     t.places.push_back(i), t.part.push_back(0), t.noise_de00.push_back(0);
-    put(pixels[i].diffuse);
-    for (const double share : pixels[i].shares) put(share * pixels[i].diffuse), put({});
-    put(coat_index == paint::kNoCoat ? color::Rgb{} : 0.3 * pixels[i].diffuse);
+  t.make_room();
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const auto put = [&](std::size_t column, double share) {
+      for (std::size_t c = 0; c < 3; ++c)
+        t.direct[column][3 * i + c] = static_cast<float>(share * pixels[i].diffuse[static_cast<int>(c)]);
+    };
+    put(render::LobeColumns::diffuse(), 1);
+    for (std::size_t lobe = 0; lobe < kExponents.size(); ++lobe)
+      put(render::LobeColumns::flake(lobe), pixels[i].shares[lobe]);
+    if (coat_index != paint::kNoCoat) put(t.columns.mirror(), 0.3);
   }
-  t.bounced.assign(t.direct.size(), 0), t.classes.assign(pixels.size() * t.worn.groups.classes() * 3, 0);
   const render::TransportParts parts = render::transport_parts(t);
   image::AovFile file;
   file.path = "view.exr";
   file.image = {t.width, 1, 1, std::vector<float>(pixels.size(), 1.0F), {"part"}};
   if (floor) file.image.data.back() = 2;
-  file.transport = parts.header, file.layers = parts.parts;
+  file.transport = parts.header;
+  file.layer = [layers = parts.parts](const std::string& name, image::ImagePart& part) -> Result<bool> {
+    const auto found = std::ranges::find(layers, name, &image::ImagePart::name);
+    if (found == layers.end()) return false;
+    part = *found;
+    return true;
+  };
   file.reflection = color::component_wise();
   return file;
 }
@@ -89,7 +98,7 @@ TEST(TracedLight, TheAngleIsThatOfALampAndBetweenFaceAndFlopInEvenLight) {
   EXPECT_FALSE(light->aspecular_deg(3, 0).has_value()) << "no light";
   EXPECT_FALSE(light->aspecular_deg(4, 0).has_value()) << "outside";
   image::AovFile none = file;
-  none.transport.clear(), none.layers.clear();
+  none.transport.clear(), none.layer = {};
   EXPECT_THAT(TracedLight::of(none).error().message, HasSubstr("view.exr: holds no light that was traced"));
 }
 

@@ -43,8 +43,12 @@ render::LobeTransport made_light() {
   };
   for (std::uint32_t place = 416; place < 5 * 416; ++place) {
     t.places.push_back(place), t.part.push_back(place < 3 * 416 ? 0 : 1);
-    for (std::size_t k = 0; k < t.floats(); ++k) t.direct.push_back(any(3)), t.bounced.push_back(any(0.5));
-    for (std::size_t k = 0; k < 3 * t.worn.groups.classes(); ++k) t.classes.push_back(any(0.1));
+  }
+  t.make_room();
+  for (std::size_t i = 0; i < t.places.size(); ++i) {
+    for (std::size_t k = 0; k < 3 * t.columns.count(); ++k)
+      t.direct[k / 3][3 * i + k % 3] = any(3), t.bounced[k / 3][3 * i + k % 3] = any(0.5);
+    for (std::size_t k = 0; k < 3 * t.worn.groups.classes(); ++k) t.classes[k / 3][3 * i + k % 3] = any(0.1);
   }
   const std::size_t pairs = 3 * 2 * t.columns.count() * t.columns.count();
   for (const std::uint32_t point : {7U, 1000U}) {

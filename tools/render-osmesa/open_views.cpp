@@ -93,7 +93,6 @@ class OpenViews : public PaintViews {
     std::vector<const render::Gbuffer*> seen;
     for (const auto& sample : samples_) seen.push_back(sample.get());
     made.shader.emplace(made.light, std::move(seen), stage_.scene);
-    made.light.direct = std::vector<float>(), made.light.bounced = std::vector<float>();  // the shader has it
     return &made;
   }
 

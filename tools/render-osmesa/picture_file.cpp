@@ -68,6 +68,9 @@ Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const 
   part.attributes["goniochrome:exposure"] = static_cast<float>(exposure.stops);
   part.attributes["goniochrome:whiteLuminance"] = static_cast<float>(exposure.white.luminance);
   part.attributes["goniochrome:automaticExposure"] = static_cast<float>(exposure.automatic);
+  // The buffers that a transport is shaded by: an edit reads no others.
+  image::ImagePart points{
+      image::kPointsName, {part.image.width, part.image.height, 0, {}, {}}, {}, image::PixelType::kFloat};
   part.attributes["goniochrome:samples"] = std::min(request.samples * request.samples_of_point, 16);
   if (!request.aovs.empty()) {
     const Vec3 to_light = scene.lights.empty() ? exposure.white.direction : scene.lights.front().direction;
@@ -75,7 +78,8 @@ Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const 
       if (aov == "error") {
         render::add_error(part.image, frame.noise.value());
       } else {
-        GONIO_TRY(render::add_aov(part.image, *frame.gbuffer, aov, to_light));
+        const bool of_points = transport != nullptr && (aov == "normal" || aov == "part");
+        GONIO_TRY(render::add_aov(of_points ? points.image : part.image, *frame.gbuffer, aov, to_light));
       }
     }
     part.type = image::PixelType::kFloat;
@@ -98,7 +102,10 @@ Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const 
   std::vector<image::ImagePart> parts;
   if (transport != nullptr) part.attributes[render::kTransportAttribute] = transport->header;
   parts.push_back(std::move(part));
-  if (transport != nullptr) parts.insert(parts.end(), transport->parts.begin(), transport->parts.end());
+  if (transport != nullptr) {
+    parts.push_back(std::move(points));
+    parts.insert(parts.end(), transport->parts.begin(), transport->parts.end());
+  }
   return parts;
 }
 

@@ -125,11 +125,9 @@ Result<void> check_samples(const Options& options, const Request& request, const
 
 // The buffers of --gbuffer, and a mesh that has their parts.
 Result<void> set_gbuffer(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
-  render::TransportReader reader;
-  const auto take = [&](const image::AovFile& file, const image::ImagePart& layer) { return reader.add(file, layer); };
   GONIO_ASSIGN(image::AovFile buffers,
-               image::read_aov_file(options.gbuffer, {"normal.X", "normal.Y", "normal.Z", "part"}, take));
-  GONIO_ASSIGN(auto light, reader.finish(buffers));
+               image::read_aov_file(options.gbuffer, {"normal.X", "normal.Y", "normal.Z", "part"}));
+  GONIO_ASSIGN(auto light, render::transport_points(buffers));
   GONIO_ASSIGN(render::Gbuffer gbuffer, render::gbuffer_of(buffers));
   stage.gbuffer = std::make_shared<const render::Gbuffer>(std::move(gbuffer));
   for (std::size_t i = 0; i < buffers.parts.size(); ++i)
@@ -226,6 +224,8 @@ Result<void> set_stage(const Options& options, Request& request, Stage& stage, c
   Options base = options;
   if (is_stream(options)) base.paint.clear();  // its paints come one by one
   GONIO_TRY(dress_stage(base, stage));
+  if (stage.transport)
+    GONIO_TRY(read_light(is_stream(options) ? nullptr : &stage.dresses.front(), stage.mesh, *stage.transport));
   if (options.trim) tell_trim(stage.mesh, stage.dresses.front(), session);
   for (const DressedMesh& dress : stage.dresses) {
     for (const std::string& remark : dress.remarks) session.warn(remark);

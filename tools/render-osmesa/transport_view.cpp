@@ -169,10 +169,10 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
   return view;
 }
 
-Result<std::optional<KeptTransport>> kept_transport(std::optional<render::LobeTransport> light, image::AovFile file,
+Result<std::optional<KeptTransport>> kept_transport(std::optional<render::LobeTransport> points, image::AovFile file,
                                                     const Options& options, const Request& request,
                                                     cli::Session& session) {
-  if (!light) return std::optional<KeptTransport>();
+  if (!points) return std::optional<KeptTransport>();
   if ((!options.env.empty() && options.env != file.environment) ||
       (!request.lights.empty() && !same_light(file.lights, request.lights))) {
     session.warn(
@@ -181,10 +181,34 @@ Result<std::optional<KeptTransport>> kept_transport(std::optional<render::LobeTr
                     file.path, file.environment.empty() ? "no environment" : file.environment, file.lights.size()));
     return std::optional<KeptTransport>();
   }
-  if (file.reflection.k != request.reflection.k && light->bounces > 0)
+  if (file.reflection.k != request.reflection.k && points->bounces > 0)
     return usage_error("--operator is another than that of --gbuffer: bounced light was traced with that one");
   file.image = {};
-  return std::optional(KeptTransport{*std::move(light), std::move(file)});
+  return std::optional(KeptTransport{*std::move(points), std::move(file)});
+}
+
+namespace {
+
+Result<render::ShownPaints> shown_in(const DressedMesh& dress, const mesh::Mesh& mesh,
+                                     const render::LobeTransport& light) {
+  std::vector<render::PartPaint> parts;
+  for (std::size_t part = 0; part < dress.paints.size(); ++part)
+    parts.push_back(
+        {&dress.paints[part], dress.anisotropy[part], dress.gloss_deg[part], dress.names[part], mesh.parts[part].name});
+  return render::shown_paints(light.columns, light.worn, parts);
+}
+
+}  // namespace
+
+Result<void> read_light(const DressedMesh* dress, const mesh::Mesh& mesh, KeptTransport& transport) {
+  std::vector<bool> wanted;
+  if (dress != nullptr) {
+    GONIO_ASSIGN(const render::ShownPaints shown, shown_in(*dress, mesh, transport.light));
+    wanted = render::weighed_columns(shown);
+  }
+  GONIO_TRY(render::read_light(transport.file, wanted, transport.light));
+  transport.file.layer = {};
+  return {};
 }
 
 ViewShader::ViewShader(const render::LobeTransport& light, std::vector<const render::Gbuffer*> samples,
@@ -197,11 +221,7 @@ ViewShader::ViewShader(const render::LobeTransport& light, std::vector<const ren
       scaler_(light, render::operator_or_null(scene.reflection)) {}
 
 Result<ShadedPaint> ViewShader::shade(const DressedMesh& dress, image::Image& picture) {
-  std::vector<render::PartPaint> parts;
-  for (std::size_t part = 0; part < dress.paints.size(); ++part)
-    parts.push_back({&dress.paints[part], dress.anisotropy[part], dress.gloss_deg[part], dress.names[part],
-                     scene_.mesh->parts[part].name});
-  GONIO_ASSIGN(const render::ShownPaints shown, render::shown_paints(light_.columns, light_.worn, parts));
+  GONIO_ASSIGN(const render::ShownPaints shown, shown_in(dress, *scene_.mesh, light_));
   ShadedPaint result;
   result.coat_changed = shown.coat_changed;
   const Stopwatch judging;

@@ -35,16 +35,19 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
                                const render::Gbuffer& seen, int samples, double white_luminance, int bounces,
                                cli::Session& session);
 
-// The transport of --gbuffer and what its file says of the light.
+// The transport of --gbuffer, at first without light, and what its file says of the light.
 struct KeptTransport {
   render::LobeTransport light;
   image::AovFile file;  // without its pictures
 };
 // Nothing where there is no light, or where the command line has other light than the file, which is told. Error
 // (usage): bounced light was traced with another operator.
-Result<std::optional<KeptTransport>> kept_transport(std::optional<render::LobeTransport> light, image::AovFile file,
+Result<std::optional<KeptTransport>> kept_transport(std::optional<render::LobeTransport> points, image::AovFile file,
                                                     const Options& options, const Request& request,
                                                     cli::Session& session);
+
+// Reads the light that this dress of the mesh weighs; without one, that of all lobes. Error: as render::read_light().
+Result<void> read_light(const DressedMesh* dress, const mesh::Mesh& mesh, KeptTransport& transport);
 
 // The results of shading a view in some paints.
 struct ShadedPaint {
@@ -54,8 +57,8 @@ struct ShadedPaint {
   bool coat_changed = false;          // whether a coat took the place of none, or none that of a coat
 };
 
-// Shows the light of one view in any number of paints. What is given must outlive it, but for the light of the points,
-// which it lays out anew; of the scene, the mesh's parts, the operator, the environment and the background are read.
+// Shows the light of one view in any number of paints. What is given must outlive it; of the scene, the mesh's parts,
+// the operator, the environment and the background are read.
 class ViewShader {
  public:
   // `samples` of the pixels, one G-buffer each, lie below each other in the light.

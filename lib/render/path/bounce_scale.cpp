@@ -248,10 +248,10 @@ BounceScale bounce_scale(const LobeTransport& t, const std::vector<Weights>& par
 }
 
 color::Rgb bounce_factor(const LobeTransport& t, std::size_t point, const BounceScale& scale) {
-  const std::size_t count = t.worn.groups.classes();
+  if (!t.has_lobes(point)) return scale.of_class[t.worn.floor_class()];
   color::Rgb weighted, all;
-  for (std::size_t k = 0; k < count; ++k) {
-    const float* light = &t.classes[(point * count + k) * 3];
+  for (std::size_t k = 0; k < t.classes.size(); ++k) {
+    const float* light = &t.classes[k][std::size_t{3} * t.with_lobes[point]];
     const color::Rgb shown{light[0], light[1], light[2]};
     all += shown, weighted += shown * scale.of_class[k];
   }

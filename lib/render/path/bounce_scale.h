@@ -40,7 +40,7 @@ class BounceScaler {
 BounceScale bounce_scale(const LobeTransport& transport, const std::vector<std::vector<color::Rgb>>& weights,
                          const color::ReflectionOperator* reflection);
 
-// The factor of a point's bounced light: the mean over its classes.
+// The factor of a point's bounced light: the mean over its classes; without lobes, that of floor_class().
 color::Rgb bounce_factor(const LobeTransport& transport, std::size_t point, const BounceScale& scale);
 
 }  // namespace goniochrome::render

@@ -250,7 +250,7 @@ PointTransport LobePoint::as_floor() const {
   return {transport_, options, spot_, painted_.to_viewer()};
 }
 
-// All that a floor shows is light of its one column; what the mesh sends to it came through other surfaces.
+// All that a floor shows is light of its one column.
 LobeEstimate LobePoint::known_floor(std::span<const LobePoint> points) {
   const LobePoint& any = points.front();
   LobeEstimate result = any.no_light();
@@ -262,15 +262,13 @@ LobeEstimate LobePoint::known_floor(std::span<const LobePoint> points) {
       shown.direct += point.as_floor().deterministic();
     }
   }
-  any.add_floor_light((1.0 / static_cast<double>(points.size())) * shown, result);
+  add_floor_light((1.0 / static_cast<double>(points.size())) * shown, result);
   return result;
 }
 
-void LobePoint::add_floor_light(const LightShares& light, LobeEstimate& estimate) const {
-  const color::Rgb bounced = light.into_lobes + light.into_diffuse;
-  estimate.direct[LobeColumns::diffuse()] += light.direct, estimate.bounced[LobeColumns::diffuse()] += bounced;
-  const int floor = groups_.of_part[static_cast<std::size_t>(spot_.part)];
-  estimate.classes[groups_.at(floor, PaintGroups::kDeeper)] += bounced;
+void LobePoint::add_floor_light(const LightShares& light, LobeEstimate& estimate) {
+  estimate.direct[LobeColumns::diffuse()] += light.direct;
+  estimate.bounced[LobeColumns::diffuse()] += light.into_lobes + light.into_diffuse;
 }
 
 std::array<LobeEstimate, 2> LobePoint::sampled_floor(std::span<const LobePoint> points, int sequences, int directions,
@@ -281,7 +279,7 @@ std::array<LobeEstimate, 2> LobePoint::sampled_floor(std::span<const LobePoint> 
   for (std::size_t which = 0; which < static_cast<std::size_t>(sequences); ++which) {
     const PointTransport floor = points[start_of(which, points.size(), seed)].as_floor();
     for (int i = 0; i < batches; ++i)
-      any.add_floor_light(
+      add_floor_light(
           (2.0 / (sequences * batches)) * floor.batch_shares(mixed(mixed(seed, which), static_cast<std::uint64_t>(i))),
           halves[which % 2]);
   }

@@ -97,7 +97,7 @@ class LobePoint : PointSampler {
   static std::array<LobeEstimate, 2> sampled_floor(std::span<const LobePoint> points, int sequences, int directions,
                                                    std::uint64_t seed);
   PointTransport as_floor() const;
-  void add_floor_light(const LightShares& light, LobeEstimate& estimate) const;
+  static void add_floor_light(const LightShares& light, LobeEstimate& estimate);
   LobeEstimate no_light() const;
   int group_of(const rays::Hit& hit) const {
     return groups_.of_part[static_cast<std::size_t>(transport_.rays().part(hit.triangle))];

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <span>
 
 #include "base/angles.h"
 #include "base/clock.h"
@@ -49,12 +48,11 @@ class Tracing {
       t.part.push_back(std::abs(static_cast<int>(g.data[4 * i + 3])) - 1);
     }
     const std::size_t points = t.places.size();
-    t.direct.assign(points * t.floats(), 0), t.bounced.assign(points * t.floats(), 0);
-    t.classes.assign(points * worn.groups.classes() * 3, 0);
+    t.make_room();
     t.noise_de00.assign(points, 0);
     exact_.assign(points, 0), batches_.assign(points, 0), slot_.assign(points, kNotSampled);
     smooth_.resize(columns.count());
-    of_slot_ = 6 * t.floats() + 3 * worn.groups.classes();
+    of_slot_ = 18 * columns.count() + 3 * worn.groups.classes();
     const color::ReflectionOperator reflection = transport.reflection();
     for (const std::vector<color::Rgb>& weights : worn.weights) {
       matrices_.emplace_back();
@@ -126,10 +124,7 @@ class Tracing {
     std::iota(all.begin(), all.end(), 0U);
     return all;
   }
-  std::array<int, 2> pixel(std::size_t i) const {
-    const LobeTransport& t = result_.transport;
-    return {static_cast<int>(t.places[i]) % t.width, static_cast<int>(t.places[i]) / t.width};
-  }
+  std::array<int, 2> pixel(std::size_t i) const { return result_.transport.pixel(i); }
 
   // Light on a surface does not change with the resolution: points are left out that their neighbors tell.
   std::vector<int> first_batches() const {
@@ -244,8 +239,20 @@ class Tracing {
     LobeEstimate known =
         LobePoint::known(seen.points, mirrors.empty() ? nullptr : mirrors.data(), worn_by(t.part[i]).data());
     for (std::size_t k = 0; k < t.columns.mirror(); ++k) known.direct[k] += open[k];
-    put(known.direct, &t.direct[i * t.floats()]), put(known.bounced, &t.bounced[i * t.floats()]);
-    put(known.classes, &t.classes[3 * i * t.worn.groups.classes()]);
+    for (std::size_t k = 0; k < t.columns.count(); ++k) add_light(i, k, known.direct[k], known.bounced[k]);
+    for (std::size_t k = 0; k < t.classes.size() && t.has_lobes(i); ++k) add_class(i, k, known.classes[k]);
+  }
+  void add_light(std::size_t i, std::size_t k, const color::Rgb& direct, const color::Rgb& bounced) {
+    LobeTransport& t = result_.transport;
+    const auto at = t.at(i, k);
+    for (std::size_t c = 0; at && c < 3; ++c) {
+      t.direct[k][*at + c] += static_cast<float>(direct[static_cast<int>(c)]);
+      if (t.bounces > 0) t.bounced[k][*at + c] += static_cast<float>(bounced[static_cast<int>(c)]);
+    }
+  }
+  void add_class(std::size_t i, std::size_t k, const color::Rgb& light) {
+    float* to = &result_.transport.classes[k][std::size_t{3} * result_.transport.with_lobes[i]];
+    for (int c = 0; c < 3; ++c) to[c] += static_cast<float>(light[c]);
   }
 
   // The open light of a point that is sampled is kept, and what completed it.
@@ -263,7 +270,7 @@ class Tracing {
     std::vector<color::Rgb> more = open;
     complete(i, seen, open);
     for (std::size_t k = 0; k < count; ++k) more[k] = k < t.columns.mirror() ? open[k] - more[k] : color::Rgb{};
-    put(open, kept), put(more, kept + t.floats());
+    put(open, kept), put(more, kept + 3 * count);
     return open;
   }
 
@@ -281,7 +288,7 @@ class Tracing {
         mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(batches_[i])), worn_by(t.part[i]).data());
     const int added = sequences * of_each;
     const double share = static_cast<double>(added) / (batches_[i] + added);
-    float* to = &sampled_[slot_[i] * of_slot_ + 2 * t.floats()];
+    float* to = &sampled_[slot_[i] * of_slot_ + 6 * t.columns.count()];
     const auto mix = [&](const color::Rgb& light) {
       for (int c = 0; c < 3; ++c, ++to) *to = static_cast<float>((1 - share) * *to + share * light[c]);
     };
@@ -298,9 +305,9 @@ class Tracing {
   };
   ColumnLight sampled(std::size_t i, std::size_t half, std::size_t column) const {
     if (slot_[i] == kNotSampled) return exact_[i] != 0 ? ColumnLight{} : ColumnLight{kUnknown, kUnknown};
-    const LobeTransport& t = result_.transport;
-    const float *more = &sampled_[slot_[i] * of_slot_ + t.floats() + 3 * column],
-                *f = &sampled_[slot_[i] * of_slot_ + (2 + 2 * half) * t.floats() + 6 * column];
+    const std::size_t floats = 3 * smooth_.size();
+    const float *more = &sampled_[slot_[i] * of_slot_ + floats + 3 * column],
+                *f = &sampled_[slot_[i] * of_slot_ + (2 + 2 * half) * floats + 6 * column];
     return {{more[0] + f[0], more[1] + f[1], more[2] + f[2]}, {f[3], f[4], f[5]}};
   }
 
@@ -421,35 +428,30 @@ class Tracing {
 
   void add_smooth() {
     LobeTransport& t = result_.transport;
-    const auto add = [](float* to, const color::Rgb& light) {
-      for (int c = 0; c < 3; ++c) to[c] += static_cast<float>(light[c]);
-    };
     for (std::size_t k = 0; k < smooth_.size(); ++k)
       each_kept([&](std::size_t n, std::size_t i) {
-        if (exact_[i] != 0) return;
-        add(&t.direct[i * t.floats() + 3 * k], smooth_[k].sum[n] - smooth_[k].bounced[n]);
-        add(&t.bounced[i * t.floats() + 3 * k], smooth_[k].bounced[n]);
+        if (exact_[i] == 0) add_light(i, k, smooth_[k].sum[n] - smooth_[k].bounced[n], smooth_[k].bounced[n]);
       });
     // Classes are smoothed as the paints show them, two at a time.
-    const std::size_t classes = t.worn.groups.classes();
+    const std::size_t classes = t.classes.size();
     for (std::size_t k = 0; k < classes; k += 2) {
       std::vector<Halves> light(kept_.size());
       each_kept([&](std::size_t n, std::size_t i) {
         light[n] = exact_[i] != 0 ? Halves{} : Halves{kUnknown, kUnknown};
         if (slot_[i] == kNotSampled) return;
-        const float* f = &sampled_[slot_[i] * of_slot_ + 6 * t.floats() + 3 * k];
+        const float* f = &sampled_[slot_[i] * of_slot_ + 18 * t.columns.count() + 3 * k];
         light[n][0] = {f[0], f[1], f[2]};
         if (k + 1 < classes) light[n][1] = {f[3], f[4], f[5]};
       });
       const std::vector<Halves> smooth = smoothed(shown_, light, {&shares_, &shares_});
       each_kept([&](std::size_t n, std::size_t i) {
-        if (exact_[i] != 0) return;
+        if (exact_[i] != 0 || !t.has_lobes(i)) return;
         for (std::size_t which = 0; which < 2 && k + which < classes; ++which)
-          add(&t.classes[3 * (i * classes + k + which)], smooth[n][which]);
+          add_class(i, k + which, smooth[n][which]);
       });
     }
     each_kept([&](std::size_t, std::size_t i) {
-      if (exact_[i] == 0) fit_classes(i);
+      if (exact_[i] == 0 && t.has_lobes(i)) fit_classes(i);
     });
   }
 
@@ -460,16 +462,14 @@ class Tracing {
     color::Rgb bounced, sum;
     for (std::size_t k = 0; k < matrices.size(); ++k)
       bounced += color::product(matrices[k], t.light(i, k) - t.light(i, k, false));
-    const std::size_t floats = 3 * t.worn.groups.classes();
-    const std::span of_point(&t.classes[i * floats], floats);
-    for (std::size_t k = 0; k < floats; ++k) {
-      of_point[k] = std::max(0.0F, of_point[k]);
-      sum[static_cast<int>(k % 3)] += of_point[k];
-    }
-    for (std::size_t k = 0; k < floats; ++k) {
-      const int c = static_cast<int>(k % 3);
-      if (sum[c] > 0 && bounced[c] > 0) of_point[k] *= static_cast<float>(bounced[c] / sum[c]);
-    }
+    const std::size_t at = std::size_t{3} * t.with_lobes[i];
+    for (std::vector<float>& light : t.classes)
+      for (int c = 0; c < 3; ++c)
+        sum[c] += light[at + static_cast<std::size_t>(c)] = std::max(0.0F, light[at + static_cast<std::size_t>(c)]);
+    for (std::vector<float>& light : t.classes)
+      for (int c = 0; c < 3; ++c)
+        if (sum[c] > 0 && bounced[c] > 0)
+          light[at + static_cast<std::size_t>(c)] *= static_cast<float>(bounced[c] / sum[c]);
   }
 
   // Plans the batches of the next round, and returns true if there are any.

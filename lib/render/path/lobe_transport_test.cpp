@@ -223,10 +223,8 @@ TEST(LobeTransport, ShowsTheWornPaintsWithBouncesAsTracingDoes) {
       for (const TracedLobes& other : others) mean_ours += (1.0 / kSeeds) * shown(other.transport, i, weights, true);
       // The classes are all of the bounced light.
       color::Rgb classes;
-      const std::size_t count = traced.transport.worn.groups.classes();
-      for (std::size_t k = 0; k < count; ++k)
-        for (std::size_t c = 0; c < 3; ++c)
-          classes[static_cast<int>(c)] += traced.transport.classes[(i * count + k) * 3 + c];
+      for (const std::vector<float>& light : traced.transport.classes)
+        for (std::size_t c = 0; c < 3; ++c) classes[static_cast<int>(c)] += light[3 * i + c];
       const color::Rgb bounced = ours - shown(traced.transport, i, weights, false);
       for (int c = 0; c < 3; ++c)
         classes_off = std::max(classes_off, std::abs(classes[c] - bounced[c]) / (bounced[c] + 1e-3));
@@ -395,9 +393,9 @@ TEST(LobeTransport, HoldsAFloorThatShowsTheEnvironment) {
         const auto& own = weights[static_cast<std::size_t>(t.part[i])];
         const color::Rgb direct = shown(t, i, own, false), bounced = shown(t, i, own, true) - direct;
         const color::Rgb ours = direct + bounce_factor(t, i, scale) * bounced;
-        color::Rgb classes;
-        for (std::size_t k = 0; k < 3 * t.worn.groups.classes(); ++k)
-          classes[static_cast<int>(k % 3)] += t.classes[3 * i * t.worn.groups.classes() + k];
+        color::Rgb classes = t.has_lobes(i) ? color::Rgb{} : bounced;
+        for (std::size_t k = 0; t.has_lobes(i) && k < 3 * t.classes.size(); ++k)
+          classes[static_cast<int>(k % 3)] += t.classes[k / 3][3 * t.with_lobes[i] + k % 3];
         if (&paint == &paints.front()) {
           EXPECT_NEAR(classes.y, bounced.y, 1e-5 + 1e-3 * bounced.y) << "the classes are all of it";
         }

@@ -18,8 +18,7 @@ LobeTransport open_transport(const OpenLight& light, const LobeColumns& columns,
       t.places.push_back(static_cast<std::uint32_t>(s * of_sample + i));
       t.part.push_back(static_cast<int>(std::abs(part)) - 1);
     }
-  t.direct.resize(t.places.size() * t.floats());
-  t.bounced.assign(t.places.size() * t.floats(), 0.0F);
+  t.make_room();
   parallel_for(t.places.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<VisiblePoint> points;
     for (std::size_t k = begin; k < end; ++k) {
@@ -30,9 +29,10 @@ LobeTransport open_transport(const OpenLight& light, const LobeColumns& columns,
     }
     std::vector<color::Rgb> gathered(points.size() * columns.count());
     light.look_up(points, gathered.data());
-    float* to = &t.direct[begin * t.floats()];
-    for (const color::Rgb& of_column : gathered)
-      for (int c = 0; c < 3; ++c) *to++ = static_cast<float>(of_column[c]);
+    for (std::size_t n = 0; n < gathered.size(); ++n)
+      for (std::size_t c = 0; c < 3; ++c)
+        t.direct[n % columns.count()][3 * (begin + n / columns.count()) + c] =
+            static_cast<float>(gathered[n][static_cast<int>(c)]);
   });
   return t;
 }

@@ -14,7 +14,7 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr double kVersion = 1;
+constexpr double kVersion = 2;
 constexpr int kMantissa = 10;          // bits of a half
 constexpr int kMostDropped = 4;        // of them; a lobe that few points show would be off by percents there
 constexpr int kProbeDropped = 2;       // of probes, which are averaged
@@ -176,9 +176,11 @@ double rounding_error(const LobeTransport& t, std::size_t column, bool bounced, 
   const double weight = nominal_weight(t.columns, column);
   const std::size_t stride = 1 + t.places.size() / kJudged;
   for (std::size_t i = 0; i < t.places.size(); i += stride) {
+    const auto at = t.at(i, column);
+    if (!at) continue;
     color::Rgb seen = weight * t.light(i, column), rounded;
     if (t.columns.is_gloss(column)) seen += (kNominalGray / kPi) * t.light(i, LobeColumns::diffuse());
-    const float* light = &(bounced ? t.bounced : t.direct)[i * t.floats() + 3 * column];
+    const float* light = &(bounced ? t.bounced : t.direct)[column][*at];
     for (int c = 0; c < 3; ++c) rounded[c] = rounding.value(rounding.number(light[c])) - light[c];
     errors.push_back(seen_difference(seen, seen + weight * rounded, t.white_luminance));
   }
@@ -186,10 +188,7 @@ double rounding_error(const LobeTransport& t, std::size_t column, bool bounced, 
 }
 
 Rounding rounding_of(const LobeTransport& t, std::size_t column, bool bounced) {
-  const std::vector<float>& light = bounced ? t.bounced : t.direct;
-  float largest = 0;
-  for (std::size_t i = 0; i < t.places.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(light[i * t.floats() + 3 * column + c]));
+  const float largest = largest_of((bounced ? t.bounced : t.direct)[column]);
   Rounding rounding{scale_of(nominal_weight(t.columns, column), largest), kMostDropped};
   while (rounding.dropped > 0 && rounding_error(t, column, bounced, rounding) > kPackedError_de00) --rounding.dropped;
   return rounding;
@@ -233,16 +232,14 @@ bool read_worn(LobeTransport& t, Reader& from) {
 
 // The share of each class in a point's bounced light.
 void write_classes(const LobeTransport& t, Writer& to) {
-  const std::size_t stride = 3 * t.worn.groups.classes();
-  std::vector<float> sums(3 * t.places.size(), 0.0F);
-  for (std::size_t i = 0; i < t.places.size(); ++i)
-    for (std::size_t k = 0; k < stride; ++k) sums[3 * i + k % 3] += std::max(0.0F, t.classes[i * stride + k]);
-  std::vector<int> shares(t.places.size());
-  for (std::size_t k = 0; k < stride; ++k) {
+  std::vector<float> sums(t.direct[t.columns.mirror()].size(), 0.0F);
+  for (const std::vector<float>& light : t.classes)
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += std::max(0.0F, light[i]);
+  std::vector<int> shares(sums.size() / 3);
+  for (std::size_t k = 0; k < 3 * t.classes.size(); ++k) {
     for (std::size_t i = 0; i < shares.size(); ++i) {
-      const float sum = sums[3 * i + k % 3];
-      shares[i] =
-          sum > 0 ? static_cast<int>(std::lrint(kShareSteps * std::max(0.0F, t.classes[i * stride + k]) / sum)) : 0;
+      const float sum = sums[3 * i + k % 3], light = std::max(0.0F, t.classes[k / 3][3 * i + k % 3]);
+      shares[i] = sum > 0 ? static_cast<int>(std::lrint(kShareSteps * light / sum)) : 0;
     }
     to.plane(shares);
   }
@@ -286,15 +283,19 @@ LobeTransport of_points(const LobeTransport& t, const std::vector<std::uint32_t>
   LobeTransport some;
   some.width = t.width, some.height = t.height, some.columns = t.columns, some.worn = t.worn;
   some.white_luminance = t.white_luminance, some.unit = t.unit, some.bounces = t.bounces;
-  const std::size_t classes = 3 * t.worn.groups.classes();
-  const auto copy = [&](const std::vector<float>& from, std::size_t stride, std::vector<float>& to) {
-    for (const std::uint32_t point : points)
-      to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(point * stride),
-                from.begin() + static_cast<std::ptrdiff_t>((point + 1) * stride));
-  };
-  copy(t.direct, t.floats(), some.direct), copy(t.bounced, t.floats(), some.bounced);
-  copy(t.classes, classes, some.classes);
   for (const std::uint32_t point : points) some.places.push_back(t.places[point]), some.part.push_back(t.part[point]);
+  some.make_room();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t k = 0; k < t.columns.count(); ++k) {
+      const auto from = t.at(points[i], k), to = some.at(i, k);
+      if (!from) continue;
+      std::copy_n(&t.direct[k][*from], 3, &some.direct[k][*to]);
+      if (t.bounces > 0) std::copy_n(&t.bounced[k][*from], 3, &some.bounced[k][*to]);
+    }
+    for (std::size_t k = 0; k < t.classes.size() && t.has_lobes(points[i]); ++k)
+      std::copy_n(&t.classes[k][std::size_t{3} * t.with_lobes[points[i]]], 3,
+                  &some.classes[k][std::size_t{3} * some.with_lobes[i]]);
+  }
   return some;
 }
 
@@ -316,13 +317,13 @@ Result<std::string> packed_view(const LobeTransport& t, const std::vector<float>
   std::vector<int> angles;
   for (const float angle : view_deg) angles.push_back(static_cast<int>(std::lrint(kAngleSteps * angle)));
   to.plane(angles);
-  std::vector<float> plane(points);
   for (const bool bounced : {false, true}) {
-    const std::vector<float>& light = bounced ? t.bounced : t.direct;
     for (std::size_t k = 0; k < t.columns.count() && (!bounced || t.bounces > 0); ++k) {
+      const std::vector<float>& light = (bounced ? t.bounced : t.direct)[k];
       const Rounding rounding = rounding_of(t, k, bounced);
+      std::vector<float> plane(light.size() / 3);
       for (std::size_t c = 0; c < 3; ++c) {
-        for (std::size_t i = 0; i < points; ++i) plane[i] = light[i * t.floats() + 3 * k + c];
+        for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = light[3 * i + c];
         to.light(plane, rounding);
       }
     }
@@ -360,25 +361,22 @@ Result<UnpackedView> unpacked_view(std::string_view bytes) {
     if (seen[i] < 0 || static_cast<std::size_t>(seen[i]) > t.worn.groups.of_part.size()) return damaged;
     t.places.push_back(static_cast<std::uint32_t>(i)), t.part.push_back(seen[i] - 1);
   }
-  const std::size_t points = t.places.size(), floats = t.floats();
+  const std::size_t points = t.places.size();
   if (points > kMostPagePoints) return damaged;
   for (const int angle : from.plane(points)) view.view_deg.push_back(static_cast<float>(angle) / kAngleSteps);
-  t.direct.resize(points * floats), t.bounced.resize(points * floats);
+  t.make_room();
   for (const bool bounced : {false, true})
     for (std::size_t k = 0; k < t.columns.count() && (!bounced || t.bounces > 0); ++k)
       for (std::size_t c = 0; c < 3 && from.ok(); ++c) {
-        float* to = (bounced ? t.bounced : t.direct).data() + 3 * k + c;
-        from.light(points, [=](std::size_t i, float value) { to[i * floats] = value; });
+        std::vector<float>& to = (bounced ? t.bounced : t.direct)[k];
+        from.light(to.size() / 3, [&](std::size_t i, float value) { to[3 * i + c] = value; });
       }
-  const std::size_t stride = 3 * t.worn.groups.classes();
-  t.classes.resize(points * stride);
-  if (t.bounces > 0) {
-    for (std::size_t k = 0; k < stride && from.ok(); ++k) {
-      const std::vector<int> shares = from.plane(points);
-      for (std::size_t i = 0; i < shares.size(); ++i) t.classes[i * stride + k] = static_cast<float>(shares[i]);
-    }
-    if (!read_probes(t, from)) return damaged;
+  for (std::size_t k = 0; k < 3 * t.classes.size() && from.ok(); ++k) {
+    std::vector<float>& to = t.classes[k / 3];
+    const std::vector<int> shares = from.plane(to.size() / 3);
+    for (std::size_t i = 0; i < shares.size(); ++i) to[3 * i + k % 3] = static_cast<float>(shares[i]);
   }
+  if (t.bounces > 0 && !read_probes(t, from)) return damaged;
   if (from.count(1) == 1) {
     const std::vector<std::size_t> pixels = pixels_beside(seen);
     view.beside = {t.width, t.height, 4, std::vector<float>(4 * seen.size(), 0.0F), {}};
@@ -414,18 +412,6 @@ PackingError packing_error(const LobeTransport& t, const std::vector<float>& vie
     error.p95_de00 = std::max(error.p95_de00, percentile_95(std::move(differences)));
   }
   return error;
-}
-
-LobeTransport of_probes(const LobeTransport& t) {
-  std::vector<std::uint32_t> points;
-  for (const BounceProbe& probe : t.probes) points.push_back(probe.point);
-  std::ranges::sort(points);
-  points.erase(std::ranges::unique(points).begin(), points.end());
-  LobeTransport some = of_points(t, points);
-  some.probed = t.probed, some.probes = t.probes;
-  for (BounceProbe& probe : some.probes)
-    probe.point = static_cast<std::uint32_t>(std::ranges::lower_bound(points, probe.point) - points.begin());
-  return some;
 }
 
 Thinned thinned(const LobeTransport& t, int n) {

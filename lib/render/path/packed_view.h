@@ -43,9 +43,6 @@ struct PackingError {
 PackingError packing_error(const LobeTransport& transport, const std::vector<float>& view_deg, const UnpackedView& view,
                            const std::vector<ShownPaints>& paints, const color::ReflectionOperator* reflection);
 
-// The transport of the points of its probes alone, which is all that bounce_scale() reads.
-LobeTransport of_probes(const LobeTransport& transport);
-
 // Every n-th pixel of the picture, both ways, without probes, and which points these are.
 struct Thinned {
   LobeTransport light;

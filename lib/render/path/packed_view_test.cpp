@@ -102,7 +102,7 @@ TEST(PackedView, ShowsOtherPaintsAsTheTransportDoes) {
     EXPECT_NEAR(ours.scale.error_p95_de00, exact.scale.error_p95_de00, 0.02 * exact.scale.error_p95_de00);
     // The control: the same without bounced light.
     LobeTransport direct = after;
-    std::ranges::fill(direct.bounced, 0.0F);
+    for (std::vector<float>& column : direct.bounced) std::ranges::fill(column, 0.0F);
     least_control =
         std::min(least_control, percentile_95(differences(before, exact.picture, picture_of(direct, parts).picture)));
   }
@@ -144,20 +144,6 @@ TEST(PackedView, CutOrTooLargeIsRefused) {
   EXPECT_NE(refusal.error().message.find("trace it again in a smaller size"), std::string::npos);
 }
 
-TEST(PackedView, ProbesAloneScaleBouncedLightAsTheWholeDoes) {
-  const LobeTransport& light = traced().light;
-  std::mt19937_64 random(4);
-  const paint::LobeFit cup = random_paint(random), ball = random_paint(random);
-  const auto shown = shown_paints(light.columns, light.worn, worn_by_all(cup, ball));
-  const LobeTransport probes = of_probes(light);
-  EXPECT_LE(probes.places.size(), light.probes.size());
-  const BounceScale whole = bounce_scale(light, shown->weights, nullptr),
-                    alone = bounce_scale(probes, shown->weights, nullptr);
-  EXPECT_EQ(alone.error_p95_de00, whole.error_p95_de00);
-  EXPECT_EQ(alone.of_class, whole.of_class);
-  EXPECT_TRUE(whole.changed);
-}
-
 TEST(PackedView, ThinnedHasThePixelsInTheMiddleOfSquares) {
   const LobeTransport& light = traced().light;
   const auto parts = worn_by_all(traced().ball, traced().cup);
@@ -185,8 +171,11 @@ TEST(TransportShader, ShowsLightBeyondTheRangeOfHalves) {
   const std::vector<PartPaint> parts(6, {&traced().ball, {}, 45, "", ""});
   constexpr float kBrighter = 0x1p30F;
   LobeTransport bright = light;
-  for (std::vector<float>* of : {&bright.direct, &bright.bounced, &bright.classes})
-    for (float& value : *of) value *= kBrighter;
+  for (std::size_t k = 0; k < light.columns.count(); ++k)
+    for (std::vector<float>* of : {&bright.direct[k], &bright.bounced[k]})
+      for (float& value : *of) value *= kBrighter;
+  for (std::vector<float>& of : bright.classes)
+    for (float& value : of) value *= kBrighter;
   const Pictured all = picture_of(light, parts), sun = picture_of(bright, parts);
   double sum = 0;
   for (const std::uint32_t place : light.places)

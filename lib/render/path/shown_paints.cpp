@@ -55,6 +55,14 @@ Result<ShownPaints> shown_paints(const LobeColumns& columns, const WornPaints& w
   return Result(std::move(shown));
 }
 
+std::vector<bool> weighed_columns(const ShownPaints& shown) {
+  std::vector<bool> weighed(shown.weights.front().size());
+  for (const TransportPaint& paint : shown.paints)
+    for (const std::vector<color::Rgb>& weights : paint.weights)
+      for (std::size_t k = 0; k < weights.size(); ++k) weighed[k] = weighed[k] || weights[k] != color::Rgb{};
+  return weighed;
+}
+
 const color::ReflectionOperator* operator_or_null(const color::ReflectionOperator& reflection) {
   return reflection.k != color::component_wise().k ? &reflection : nullptr;
 }

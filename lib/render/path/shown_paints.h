@@ -30,6 +30,9 @@ struct ShownPaints {
 Result<ShownPaints> shown_paints(const LobeColumns& columns, const WornPaints& worn,
                                  const std::vector<PartPaint>& parts);
 
+// The columns that some paint weighs.
+std::vector<bool> weighed_columns(const ShownPaints& shown);
+
 // The operator, or null where it multiplies channel by channel, as bounce_scale() and TransportShader take it.
 const color::ReflectionOperator* operator_or_null(const color::ReflectionOperator& reflection);
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <map>
+#include <span>
 
 #include "base/angles.h"
 #include "base/json.h"
@@ -17,10 +17,10 @@ namespace goniochrome::render {
 
 namespace {
 
-// Version 2 has the coats of the parts. In a file of version 1 no part has one.
-constexpr int kVersion = 2, kVersionWithoutCoats = 1;
+constexpr int kVersion = 3;
 const char* const kColorSpace = "lin_rec2020_scene";
 const char* const kProbesName = "bounced-probes";
+const char* const kColumnAttribute = "goniochrome:column";
 const char* const kRemedy = "render it again with --aov transport";
 const char* const kKindNames[PaintGroups::kKinds] = {"base", "gloss", "deeper"};
 
@@ -32,20 +32,23 @@ std::string part_name(const LobeColumns& columns, std::size_t column, bool bounc
   return fmt::format("{}{}-{:03}", head, columns.is_gloss(column) ? "gloss" : "flake", (column - 1) / 2);
 }
 
-std::string class_name(int group) {
-  return fmt::format("bounced-class-{:03}", group);
+// The part of the group that has this class.
+std::string class_name(std::size_t k) {
+  return fmt::format("bounced-class-{:03}", k / PaintGroups::kKinds);
 }
 
 // The change of the gray paint of a column by rounding to halves, the 95th percentile.
-double half_error(const LobeTransport& t, const image::Image& image, std::size_t column) {
+double half_error(const LobeTransport& t, std::size_t column, const std::vector<float>& column_light) {
   std::vector<double> errors;
   const double weight = nominal_weight(t.columns, column);
   for (std::size_t i = 0; i < t.places.size(); i += 7) {
-    const float* rgb = &image.data[3 * static_cast<std::size_t>(t.places[i])];
-    const color::Rgb light{rgb[0], rgb[1], rgb[2]};
-    color::Rgb rounded;
-    for (int c = 0; c < 3; ++c) rounded[c] = Imath::half(rgb[c]);
-    color::Rgb base;
+    const auto at = t.at(i, column);
+    if (!at) continue;
+    color::Rgb light, rounded, base;
+    for (int c = 0; c < 3; ++c) {
+      light[c] = column_light[*at + static_cast<std::size_t>(c)] / t.white_luminance;
+      rounded[c] = Imath::half(static_cast<float>(light[c]));
+    }
     if (t.columns.is_gloss(column))
       base = (kNominalGray / kPi / t.white_luminance) * t.light(i, LobeColumns::diffuse());
     errors.push_back(seen_difference(base + weight * light, base + weight * rounded, 1));
@@ -81,45 +84,56 @@ std::string header_of(const LobeTransport& t) {
   return json_text(header);
 }
 
-// A part of these channels, which stand at every point from `first` of `stride`, relative to the diffuse white.
-image::ImagePart point_part(const LobeTransport& t, std::string name, const std::vector<float>& light,
-                            std::size_t stride, std::size_t first, std::vector<std::string> channels) {
+// A part of the rectangle around these points with their light, R G B each, relative to the diffuse white.
+image::ImagePart point_part(const LobeTransport& t, std::string name, const std::vector<std::uint32_t>& points,
+                            std::span<const std::vector<float>> light, std::vector<std::string> channels) {
   const std::size_t count = channels.size();
-  image::Image image{t.width, t.height, static_cast<int>(count), {}, std::move(channels)};
-  image::ImagePart part{std::move(name), std::move(image), {}, image::PixelType::kHalf};
-  part.image.data.assign(count * static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height), 0.0F);
+  image::ImagePart part{std::move(name), {1, 1, static_cast<int>(count), {}, std::move(channels)}, {}};
+  image::Image& image = part.image;
+  for (const std::uint32_t point : points) {
+    const auto [x, y] = t.pixel(point);
+    if (point == points.front()) part.left = x, part.top = y;
+    const int right = std::max(x, part.left + image.width - 1);
+    part.left = std::min(x, part.left), image.width = right - part.left + 1, image.height = y - part.top + 1;
+  }
+  image.data.assign(count * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height), 0.0F);
   const auto scale = static_cast<float>(1 / t.white_luminance);
-  for (std::size_t i = 0; i < t.places.size(); ++i)
-    for (std::size_t c = 0; c < count; ++c)
-      part.image.data[count * t.places[i] + c] = scale * light[i * stride + first + c];
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto [x, y] = t.pixel(points[i]);
+    float* pixel = image.pixel(x - part.left, y - part.top);
+    for (std::size_t c = 0; c < count; ++c) pixel[c] = scale * light[c / 3][3 * i + c % 3];
+  }
   return part;
 }
 
 image::ImagePart light_part(const LobeTransport& t, std::size_t column, bool bounced, TransportParts& all) {
-  image::ImagePart part = point_part(t, part_name(t.columns, column, bounced), bounced ? t.bounced : t.direct,
-                                     t.floats(), 3 * column, {"R", "G", "B"});
-  part.attributes["goniochrome:column"] = t.columns.name(column);
+  const std::vector<float>& light = (bounced ? t.bounced : t.direct)[column];
+  image::ImagePart part =
+      point_part(t, part_name(t.columns, column, bounced), t.points_of(column), {&light, 1}, {"R", "G", "B"});
+  part.attributes[kColumnAttribute] = t.columns.name(column);
   part.attributes["colorInteropID"] = kColorSpace;
   const bool fits = std::ranges::all_of(part.image.data, [](float value) { return std::abs(value) < 65504; });
-  const double error = fits ? half_error(t, part.image, column) : HUGE_VAL;
+  const double error = fits ? half_error(t, column, light) : HUGE_VAL;
   if (error > kHalfError_de00) {
     part.type = image::PixelType::kFloat;
     ++all.float_parts;
   } else {
     all.half_error_de00 = std::max(all.half_error_de00, error);
   }
-  all.bytes_per_point += part.type == image::PixelType::kFloat ? 12 : 6;
+  all.bytes_per_point += (part.type == image::PixelType::kFloat ? 4.0 : 2.0) * static_cast<double>(light.size());
   return part;
 }
 
-image::ImagePart class_part(const LobeTransport& t, int group, TransportParts& all) {
+image::ImagePart class_part(const LobeTransport& t, std::size_t k, TransportParts& all) {
   std::vector<std::string> channels;
   for (const char* kind : kKindNames)
     for (const char* channel : {"R", "G", "B"}) channels.push_back(fmt::format("{}.{}", kind, channel));
-  const std::size_t count = channels.size();
-  all.bytes_per_point += 2 * static_cast<double>(count);
-  return point_part(t, class_name(group), t.classes, 3 * t.worn.groups.classes(),
-                    static_cast<std::size_t>(group) * count, std::move(channels));
+  const std::vector<std::uint32_t> points = t.points_of(t.columns.mirror());
+  all.bytes_per_point += 2 * static_cast<double>(channels.size() * points.size());
+  image::ImagePart part =
+      point_part(t, class_name(k), points, {&t.classes[k], PaintGroups::kKinds}, std::move(channels));
+  part.attributes[kColumnAttribute] = "class";
+  return part;
 }
 
 // Probe by probe a row: once, then deeper.
@@ -137,26 +151,20 @@ image::ImagePart probe_part(const LobeTransport& t) {
   return part;
 }
 
-}  // namespace
+// Reads into the transport that it is given.
+class Reading {
+ public:
+  Reading(const image::AovFile& file, LobeTransport& t) : file_(file), t_(t) {}
 
-struct TransportReader::State {
-  // Where the channels of a part go: from `first` of `stride` of each point.
-  struct Target {
-    int channels = 0;
-    std::size_t first = 0, stride = 0;
-    std::vector<float>* to = nullptr;
-    bool found = false;
-  };
-
-  Result<void> begin(const image::AovFile& file) {
-    file_ = &file;
-    if (!targets_.empty()) return {};
-    GONIO_TRY(read_header(file.transport));
-    t_.width = file.image.width, t_.height = file.image.height;
-    GONIO_ASSIGN(const int part_channel, file.channel("part"));
+  Result<void> points() {
+    GONIO_TRY(read_header(file_.transport));
+    t_.width = file_.image.width, t_.height = file_.image.height;
+    GONIO_ASSIGN(const int part_channel, file_.channel("part"));
+    const std::size_t pixels = static_cast<std::size_t>(t_.width) * static_cast<std::size_t>(t_.height);
+    t_.places.reserve(pixels), t_.part.reserve(pixels);
     for (int y = 0; y < t_.height; ++y) {
       for (int x = 0; x < t_.width; ++x) {
-        const float part = file.image.pixel(x, y)[part_channel];
+        const float part = file_.image.pixel(x, y)[part_channel];
         if (part == 0) continue;
         t_.places.push_back(static_cast<std::uint32_t>(y * t_.width + x));
         t_.part.push_back(static_cast<int>(part) - 1);
@@ -165,33 +173,32 @@ struct TransportReader::State {
                                    t_.worn.groups.of_part.size()));
       }
     }
-    const std::size_t points = t_.places.size(), classes = t_.worn.groups.classes();
-    t_.direct.assign(points * t_.floats(), 0), t_.bounced.assign(points * t_.floats(), 0);
-    t_.classes.assign(points * classes * 3, 0);
-    for (const bool bounced : {false, true})
-      for (std::size_t k = 0; k < t_.columns.count() && (!bounced || t_.bounces > 0); ++k)
-        targets_[part_name(t_.columns, k, bounced)] = {3, 3 * k, t_.floats(), bounced ? &t_.bounced : &t_.direct};
-    for (int group = 0; group < t_.worn.groups.count && t_.bounces > 0; ++group)
-      targets_[class_name(group)] = {9, 9 * static_cast<std::size_t>(group), 3 * classes, &t_.classes};
+    for (BounceProbe& probe : t_.probes) {
+      const auto found = std::ranges::lower_bound(t_.places, probe.point);
+      if (found == t_.places.end() || *found != probe.point) return wrong("a probe stands beside the mesh");
+      probe.point = static_cast<std::uint32_t>(found - t_.places.begin());
+    }
     return {};
   }
 
-  Result<void> add(const image::ImagePart& part) {
-    if (part.name == kProbesName) return read_probes(part);
-    const auto target = targets_.find(part.name);
-    return target != targets_.end() ? read_light(part, target->second) : Result<void>{};
-  }
-
-  Result<LobeTransport> finish() {
-    for (const auto& [name, target] : targets_)
-      if (!target.found) return wrong(fmt::format("it lacks the part {}", name));
-    if (t_.probes.size() != probe_places_.size()) return wrong(fmt::format("it lacks the part {}", kProbesName));
-    return std::move(t_);
+  Result<void> light(const std::vector<bool>& wanted) {
+    t_.make_room(wanted);
+    const std::vector<std::uint32_t> all = t_.points_of(LobeColumns::diffuse()),
+                                     some = t_.points_of(t_.columns.mirror());
+    for (const bool bounced : {false, true})
+      for (std::size_t k = 0; k < t_.columns.count(); ++k) {
+        std::vector<float>& to = (bounced ? t_.bounced : t_.direct)[k];
+        if (to.empty()) continue;
+        GONIO_TRY(read_light(part_name(t_.columns, k, bounced), k == LobeColumns::diffuse() ? all : some, {&to, 1}));
+      }
+    for (std::size_t k = 0; k < t_.classes.size(); k += PaintGroups::kKinds)
+      GONIO_TRY(read_light(class_name(k), some, {&t_.classes[k], PaintGroups::kKinds}));
+    return t_.probes.empty() ? Result<void>{} : read_probes();
   }
 
  private:
   Error wrong(const std::string& what) const {
-    return input_error("{}: its transport is damaged: {}: {}", file_->path, what, kRemedy);
+    return input_error("{}: its transport is damaged: {}: {}", file_.path, what, kRemedy);
   }
 
   Result<void> read_header(const std::string& text) {
@@ -199,12 +206,12 @@ struct TransportReader::State {
     if (!header.is_object()) return wrong(fmt::format("the attribute {} is no JSON object", kTransportAttribute));
     try {
       const int version = header.at("version").get<int>();
-      if (version != kVersion && version != kVersionWithoutCoats)
-        return input_error("{}: its transport is of version {}, and this program reads {} and {}: {}", file_->path,
-                           version, kVersionWithoutCoats, kVersion, kRemedy);
+      if (version != kVersion)
+        return input_error("{}: its transport is of version {}, and this program reads {}: {}", file_.path, version,
+                           kVersion, kRemedy);
       t_.columns.exponents = header.at("exponents").get<std::vector<double>>();
       t_.bounces = header.at("bounces").get<int>();
-      t_.samples = header.value("samples", 1);
+      t_.samples = header.at("samples").get<int>();
       t_.unit = header.at("white_luminance").get<double>();
       t_.probed = header.at("probed").get<int>();
       t_.worn.groups.of_part = header.at("group_of_part").get<std::vector<int>>();
@@ -220,9 +227,8 @@ struct TransportReader::State {
             {radiance.at(0).get<double>(), radiance.at(1).get<double>(), radiance.at(2).get<double>()});
       for (const Json& alpha : header.at("brushed"))
         t_.worn.brushed.push_back({alpha.at(0).get<double>(), alpha.at(1).get<double>()});
-      t_.worn.coats.assign(t_.worn.groups.of_part.size(), paint::kNoCoat);
-      if (version == kVersion) t_.worn.coats = header.at("coats").get<std::vector<double>>();
-      probe_places_ = header.at("probes").get<std::vector<std::uint32_t>>();
+      t_.worn.coats = header.at("coats").get<std::vector<double>>();
+      for (const Json& place : header.at("probes")) t_.probes.push_back({place.get<std::uint32_t>(), {}, {}});
     } catch (const std::exception& e) {
       return wrong(fmt::format("the attribute {}: {}", kTransportAttribute, e.what()));
     }
@@ -250,83 +256,75 @@ struct TransportReader::State {
     return t_.worn.weights[static_cast<std::size_t>(group)] == laid;
   }
 
-  Result<void> read_light(const image::ImagePart& part, Target& target) const {
-    const image::Image& image = part.image;
-    if (image.width != t_.width || image.height != t_.height || image.channels != target.channels)
-      return wrong(fmt::format("its part {} has {} x {} pixels of {} channels, and the picture has {} x {} of {}",
-                               part.name, image.width, image.height, image.channels, t_.width, t_.height,
-                               target.channels));
-    if (const std::string id = image::text_attribute(part, "colorInteropID"); !id.empty() && id != kColorSpace)
-      return wrong(fmt::format("colorInteropID of its part {} is \"{}\", not \"{}\"", part.name, id, kColorSpace));
-    const auto channels = static_cast<std::size_t>(target.channels);
+  Result<void> read_part(const std::string& name) {
+    GONIO_ASSIGN(const bool found, file_.layer ? file_.layer(name, part_) : Result<bool>(false));
+    return found ? Result<void>{} : wrong(fmt::format("it lacks the part {}", name));
+  }
+
+  // Reads the light of these points, R G B each.
+  Result<void> read_light(const std::string& name, const std::vector<std::uint32_t>& points,
+                          std::span<std::vector<float>> to) {
+    const std::size_t channels = 3 * to.size();
+    GONIO_TRY(read_part(name));
+    const image::Image& image = part_.image;
+    const int left = part_.left, top = part_.top, right = left + image.width, bottom = top + image.height;
+    if (left < 0 || top < 0 || right > t_.width || bottom > t_.height || image.channels != static_cast<int>(channels))
+      return wrong(
+          fmt::format("its part {} has {} x {} pixels from {},{} on, of {} channels, and the picture has {} x {} "
+                      "of {}",
+                      name, image.width, image.height, left, top, image.channels, t_.width, t_.height, channels));
+    if (const std::string id = image::text_attribute(part_, "colorInteropID"); !id.empty() && id != kColorSpace)
+      return wrong(fmt::format("colorInteropID of its part {} is \"{}\", not \"{}\"", name, id, kColorSpace));
     std::vector<std::size_t> from(channels);
     for (std::size_t c = 0; c < channels; ++c) {
       const std::string color(1, "RGB"[c % 3]), wanted = channels == 3 ? color : kKindNames[c / 3] + ("." + color);
       const auto found = std::ranges::find(image.channel_names, wanted);
       if (found == image.channel_names.end())
-        return wrong(fmt::format("its part {} lacks the channel {}", part.name, wanted));
+        return wrong(fmt::format("its part {} lacks the channel {}", name, wanted));
       from[c] = static_cast<std::size_t>(found - image.channel_names.begin());
     }
-    std::atomic<std::size_t> worst = t_.places.size();  // a point with a value that is not finite
-    parallel_for(t_.places.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const float* pixel = &image.data[channels * t_.places[i]];
-        float* to = &(*target.to)[i * target.stride + target.first];
-        for (std::size_t c = 0; c < channels; ++c) {
-          const float value = pixel[from[c]];
-          if (!std::isfinite(value)) worst = i;
-          if (value != 0) to[c] = value;  // most of a floor's light is 0, and its memory need not be touched
-        }
+    std::atomic<std::size_t> worst = points.size();  // a point without a finite value
+    parallel_each(points.size(), kPointsAtOnce, [&](std::size_t i) {
+      const auto [x, y] = t_.pixel(points[i]);
+      if (x < left || x >= right || y < top || y >= bottom) {
+        worst = i;
+        return;
+      }
+      const float* values = image.pixel(x - left, y - top);
+      for (std::size_t c = 0; c < channels; ++c) {
+        to[c / 3][3 * i + c % 3] = values[from[c]];
+        if (!std::isfinite(values[from[c]])) worst = i;
       }
     });
-    if (const std::size_t i = worst; i < t_.places.size())
-      return wrong(fmt::format("its part {} has a value at pixel {},{} that is not finite", part.name,
-                               t_.places[i] % static_cast<std::uint32_t>(t_.width),
-                               t_.places[i] / static_cast<std::uint32_t>(t_.width)));
-    target.found = true;
+    if (const std::size_t i = worst; i < points.size()) {
+      const auto [x, y] = t_.pixel(points[i]);
+      return wrong(fmt::format("its part {} has no finite value at pixel {},{}", name, x, y));
+    }
     return {};
   }
 
-  Result<void> read_probes(const image::ImagePart& part) {
+  Result<void> read_probes() {
+    GONIO_TRY(read_part(kProbesName));
     const std::size_t floats =
         3 * static_cast<std::size_t>(t_.worn.groups.count) * t_.columns.count() * t_.columns.count();
-    if (part.image.data.size() != 2 * floats * probe_places_.size() ||
-        t_.probed < static_cast<int>(probe_places_.size()))
-      return wrong(fmt::format("its part {} has {} values and not {}", kProbesName, part.image.data.size(),
-                               2 * floats * probe_places_.size()));
-    const float* from = part.image.data.data();
-    for (const std::uint32_t place : probe_places_) {
-      const auto found = std::ranges::lower_bound(t_.places, place);
-      if (found == t_.places.end() || *found != place) return wrong("a probe stands beside the mesh");
-      BounceProbe probe{static_cast<std::uint32_t>(found - t_.places.begin()), {}, {}};
+    if (part_.image.data.size() != 2 * floats * t_.probes.size() || t_.probed < static_cast<int>(t_.probes.size()))
+      return wrong(fmt::format("its part {} has {} values and not {}", kProbesName, part_.image.data.size(),
+                               2 * floats * t_.probes.size()));
+    const float* from = part_.image.data.data();
+    for (BounceProbe& probe : t_.probes) {
       probe.once.assign(from, from + floats), probe.deeper.assign(from + floats, from + 2 * floats);
       from += 2 * floats;
-      t_.probes.push_back(std::move(probe));
     }
     return {};
   }
 
   static constexpr std::size_t kPointsAtOnce = 8192;
-  const image::AovFile* file_ = nullptr;
-  LobeTransport t_;
-  std::vector<std::uint32_t> probe_places_;
-  std::map<std::string, Target> targets_;  // by the parts' names
+  const image::AovFile& file_;
+  LobeTransport& t_;
+  image::ImagePart part_;  // read last
 };
 
-TransportReader::TransportReader() : state_(std::make_unique<State>()) {}
-TransportReader::~TransportReader() = default;
-
-Result<void> TransportReader::add(const image::AovFile& file, const image::ImagePart& layer) {
-  GONIO_TRY(state_->begin(file));
-  return state_->add(layer);
-}
-
-Result<std::optional<LobeTransport>> TransportReader::finish(const image::AovFile& file) {
-  if (file.transport.empty()) return std::optional<LobeTransport>();
-  GONIO_TRY(state_->begin(file));
-  GONIO_ASSIGN(LobeTransport transport, state_->finish());
-  return std::optional<LobeTransport>(std::move(transport));
-}
+}  // namespace
 
 TransportParts transport_parts(const LobeTransport& t) {
   TransportParts all;
@@ -334,16 +332,27 @@ TransportParts transport_parts(const LobeTransport& t) {
   for (const bool bounced : {false, true})
     for (std::size_t k = 0; k < t.columns.count() && (!bounced || t.bounces > 0); ++k)
       all.parts.push_back(light_part(t, k, bounced, all));
-  for (int group = 0; group < t.worn.groups.count && t.bounces > 0; ++group)
-    all.parts.push_back(class_part(t, group, all));
+  for (std::size_t k = 0; k < t.classes.size(); k += PaintGroups::kKinds) all.parts.push_back(class_part(t, k, all));
+  all.bytes_per_point /= std::max<double>(1, static_cast<double>(t.places.size()));
   if (!t.probes.empty()) all.parts.push_back(probe_part(t));
   return all;
 }
 
+Result<std::optional<LobeTransport>> transport_points(const image::AovFile& file) {
+  if (file.transport.empty()) return std::optional<LobeTransport>();
+  LobeTransport t;
+  GONIO_TRY(Reading(file, t).points());
+  return std::optional(std::move(t));
+}
+
+Result<void> read_light(const image::AovFile& file, const std::vector<bool>& wanted, LobeTransport& t) {
+  return Reading(file, t).light(wanted);
+}
+
 Result<std::optional<LobeTransport>> transport_of(const image::AovFile& file) {
-  TransportReader reader;
-  for (const image::ImagePart& layer : file.layers) GONIO_TRY(reader.add(file, layer));
-  return reader.finish(file);
+  GONIO_ASSIGN(auto transport, transport_points(file));
+  if (transport) GONIO_TRY(read_light(file, {}, *transport));
+  return transport;
 }
 
 }  // namespace goniochrome::render

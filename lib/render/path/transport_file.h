@@ -1,7 +1,6 @@
 // Transports in the EXR of a picture, beside its buffers. goniochrome-paint(5), "TRANSPORTS".
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -27,22 +26,13 @@ inline constexpr const char* kTransportAttribute = "goniochrome:transport";
 // Light is kept relative to the diffuse white of the scene.
 TransportParts transport_parts(const LobeTransport& transport);
 
-// Reads the transport of a file part by part. Errors: the part or the number that is missing or wrong.
-class TransportReader {
- public:
-  TransportReader();
-  ~TransportReader();
-  // The next part of the transport; the file has its picture, the buffer `part` and its header.
-  Result<void> add(const image::AovFile& file, const image::ImagePart& layer);
-  // The transport once all parts were added, or nothing where the file has none.
-  Result<std::optional<LobeTransport>> finish(const image::AovFile& file);
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
-
-// The transport of a file that was read with its layers.
+// The points of a transport and all that the header tells, without light; nothing where the file has none. The file has
+// its buffer `part`. Error: the number that is missing or wrong.
+Result<std::optional<LobeTransport>> transport_points(const image::AovFile& file);
+// Reads the light of these points in the diffuse column and those wanted; without a list, in all. Error: the part that
+// is missing or wrong.
+Result<void> read_light(const image::AovFile& file, const std::vector<bool>& wanted, LobeTransport& points);
+// Both, with all columns.
 Result<std::optional<LobeTransport>> transport_of(const image::AovFile& file);
 
 }  // namespace goniochrome::render

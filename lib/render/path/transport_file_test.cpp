@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 
+#include "image/exr.h"
 #include "render/internal/seen.h"
+#include "render/path/shown_paints.h"
 #include "render/path/transport_shading.h"
 #include "render/path/transport_stage_for_test.h"
 
@@ -16,11 +19,42 @@ using namespace transport_stage;
 
 constexpr double kWhite = 2.5;  // luminance, so that units show
 
+// A file whose parts can be damaged, and the names of those that were read.
+struct Parts {
+  image::AovFile file;
+  std::vector<image::ImagePart> layers;
+  std::vector<std::string> read = {};
+
+  void serve() {
+    file.layer = [this](const std::string& name, image::ImagePart& part) -> Result<bool> {
+      const auto found = std::ranges::find(layers, name, &image::ImagePart::name);
+      if (found == layers.end()) return false;
+      read.push_back(name), part = *found;
+      return true;
+    };
+  }
+  image::ImagePart& layer(const std::string& name) { return *std::ranges::find(layers, name, &image::ImagePart::name); }
+};
+
 struct Kept {
   paint::LobeFit cup, ball;
   TracedLobes traced;
   image::AovFile file;
+  Parts parts;
 };
+
+std::string written(const LobeTransport& t, const std::string& name) {
+  TransportParts parts = transport_parts(t);
+  std::string path = ::testing::TempDir() + name;
+  std::vector<float> pixels(static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height), 0.0F);
+  for (std::size_t i = 0; i < t.places.size(); ++i) pixels[t.places[i]] = static_cast<float>(t.part[i] + 1);
+  std::vector<image::ImagePart> all = {
+      {"picture", {t.width, t.height, 1, pixels, {"part"}}, {}, image::PixelType::kFloat}};
+  all.front().attributes[kTransportAttribute] = parts.header;
+  all.insert(all.end(), parts.parts.begin(), parts.parts.end());
+  EXPECT_TRUE(image::write_exr(path, all).ok());
+  return path;
+}
 
 // The file as it comes back from a disk: parts in halves are rounded.
 const Kept& kept() {
@@ -35,17 +69,9 @@ const Kept& kept() {
     request.probes = 16;
     request.pixel_samples = 4;
     k.traced = stage.traced(request);
-    TransportParts parts = transport_parts(k.traced.transport);
-    const std::string path = ::testing::TempDir() + "transport_file_test.exr";
-    image::ImagePart picture{
-        "picture", {20, 15, 1, std::vector<float>(300, 0.0F), {"part"}}, {}, image::PixelType::kFloat};
-    for (std::size_t i = 0; i < k.traced.transport.places.size(); ++i)
-      picture.image.data[k.traced.transport.places[i]] = static_cast<float>(k.traced.transport.part[i] + 1);
-    picture.attributes[kTransportAttribute] = parts.header;
-    std::vector<image::ImagePart> all = {picture};
-    all.insert(all.end(), parts.parts.begin(), parts.parts.end());
-    EXPECT_TRUE(image::write_exr(path, all).ok());
+    const std::string path = written(k.traced.transport, "transport_file_test.exr");
     k.file = *image::read_aov_file(path);
+    k.parts = {k.file, *image::read_exr(path)};
     return k;
   }();
   return made;
@@ -125,43 +151,55 @@ TEST(TransportFile, OfPaintsThatWereWornNeedsNoScaling) {
 
 // Each damage is told in one sentence that names the part or the number.
 TEST(TransportFile, DamagedIsRefusedByName) {
-  const auto refused = [](const std::function<void(image::AovFile&)>& damage) {
-    image::AovFile file = kept().file;
-    damage(file);
-    const auto read = transport_of(file);
+  const auto refused_parts = [](const std::function<void(Parts&)>& damage) {
+    Parts parts = kept().parts;
+    damage(parts);
+    parts.serve();
+    const auto read = transport_of(parts.file);
     return read.ok() ? std::string("read") : read.error().message;
   };
-  const auto layer = [](image::AovFile& file, const char* name) {
-    return std::ranges::find(file.layers, name, &image::ImagePart::name);
+  const auto refused = [&](const std::function<void(image::AovFile&)>& damage) {
+    return refused_parts([&](Parts& parts) { damage(parts.file); });
   };
-  EXPECT_NE(refused([&](auto& file) {
-              file.layers.erase(layer(file, "direct-flake-001"));
+  EXPECT_NE(refused_parts([](auto& parts) {
+              parts.layer("direct-flake-001").name = "other";
             }).find("it lacks the part direct-flake-001: render it again with --aov transport"),
             std::string::npos);
-  EXPECT_NE(refused([&](auto& file) { file.layers.erase(layer(file, "bounced-mirror")); }).find("bounced-mirror"),
+  EXPECT_NE(refused_parts([](auto& parts) { parts.layer("bounced-mirror").name = "other"; }).find("bounced-mirror"),
             std::string::npos);
-  EXPECT_NE(refused([&](auto& file) { layer(file, "direct-mirror")->image.width = 10; }).find("10 x 15 pixels"),
+  EXPECT_NE(refused_parts([](auto& parts) { parts.layer("direct-mirror").left = 19; }).find("pixels from 19,"),
             std::string::npos);
-  EXPECT_NE(refused([&](auto& file) { layer(file, "bounced-probes")->image.data.pop_back(); }).find("bounced-probes"),
+  EXPECT_NE(refused_parts([](auto& parts) { parts.layer("direct-mirror").top = -1; }).find(",-1 on, of 3 channels"),
             std::string::npos);
-  EXPECT_NE(refused([&](auto& file) {
-              layer(file, "bounced-class-000")->image.channel_names[0] = "X";
+  EXPECT_NE(refused_parts([](auto& parts) {
+              parts.layer("direct-mirror").image.height = 3;
+            }).find("its part direct-mirror has no finite value at pixel "),
+            std::string::npos);
+  EXPECT_NE(refused_parts([](auto& parts) {
+              std::ranges::fill(parts.layer("bounced-class-000").image.data, HUGE_VALF);
+            }).find("its part bounced-class-000 has no finite value at pixel "),
+            std::string::npos);
+  EXPECT_NE(
+      refused_parts([](auto& parts) { parts.layer("bounced-probes").image.data.pop_back(); }).find("bounced-probes"),
+      std::string::npos);
+  EXPECT_NE(refused_parts([](auto& parts) {
+              parts.layer("bounced-class-000").image.channel_names[0] = "X";
             }).find("bounced-class-000 lacks the channel"),
             std::string::npos);
   // Other channels, and colors that a program has converted, were taken for red, green and blue of Rec.2020.
-  EXPECT_NE(refused([&](auto& file) {
-              layer(file, "direct-mirror")->image.channel_names[2] = "Z";
+  EXPECT_NE(refused_parts([](auto& parts) {
+              parts.layer("direct-mirror").image.channel_names[2] = "Z";
             }).find("direct-mirror lacks the channel B"),
             std::string::npos);
-  EXPECT_NE(refused([&](auto& file) {
-              layer(file, "bounced-mirror")->attributes["colorInteropID"] = "lin_rec709_scene";
+  EXPECT_NE(refused_parts([](auto& parts) {
+              parts.layer("bounced-mirror").attributes["colorInteropID"] = "lin_rec709_scene";
             }).find("colorInteropID of its part bounced-mirror is \"lin_rec709_scene\", not \"lin_rec2020_scene\""),
             std::string::npos);
   EXPECT_NE(refused([](auto& file) { file.transport.resize(file.transport.size() / 2); }).find("no JSON object"),
             std::string::npos);
   EXPECT_NE(refused([](auto& file) {
-              file.transport = R"({"version":3})";
-            }).find("its transport is of version 3, and this program reads 1 and 2"),
+              file.transport = R"({"version":2})";
+            }).find("its transport is of version 2, and this program reads 3: render it again with --aov transport"),
             std::string::npos);
   EXPECT_NE(refused([](auto& file) {
               file.image.data[std::ranges::find(file.image.data, 6.0F) - file.image.data.begin()] = 9;
@@ -180,14 +218,85 @@ TEST(TransportFile, DamagedIsRefusedByName) {
   EXPECT_EQ(refused([](auto&) {}), "read");
 }
 
-// Files that were written before a transport told its samples hold the light of the pixel centers.
-TEST(TransportFile, WithoutASampleCountIsThatOfTheCenters) {
-  image::AovFile file = kept().file;
-  const std::string told = "\"samples\":4,";
-  file.transport.erase(file.transport.find(told), told.size());
-  const auto read = transport_of(file);
-  ASSERT_TRUE(read.ok()) << read.error().message;
-  EXPECT_EQ((*read)->samples, 1);
+// A paint without some lobes shows the same without their light, and it is not read.
+TEST(TransportFile, ReadsNoMoreThanPaintsWeigh) {
+  Parts parts = kept().parts;
+  parts.serve();
+  paint::LobeFit few = kept().cup;
+  few.lobes = {few.lobes[1], few.lobes.back()};
+  few.lobes[0].gloss = {};
+  const std::vector<PartPaint> worn(6, {&few, {}, 45, "", ""});
+  const LobeTransport all = **transport_of(parts.file);
+  const ShownPaints shown = *shown_paints(all.columns, all.worn, worn);
+  parts.read.clear();
+  LobeTransport some = **transport_points(parts.file);
+  ASSERT_TRUE(read_light(parts.file, weighed_columns(shown), some).ok());
+  std::vector<std::string> expected;
+  for (const char* kind : {"direct-", "bounced-"})
+    for (const char* column : {"diffuse", "flake-001", "mirror"}) expected.push_back(std::string(kind) + column);
+  for (int group = 0; group < all.worn.groups.count; ++group)
+    expected.push_back(fmt::format("bounced-class-{:03}", group));
+  expected.emplace_back("bounced-probes");
+  EXPECT_EQ(parts.read, expected);
+  image::Image pictures[2];
+  double errors[2];
+  for (const bool is_some : {false, true}) {
+    const LobeTransport& t = is_some ? some : all;
+    const BounceScale scale = bounce_scale(t, shown.weights, nullptr);
+    pictures[is_some] = {20, 15, 4, std::vector<float>(1200, 0.0F), {}};
+    TransportShader(t, {}).shade(shown.paints, nullptr, scale, 2, pictures[is_some]);
+    errors[is_some] = scale.error_p95_de00;
+  }
+  EXPECT_EQ(pictures[0].data, pictures[1].data);
+  EXPECT_EQ(errors[0], errors[1]);
+}
+
+// A part of the picture shows a surface, and all around it is a floor that shows the environment.
+TEST(TransportFile, KeepsOneColumnOfAFloorThatShowsTheEnvironment) {
+  LobeTransport t;
+  t.width = 20, t.height = 15, t.bounces = 1, t.columns.exponents = {20}, t.white_luminance = kWhite;
+  const std::size_t columns = t.columns.count();
+  t.worn.groups = {{0, 1}, 2};
+  t.worn.weights.assign(2, std::vector<color::Rgb>(columns));
+  t.worn.weights[0].assign(columns, {0.1, 0.1, 0.1}), t.worn.weights[1][LobeColumns::diffuse()] = {1, 1, 1};
+  t.worn.brushed.resize(1), t.worn.emission.resize(1), t.worn.coats.assign(2, paint::kNoCoat);
+  t.worn.has_floor = t.worn.floor_is_projected = true;
+  for (std::uint32_t place = 0; place < 300; ++place) {
+    const bool is_floor = place % 20 < 4 || place % 20 > 8 || place / 20 < 5 || place / 20 > 11;
+    t.places.push_back(place), t.part.push_back(is_floor ? 1 : 0);
+  }
+  t.make_room();
+  std::mt19937_64 random(5);
+  for (std::vector<float>* of : {&t.direct[0], &t.direct[1], &t.direct[2], &t.direct[3], &t.bounced[0], &t.classes[0]})
+    for (float& value : *of) value = static_cast<float>(random() % 64) / 16;
+  EXPECT_EQ(t.direct[LobeColumns::diffuse()].size(), 3 * 300U);
+  EXPECT_EQ(t.direct[t.columns.mirror()].size(), 3 * 35U);
+  const std::string path = written(t, "transport_file_test_floor.exr");
+  const std::vector<image::ImagePart> parts = *image::read_exr(path);
+  for (const image::ImagePart& part : parts) {
+    const bool whole = part.name == "picture" || part.name.ends_with("-diffuse");
+    EXPECT_EQ((std::array{part.left, part.top, part.image.width, part.image.height}),
+              whole ? (std::array{0, 0, 20, 15}) : (std::array{4, 5, 5, 7}))
+        << part.name;
+  }
+  const LobeTransport read = **transport_of(*image::read_aov_file(path));
+  ASSERT_TRUE(read.worn.floor_is_projected);
+  image::Image picture{20, 15, 4, std::vector<float>(1200, 0.0F), {}};
+  BounceScale scale;
+  for (std::size_t k = 0; k < t.worn.groups.classes(); ++k)
+    scale.of_class.emplace_back(1.0, 1.0, 0.5 * static_cast<double>(k));
+  TransportShader(read, {}).shade({{{0}, {t.worn.weights[0]}}, {{0}, {t.worn.weights[1]}}}, nullptr, scale, 1, picture);
+  for (std::size_t i = 0; i < t.places.size(); ++i) {
+    for (std::size_t k = 0; k < columns; ++k)
+      for (int c = 0; c < 3; ++c) ASSERT_NEAR(read.unit * read.light(i, k)[c], t.light(i, k)[c], 4 * 0x1p-10);
+    const color::Rgb direct = t.light(i, 0, false), bounced = t.light(i, 0) - direct,
+                     factor = bounce_factor(t, i, scale);
+    if (t.part[i] == 1) {
+      EXPECT_EQ(factor.z, 2.5) << "what came through further surfaces";
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(picture.data[4 * i + static_cast<std::size_t>(c)], direct[c] + factor[c] * bounced[c], 0.02);
+    }
+  }
 }
 
 }  // namespace

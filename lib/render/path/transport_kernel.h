@@ -7,23 +7,22 @@
 
 namespace goniochrome::render {
 
-// Points that lie side by side: their light is kept as [column][channel][point], in halves.
-constexpr std::size_t kTransportLanes = 16;
-
-struct TransportBlock {
-  const std::uint16_t* direct = nullptr;
-  const std::uint16_t* bounced = nullptr;  // null: none
-  const std::uint16_t* classes = nullptr;  // [class][channel][point]
+// Points that lie side by side: their light is kept as [point][channel] for each column and each class.
+struct TransportPoints {
+  std::size_t count = 0;
+  const float* const* direct = nullptr;   // by column
+  const float* const* bounced = nullptr;  // by column; null: none
+  const float* const* classes = nullptr;
 };
 
 struct TransportWeights {
   std::size_t columns = 0, classes = 0;
   const float* matrices = nullptr;     // [column][output channel][light channel]
   const std::uint8_t* dark = nullptr;  // of each column: it adds nothing
-  const float* factors = nullptr;      // [class][channel]
+  const float* factors = nullptr;      // of bounced light: [class][channel]; [channel] without classes
 };
 
-// rgb: [channel][point].
-void shade_transport(const TransportBlock& block, const TransportWeights& weights, float* rgb);
+// rgb: [point][channel].
+void shade_transport(const TransportPoints& points, const TransportWeights& weights, float* rgb);
 
 }  // namespace goniochrome::render

@@ -1,7 +1,6 @@
 // Pictures of other paints from a transport, in milliseconds. goniochrome-transport(7), "TRANSPORT".
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "color/reflection.h"
@@ -22,16 +21,15 @@ struct TransportPaint {
 // Error: as column_weights().
 Result<TransportPaint> transport_paint(const LobeColumns& columns, const paint::LobeFit& paint, double gloss_deg);
 
-// The angle of the viewer from the normal at each point, by the buffers that the points were seen in, one for each
-// sample of the pixels.
+// The angle of the viewer from the normal at each point with lobes, else 0, by the buffers that the points were seen
+// in, one for each sample of the pixels.
 std::vector<float> view_angles_deg(const LobeTransport& transport, const std::vector<const Gbuffer*>& samples);
 
-// A transport laid out for shading: points of one part side by side, their light in halves where halves hold it.
+// Shades the columns of a transport that were read; it must outlive the shader.
 class TransportShader {
  public:
   // `view_deg`: of each point, the angle of its viewer from the normal; may be empty where no paint changes with it.
   TransportShader(const LobeTransport& transport, std::vector<float> view_deg);
-  ~TransportShader();
 
   // Writes the radiance of every point, times `gain`, to R G B of its pixel, and 1 to A. `paints` by part.
   // Bit-identical for any number of threads.
@@ -41,8 +39,9 @@ class TransportShader {
   std::size_t bytes() const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  const LobeTransport& light_;
+  std::vector<float> view_deg_;
+  std::vector<std::size_t> columns_;  // that were read, the diffuse one first
 };
 
 }  // namespace goniochrome::render

@@ -48,19 +48,18 @@ Result<ViewPane> ViewPane::make(std::string_view bytes, JsonReader& request) {
     pane.finishes_.push_back(render::trim_of(named, with_mirror));
   }
   GONIO_TRY(request.status());
-  const render::LobeTransport& light = view.light;
+  const render::LobeTransport& light = pane.full_->light = std::move(view.light);
   if (pane.parts_.size() != light.worn.brushed.size())
     return input_error("the view has {} parts, and the mesh {}", light.worn.brushed.size(), pane.parts_.size());
-  pane.probes_ = std::make_unique<const render::LobeTransport>(render::of_probes(light));
-  pane.scaler_.emplace(*pane.probes_, render::operator_or_null(pane.reflection_));
-  pane.full_.picture = view.beside.data.empty() ? blank(light.width, light.height) : std::move(view.beside);
+  pane.scaler_.emplace(light, render::operator_or_null(pane.reflection_));
+  pane.full_->picture = view.beside.data.empty() ? blank(light.width, light.height) : std::move(view.beside);
   const int step = std::max(1, static_cast<int>(std::lround(static_cast<double>(light.width) / kTileWidth)));
-  const render::Thinned few = render::thinned(light, step);
+  render::Thinned few = render::thinned(light, step);
   std::vector<float> few_angles;
   for (const std::uint32_t point : few.points) few_angles.push_back(view.view_deg[point]);
-  pane.small_.picture = thinned_picture(pane.full_.picture, step);
-  pane.small_.shader = std::make_unique<render::TransportShader>(few.light, std::move(few_angles));
-  pane.full_.shader = std::make_unique<render::TransportShader>(light, std::move(view.view_deg));
+  pane.small_->light = std::move(few.light), pane.small_->picture = thinned_picture(pane.full_->picture, step);
+  pane.small_->shader.emplace(pane.small_->light, std::move(few_angles));
+  pane.full_->shader.emplace(light, std::move(view.view_deg));
   return Result(std::move(pane));
 }
 
@@ -72,10 +71,10 @@ Result<Json> ViewPane::show(const paint::Paint& paint, const paint::LobeFit& fit
     else
       parts.push_back({&fit, paint.anisotropy.value_or(paint::Anisotropy{}), gloss_deg, paint.name, parts_[i]});
   }
-  GONIO_ASSIGN(const render::ShownPaints shown, render::shown_paints(probes_->columns, probes_->worn, parts));
+  GONIO_ASSIGN(const render::ShownPaints shown, render::shown_paints(full_->light.columns, full_->light.worn, parts));
   const color::ReflectionOperator* reflection = render::operator_or_null(reflection_);
   const render::BounceScale scale = scaler_->scale(shown.weights);
-  Shaded& shaded = small ? small_ : full_;
+  Shaded& shaded = small ? *small_ : *full_;
   shaded.shader->shade(shown.paints, reflection, scale, 1, shaded.picture);
   is_small_ = small;
   return Json{{"width", shaded.picture.width},
