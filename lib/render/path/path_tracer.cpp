@@ -28,8 +28,8 @@ constexpr double kFoursOfLook = 2;
 // and the last, and at so many where these two differ by more than this part of the tolerance without paths.
 constexpr unsigned kOfOnePiece = 4;
 constexpr double kAlike = 0.2;
-// Where less than this part is left of the light that a point shows without the mesh in the way, the sum of all that is
-// left has less noise than what is taken, and none of the error of maps.
+// Where the mesh takes more than this part of the light that a point shows without it, the sum of all that is left has
+// less noise than what is taken, and none of the error of maps.
 constexpr double kMostlyHidden = 0.5;
 constexpr std::size_t kMostOfPixel = 16;  // samples
 // Points at which the shares of the first round are compared.
@@ -66,7 +66,7 @@ class Picture {
       pace_.end(drawn() - before + (first_round_ ? kFoursOfLook * static_cast<double>(points_.size()) : 0));
       if (first_round_ && base_ != nullptr && request_.options.correction) sum_where_hidden();
       if (first_round_ && request_.stop_de00 > 0) stop_shares();
-      first_round_ = false;  // which no time limit cuts, so that every point is seen
+      first_round_ = false, first_ = {};  // which no time limit cuts, so that every point is seen
       const Stopwatch judging;
       errors = judge();
       judging_s_ = judging.elapsed_s();
@@ -128,18 +128,18 @@ class Picture {
       if (transport_.meets_pane({sample->triangles[place(points_[i])]})) return false;
     const bool even = is_even(i);
     const auto part_of = [this](std::size_t k) { return first_seen_.at(points_[k].x, points_[k].y)[3]; };
-    double base = 0, added = 0;
+    const auto taken_at = [this](std::size_t k) { return -(first_shares(k).direct + first_shares(k).from_floor).y; };
+    double base = 0, taken = 0;
     by_pixel_.visit_around(points_[i].x, points_[i].y, [&](std::size_t k) {
       if (is_unknown(k) || (even && !(is_even(k) && part_of(k) == part_of(i)))) return;
-      base += base_at(points_[k]).y, added += points_[k].radiance.y;
+      base += base_at(points_[k]).y, taken += taken_at(k);
     });
-    const auto is_most_taken = [](double from, double add) { return from + add < kMostlyHidden * from; };
-    return is_most_taken(base, added) || (!even && is_most_taken(base_at(points_[i]).y, points_[i].radiance.y));
+    const auto is_most = [](double part, double of) { return part > kMostlyHidden * of; };
+    return is_most(taken, base) || (!even && is_most(taken_at(i), base_at(points_[i]).y));
   }
 
   // Hidden points begin anew, with samples that did not decide it.
   void sum_where_hidden() {
-    each_point([&](std::size_t i) { show_own(i); });
     std::vector<int> more(points_.size(), 0);
     each_point([&](std::size_t i) { states_[i].hidden = !states_[i].certain && is_hidden(i); });
     each_point([&](std::size_t i) {
@@ -219,7 +219,7 @@ class Picture {
     return states_[i].sampled == kNotSampled ? Halves{} : sampled_[states_[i].sampled].kept;
   }
 
-  bool is_even(std::size_t i) const { return !even_.empty() && even_[place(points_[i])] != 0; }
+  bool is_even(std::size_t i) const { return count_ == 1 || (!even_.empty() && even_[place(points_[i])] != 0); }
   std::size_t place(const PathPoint& point) const { return place(point.x, point.y); }
   std::size_t place(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(first_seen_.width) + static_cast<std::size_t>(x);
@@ -234,7 +234,7 @@ class Picture {
       if (more[i] > 0 && states_[i].sampled == kNotSampled) states_[i].sampled = count++;
     }
     sampled_.resize(count);
-    if (first_round_ && request_.stop_de00 > 0) first_.resize(count);
+    if (first_round_) first_.resize(count);
     draw_round(wanted, is_needed ? nullptr : &deadline_, [&](std::size_t i) { sample(i, more[i]); });
   }
 
@@ -292,7 +292,6 @@ class Picture {
     }
     found_ = found_shares(own, smooth, request_.stop_de00, request_.white_luminance);
     if (found_.stopped != 0) draw_without(found_.stopped);
-    first_ = {};
   }
 
   // The result of the first round stays for these shares.
@@ -584,7 +583,7 @@ class Picture {
   std::vector<Sampled> sampled_;
   unsigned drawn_ = kAllShares;  // the shares that are drawn on
   FoundShares found_;
-  std::vector<std::array<LightShares, Round::kSequences>> first_;  // of those sampled first; empty: not kept
+  std::vector<std::array<LightShares, Round::kSequences>> first_;  // of those sampled first; empty later
   const double beside_ = percentile_95(request_.beside_de00);      // of the errors that are no noise
   int left_ = 0;                                                   // the least x of a point
   std::vector<ShownPoint> shown_;                                  // by the points; empty: nothing is reconstructed

@@ -58,8 +58,8 @@ struct WeightSet {
   std::vector<std::uint8_t> dark;
 };
 
-// Where the light of points lies that are side by side in all columns.
-struct Lying {
+// Where the light of a run of points begins in each column and class.
+struct RunLight {
   std::vector<const float*> direct, bounced, classes;
 };
 
@@ -89,17 +89,17 @@ class Shading {
   }
 
   // Points of one part, at most kMostAtOnce.
-  void shade(std::size_t first, std::size_t count, Lying& lying, image::Image& rgba) const {
+  void shade(std::size_t first, std::size_t count, RunLight& run, image::Image& rgba) const {
     const auto part = static_cast<std::size_t>(t_.part[first]);
     const bool has_lobes = t_.has_lobes(first);
-    lie(first, has_lobes ? columns_.size() : 1, lying);
-    const TransportPoints points{count, lying.direct.data(), t_.bounces > 0 ? lying.bounced.data() : nullptr,
-                                 lying.classes.data()};
+    find_light(first, has_lobes ? columns_.size() : 1, run);
+    const TransportPoints points{count, run.direct.data(), t_.bounces > 0 ? run.bounced.data() : nullptr,
+                                 run.classes.data()};
     const std::size_t classes = has_lobes ? t_.classes.size() : 0;
     const float* factors = factors_.data() + (has_lobes ? 0 : 3 * t_.worn.floor_class());
     float rgb[3 * kMostAtOnce], mixed[3 * kMostAtOnce];
     const auto shaded = [&](const WeightSet& set, float* to) {
-      shade_transport(points, {lying.direct.size(), classes, set.matrices.data(), set.dark.data(), factors}, to);
+      shade_transport(points, {run.direct.size(), classes, set.matrices.data(), set.dark.data(), factors}, to);
     };
     const std::vector<double>& views = paints_[part].view_deg;
     if (views.size() == 1) {
@@ -131,15 +131,15 @@ class Shading {
   }
 
  private:
-  void lie(std::size_t first, std::size_t columns, Lying& lying) const {
-    lying.direct.clear(), lying.bounced.clear(), lying.classes.clear();
+  void find_light(std::size_t first, std::size_t columns, RunLight& run) const {
+    run.direct.clear(), run.bounced.clear(), run.classes.clear();
     for (std::size_t k = 0; k < columns; ++k) {
       const std::size_t column = columns_[k], at = *t_.at(first, column);
-      lying.direct.push_back(t_.direct[column].data() + at);
-      if (t_.bounces > 0) lying.bounced.push_back(t_.bounced[column].data() + at);
+      run.direct.push_back(t_.direct[column].data() + at);
+      if (t_.bounces > 0) run.bounced.push_back(t_.bounced[column].data() + at);
     }
     for (const std::vector<float>& light : t_.classes)
-      lying.classes.push_back(light.data() + std::size_t{3} * t_.with_lobes[first]);
+      run.classes.push_back(light.data() + std::size_t{3} * t_.with_lobes[first]);
   }
 
   // Adds what `shade` brings to `mixed`, times the factor of each point. Without one that is not 0, nothing is shaded.
@@ -184,10 +184,10 @@ void TransportShader::shade(const std::vector<TransportPaint>& paints, const col
   constexpr std::size_t kChunk = 8192;
   const Shading shading(light_, view_deg_, columns_, paints, reflection, scale, gain);
   parallel_for(light_.places.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-    Lying lying;
+    RunLight run;
     for (std::size_t first = begin, next = begin; first < end; first = next) {
       while (next < std::min(end, first + kMostAtOnce) && light_.part[next] == light_.part[first]) ++next;
-      shading.shade(first, next - first, lying, rgba);
+      shading.shade(first, next - first, run, rgba);
     }
   });
 }
