@@ -95,7 +95,7 @@ needs_browser() {
     white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' page.html |
       jq ".environments[] | select(.name == \"$light\").white")
     render-osmesa -q --trim --mesh "$TESTDATA/speed-shape.obj" -p "fitted.xml#candy_red" --env "$light.env.exr" \
-      --background env --floor shadow --size 640x360 --samples 1 --aov mask --tolerance 2 -o "ground-$light.exr"
+      --background env --floor shadow --size 640x360 --samples 1 --aov mask --tolerance 0.5 -o "ground-$light.exr"
     run /usr/bin/python3 "$code/compare.py" "candy_red-$light.f32" "ground-$light.exr" "$white" beside
     echo "$light: mean p95 largest pixels median: $output"
     awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[4] > 100000 && n[5] <= 0.1) }'
