@@ -58,7 +58,8 @@ class Picture {
   PathPicture draw() {
     std::vector<int> more = first_fours();
     Errors errors;
-    bool reached = false, mended = false;
+    bool reached = false;
+    int mended = 0;  // times
     while (true) {
       const double before = drawn();
       pace_.start();
@@ -76,7 +77,7 @@ class Picture {
       if (deadline_.passed()) break;
       bool goes_on = !ended && plan(errors, more);
       if (ended) std::ranges::fill(more, 0);
-      if (!mended && (ended || goes_on)) goes_on |= add_worst(more), mended = true;
+      if (mended == 0 ? ended || goes_on : mended == 1 && ended) goes_on |= add_worst(more, mended++ > 0);
       if (!goes_on || !cut(pace_.left(judging_s_), more)) break;
     }
     PathPicture picture;
@@ -134,8 +135,7 @@ class Picture {
       if (is_unknown(k) || (even && !(is_even(k) && part_of(k) == part_of(i)))) return;
       base += base_at(points_[k]).y, taken += taken_at(k);
     });
-    const auto is_most = [](double part, double of) { return part > kMostlyHidden * of; };
-    return is_most(taken, base) || (!even && is_most(taken_at(i), base_at(points_[i]).y));
+    return taken > kMostlyHidden * base || (!even && taken_at(i) > kMostlyHidden * base_at(points_[i]).y);
   }
 
   // Hidden points begin anew, with samples that did not decide it.
@@ -197,7 +197,7 @@ class Picture {
     color::Rgb deterministic;  // what is known without samples of the light to be added to the base
     double needed = 0;         // fours that bring the noise of the neighborhood to the tolerance
     std::uint32_t sampled = kNotSampled;
-    bool certain = false;
+    bool certain = false, spike = false;
     bool all_shares = false;      // Its first samples differ too much for any share to stop.
     bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
     std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
@@ -455,6 +455,7 @@ class Picture {
       const bool certain = states_[i].certain && sums(i).fours() == 0;
       points_[i].radiance = states_[i].deterministic + (certain ? halves[i][0] : found.light[i]);
       points_[i].noise_de00 = certain ? 0 : found.error_de00[i];
+      states_[i].spike = found.spike_de00[i] > kBlotch * tolerance();
       states_[i].needed =
           certain ? 0 : needed_samples(counted(i), points_[i].noise_de00, found.spike_de00[i], tolerance());
     });
@@ -536,14 +537,14 @@ class Picture {
 
   // A picture that is within its tolerance at 95 of 100 points may have specks at the others, most of them at edges,
   // which no neighbor tells. They get more in one round, which takes no more than a part of all samples for them.
-  // Returns true if there are any.
-  bool add_worst(std::vector<int>& more) const {
+  // Spikes of the last rounds get more at the end. Returns true if there are any.
+  bool add_worst(std::vector<int>& more, bool spikes_alone) const {
     if (!request_.reconstruct) return false;
     const double limit = request_.most_samples / kOfFour;
     std::vector<int> worst(more.size());
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const double n = counted(i), wanted = std::min(states_[i].needed / (kSpeck * kSpeck), limit) - n;
-      worst[i] = static_cast<int>(std::clamp(wanted, 0.0, kMostOfSpeck * n));
+      if (states_[i].spike || !spikes_alone) worst[i] = static_cast<int>(std::clamp(wanted, 0.0, kMostOfSpeck * n));
     }
     const bool any = std::ranges::any_of(worst, [](int fours) { return fours > 0; });
     if (!any || !cut(kSpecksShare * std::max(drawn(), static_cast<double>(points_.size())), worst)) return false;

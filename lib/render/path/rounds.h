@@ -111,11 +111,11 @@ inline double smoothed_variance(double own, double freedom, double around, int n
 
 // An error of so many tolerances is a speck. Its point gets at most so many times its samples.
 constexpr double kSpeck = 2, kMostOfSpeck = 15;
-// The samples that bring the error of a reconstructed point to the tolerance, of which it has so many. An error of its
-// own samples of kBlotch tolerances is seen once filters spread it: a disc of 25 pixels on a hood went with 10, and a
-// fourth of its light stayed with 30.
+// An error of the own samples of a point of so many tolerances is seen once filters spread it: a disc of 25 pixels on a
+// hood went with 10, and a fourth of its light stayed with 30.
+constexpr double kBlotch = 10;
+// The samples that bring the error of a reconstructed point to the tolerance, of which it has so many.
 inline double needed_samples(double has, double error_de00, double spike_de00, double tolerance_de00) {
-  constexpr double kBlotch = 10;
   const double excess = kDeviations * error_de00 / tolerance_de00;
   const double speck = spike_de00 > kBlotch * tolerance_de00 ? kSpeck * kSpeck * (1 + kMostOfSpeck) : 0;
   return has * std::max(excess * excess, speck);
