@@ -58,11 +58,10 @@ void add_channels(image::Image& picture, const std::vector<std::string>& names, 
   image::Image wider{picture.width, picture.height, channels, {}, picture.channel_names};
   wider.channel_names.insert(wider.channel_names.end(), names.begin(), names.end());
   wider.data.resize(static_cast<std::size_t>(wider.width) * wider.height * channels);
+  const float* from = picture.data.data();
   for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x)
-      put(x, y,
-          std::copy_n(picture.data.data() + (wider.pixel(x, y) - wider.data.data()) / channels * picture.channels,
-                      picture.channels, wider.pixel(x, y)));
+    for (int x = 0; x < picture.width; ++x, from += picture.channels)
+      put(x, y, std::copy_n(from, picture.channels, wider.pixel(x, y)));
   picture = std::move(wider);
 }
 

@@ -30,6 +30,7 @@ struct WornPaints {
   // The class of the bounced light that such a floor shows, which came to the mesh before.
   std::size_t floor_class() const { return groups.at(groups.of_part.back(), PaintGroups::kDeeper); }
 };
+
 // Visible points evenly spread over the picture, at which bounced light is known by pairs of columns: they tell how
 // bounced light follows a change of paint, and by how much scaling it to first order errs.
 struct BounceProbe {

@@ -65,9 +65,10 @@ class Picture {
       pace_.start();
       sample(more, first_round_);
       pace_.end(drawn() - before + (first_round_ ? kFoursOfLook * static_cast<double>(points_.size()) : 0));
-      if (first_round_ && base_ != nullptr && request_.options.correction) sum_where_hidden();
+      if (first_round_ && is_corrected()) sum_where_hidden();
       if (first_round_ && request_.stop_de00 > 0) stop_shares();
-      first_round_ = false, first_ = {};  // which no time limit cuts, so that every point is seen
+      first_ = {};
+      first_round_ = false;  // which no time limit cuts, so that every point is seen
       const Stopwatch judging;
       errors = judge();
       judging_s_ = judging.elapsed_s();
@@ -77,6 +78,7 @@ class Picture {
       if (deadline_.passed()) break;
       bool goes_on = !ended && plan(errors, more);
       if (ended) std::ranges::fill(more, 0);
+      // All specks get more with the second round, or at the end; those that the last round lit once more.
       if (mended == 0 ? ended || goes_on : mended == 1 && ended) goes_on |= add_worst(more, mended++ > 0);
       if (!goes_on || !cut(pace_.left(judging_s_), more)) break;
     }
@@ -138,7 +140,7 @@ class Picture {
     return taken > kMostlyHidden * base || (!even && taken_at(i) > kMostlyHidden * base_at(points_[i]).y);
   }
 
-  // Hidden points begin anew, with samples that did not decide it.
+  // Hidden points begin anew, by other numbers than those that decided it.
   void sum_where_hidden() {
     std::vector<int> more(points_.size(), 0);
     each_point([&](std::size_t i) { states_[i].hidden = !states_[i].certain && is_hidden(i); });
@@ -197,7 +199,8 @@ class Picture {
     color::Rgb deterministic;  // what is known without samples of the light to be added to the base
     double needed = 0;         // fours that bring the noise of the neighborhood to the tolerance
     std::uint32_t sampled = kNotSampled;
-    bool certain = false, spike = false;
+    bool certain = false;
+    bool spike = false;           // Its own samples err so much that filters would spread it as a disc.
     bool all_shares = false;      // Its first samples differ too much for any share to stop.
     bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
     std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
@@ -219,6 +222,7 @@ class Picture {
     return states_[i].sampled == kNotSampled ? Halves{} : sampled_[states_[i].sampled].kept;
   }
 
+  bool is_corrected() const { return base_ != nullptr && request_.options.correction; }
   bool is_even(std::size_t i) const { return count_ == 1 || (!even_.empty() && even_[place(points_[i])] != 0); }
   std::size_t place(const PathPoint& point) const { return place(point.x, point.y); }
   std::size_t place(int x, int y) const {
@@ -234,7 +238,7 @@ class Picture {
       if (more[i] > 0 && states_[i].sampled == kNotSampled) states_[i].sampled = count++;
     }
     sampled_.resize(count);
-    if (first_round_) first_.resize(count);
+    if (first_round_ && (is_corrected() || request_.stop_de00 > 0)) first_.resize(count);
     draw_round(wanted, is_needed ? nullptr : &deadline_, [&](std::size_t i) { sample(i, more[i]); });
   }
 
@@ -348,16 +352,6 @@ class Picture {
            kAlike * request_.tolerance_de00;
   }
 
-  void add_fan(const SeenPoint& at, std::size_t i, const Round& round, int fan, double share,
-               LightShares (&means)[Round::kSequences]) {
-    const int which = round.sequence_of(fan), batch = sums(i).fours() + which;
-    const Sequence sequence(
-        mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(states_[i].hidden ? ~batch : batch)),
-        static_cast<std::uint32_t>(kOfFour * round.length));
-    means[which] += (share * round.together() / round.length) *
-                    at.shares_of(sequence, round.first_of(fan), static_cast<std::uint32_t>(kOfFour * round.together()));
-  }
-
   // The fans take the uncertain samples of the pixel in turn from one drawn by chance: the mean over all fans has the
   // right expectation, and the differences between samples count as noise while not all have been seen.
   void sample(std::size_t i, int fours) {
@@ -395,10 +389,18 @@ class Picture {
     const int floors = is_even(i) ? 1 : uncertain;
     for (int k = 0; sums(i).fours() == 0 && k < floors; ++k)
       floor_light += (share * uncertain / floors) * uncertain_look(k).at.floor_light();
-    auto turn = static_cast<int>((mixed(request_.seed, i) >> 32) % static_cast<unsigned>(uncertain)) + sums(i).fours();
+    const int turn =
+        static_cast<int>((mixed(request_.seed, i) >> 32) % static_cast<unsigned>(uncertain)) + sums(i).fours();
     LightShares means[Round::kSequences];
-    for (int fan = 0; fan < round.fans(); ++fan)
-      add_fan(uncertain_look(turn + fan).at, i, round, fan, share * uncertain, means);
+    for (int fan = 0; fan < round.fans(); ++fan) {
+      const int which = round.sequence_of(fan), batch = sums(i).fours() + which;
+      const std::uint64_t seed =
+          mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(state.hidden ? ~batch : batch));
+      const Sequence sequence(seed, static_cast<std::uint32_t>(kOfFour * round.length));
+      const auto drawn = static_cast<std::uint32_t>(kOfFour * round.together());
+      means[which] += (share * uncertain * round.together() / round.length) *
+                      uncertain_look(turn + fan).at.shares_of(sequence, round.first_of(fan), drawn);
+    }
     for (LightShares& mean : means) mean.from_floor += floor_light;
     add_round(i, round, means);
   }
@@ -442,9 +444,7 @@ class Picture {
     std::vector<Halves> halves(points_.size());
     std::vector<color::Rgb> beside(points_.size());
     each_point([&](std::size_t i) {
-      const State& state = states_[i];
-      const color::Rgb base = base_ != nullptr ? base_at(points_[i]) : color::Rgb{};
-      beside[i] = base + state.deterministic;
+      beside[i] = (base_ != nullptr ? base_at(points_[i]) : color::Rgb{}) + states_[i].deterministic;
       for (std::size_t k = 0; k < 2; ++k) {
         halves[i][k] = sums(i).halves()[k] + kept(i)[k];
         if (is_unknown(i)) halves[i][k] = kUnknown;
@@ -537,7 +537,7 @@ class Picture {
 
   // A picture that is within its tolerance at 95 of 100 points may have specks at the others, most of them at edges,
   // which no neighbor tells. They get more in one round, which takes no more than a part of all samples for them.
-  // Spikes of the last rounds get more at the end. Returns true if there are any.
+  // Returns true if there are any, spikes alone if so asked.
   bool add_worst(std::vector<int>& more, bool spikes_alone) const {
     if (!request_.reconstruct) return false;
     const double limit = request_.most_samples / kOfFour;
@@ -584,7 +584,7 @@ class Picture {
   std::vector<Sampled> sampled_;
   unsigned drawn_ = kAllShares;  // the shares that are drawn on
   FoundShares found_;
-  std::vector<std::array<LightShares, Round::kSequences>> first_;  // of those sampled first; empty later
+  std::vector<std::array<LightShares, Round::kSequences>> first_;  // of those sampled first; empty: not kept
   const double beside_ = percentile_95(request_.beside_de00);      // of the errors that are no noise
   int left_ = 0;                                                   // the least x of a point
   std::vector<ShownPoint> shown_;                                  // by the points; empty: nothing is reconstructed

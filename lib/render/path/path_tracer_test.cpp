@@ -36,11 +36,15 @@ std::unique_ptr<PathStage> ball_in_a_cup() {
   return stage;
 }
 
-Gbuffer seen_from_above(const PathStage& stage, int width, int height) {
+Camera from_above() {
   Camera camera;
   camera.eye = {0.5, 4, 2};
   camera.fov_deg = 36;
-  return visible_surface(stage.transport->rays(), *rays(camera, width, height), width, height);
+  return camera;
+}
+
+Gbuffer seen_from_above(const PathStage& stage, int width, int height) {
+  return visible_surface(stage.transport->rays(), *rays(from_above(), width, height), width, height);
 }
 
 TEST(PathPicture, IsTheSameForAnyNumberOfThreads) {
@@ -319,15 +323,12 @@ std::vector<Gbuffer> four_samples(const PathStage& stage, const Camera& camera, 
   return samples;
 }
 
-// At the edges of a ball deep in a cup hardly anything is left of the light of the picture without the cup. What is
-// shown there is not less than none.
+// At the edges of a ball deep in a cup hardly anything is left of the light that the ball shows without the cup. What
+// is shown there is near that, at every point.
 TEST(PathPicture, EdgesInTheDarkShowTheLightThatIsLeft) {
   const auto stage = ball_in_a_cup();
-  Camera camera;
-  camera.eye = {0.5, 4, 2};
-  camera.fov_deg = 36;
   constexpr int kWidth = 48, kHeight = 36;
-  const std::vector<Gbuffer> samples = four_samples(*stage, camera, kWidth, kHeight);
+  const std::vector<Gbuffer> samples = four_samples(*stage, from_above(), kWidth, kHeight);
   const auto picture_of = [&](bool correction, bool reconstruct, int most, const image::Image* base) {
     PathRequest request;
     request.options.bounces = 2, request.options.correction = correction;
@@ -357,11 +358,8 @@ TEST(PathPicture, EdgesInTheDarkShowTheLightThatIsLeft) {
 // smoothed.
 TEST(PathPicture, PointsWithoutSamplesAreToldByTheirNeighbors) {
   const auto stage = ball_in_a_cup();
-  Camera camera;
-  camera.eye = {0.5, 4, 2};
-  camera.fov_deg = 36;
   constexpr int kWidth = 96, kHeight = 72;
-  const std::vector<Gbuffer> samples = four_samples(*stage, camera, kWidth, kHeight);
+  const std::vector<Gbuffer> samples = four_samples(*stage, from_above(), kWidth, kHeight);
   PathRequest request;
   request.options.bounces = 2;
   request.tolerance_de00 = 1, request.seed = 9;
@@ -384,10 +382,7 @@ TEST(PathPicture, PointsWithoutSamplesAreToldByTheirNeighbors) {
 // Groups of any size are drawn together, by the memory that samples take.
 TEST(PathPicture, TakesAnyNumberOfSamplesOfAPixel) {
   const auto stage = ball_in_a_cup();
-  Camera camera;
-  camera.eye = {0.5, 4, 2};
-  camera.fov_deg = 36;
-  const std::vector<Gbuffer> samples = four_samples(*stage, camera, 32, 24);
+  const std::vector<Gbuffer> samples = four_samples(*stage, from_above(), 32, 24);
   const std::vector<const Gbuffer*> all = pointers(samples);
   PathRequest request;
   request.options.bounces = 2;
