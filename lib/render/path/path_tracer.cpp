@@ -32,6 +32,8 @@ constexpr double kAlike = 0.2;
 // less noise than what is taken, and none of the error of maps.
 constexpr double kMostlyHidden = 0.5;
 constexpr std::size_t kMostOfPixel = 16;  // samples
+// A few samples do not tell their own variance: what no neighbor tells is sampled as if it needed so many fours.
+constexpr double kAlone = 32;
 // Points at which the shares of the first round are compared.
 constexpr std::size_t kCompared = 4096;
 
@@ -94,8 +96,7 @@ class Picture {
       picture.dark = picture.dark && point.radiance == color::Rgb{};
     }
     picture.noise_mean_de00 /= count, picture.samples_mean /= count, picture.free_share /= count;
-    picture.points = std::move(points_);
-    picture.time_s = clock_.elapsed_s();
+    picture.points = std::move(points_), picture.time_s = clock_.elapsed_s();
     return picture;
   }
 
@@ -150,8 +151,7 @@ class Picture {
       state.looked = false;
       if (request_.reconstruct) shown_[i] = kNotShown;
       if (state.sampled == kNotSampled) return;
-      sampled_[state.sampled] = {};
-      more[i] = kFirstFours;
+      sampled_[state.sampled] = {}, more[i] = kFirstFours;
     });
     sample(more, true);
   }
@@ -456,8 +456,8 @@ class Picture {
       points_[i].radiance = states_[i].deterministic + (certain ? halves[i][0] : found.light[i]);
       points_[i].noise_de00 = certain ? 0 : found.error_de00[i];
       states_[i].spike = found.spike_de00[i] > kBlotch * tolerance();
-      states_[i].needed =
-          certain ? 0 : needed_samples(counted(i), points_[i].noise_de00, found.spike_de00[i], tolerance());
+      const double needed = needed_samples(counted(i), points_[i].noise_de00, found.spike_de00[i], tolerance());
+      states_[i].needed = certain ? 0 : std::max(needed, found.shares[i][0] < 1 ? 0 : kAlone);
     });
   }
 

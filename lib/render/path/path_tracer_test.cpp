@@ -379,6 +379,26 @@ TEST(PathPicture, PointsWithoutSamplesAreToldByTheirNeighbors) {
   EXPECT_LT(sparse.noise_p95_de00, 1.25 * error);
 }
 
+// The first samples of a point may all miss a small bright light: where no neighbor tells of it, they do not end there.
+// The control is a picture of the same tolerance whose points have neighbors.
+TEST(PathPicture, PointsThatNoNeighborTellsGetMoreSamples) {
+  const auto stage = ball_in_a_cup();
+  PathRequest request;
+  request.options.bounces = 2, request.tolerance_de00 = 20, request.reconstruct = true;
+  const auto samples_of = [&](int width, int height) {
+    const std::vector<Gbuffer> samples = four_samples(*stage, from_above(), width, height);
+    std::vector<int> counts;
+    for (const PathPoint& point : path_picture(*stage->transport, pointers(samples), nullptr, request).points)
+      if (point.samples > 0) counts.push_back(point.samples);
+    std::ranges::sort(counts);
+    return counts;
+  };
+  const std::vector<int> apart = samples_of(4, 3), beside = samples_of(48, 36);
+  ASSERT_FALSE(apart.empty());
+  EXPECT_EQ(beside[beside.size() / 2], 8) << "the first round";
+  EXPECT_GE(apart[apart.size() / 2], 16);
+}
+
 // Groups of any size are drawn together, by the memory that samples take.
 TEST(PathPicture, TakesAnyNumberOfSamplesOfAPixel) {
   const auto stage = ball_in_a_cup();
