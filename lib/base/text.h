@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,6 +29,13 @@ std::vector<std::string_view> split(std::string_view text, char separator);
 
 // The words with the separator between each two of them.
 std::string joined(const std::vector<std::string>& words, std::string_view separator);
+// The words that `word` makes of these items, likewise.
+template <class Items, class Word>
+std::string joined(const Items& items, std::string_view separator, const Word& word) {
+  std::vector<std::string> words;
+  for (const auto& item : items) words.emplace_back(std::invoke(word, item));
+  return joined(words, separator);
+}
 
 // `text` in ASCII lower case, and in upper case.
 std::string lower(std::string_view text);

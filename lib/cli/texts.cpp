@@ -16,11 +16,7 @@ struct DefaultText {
   std::string operator()(const int* value) const { return std::to_string(*value); }
   std::string operator()(const std::uint64_t* value) const { return std::to_string(*value); }
   std::string operator()(const std::vector<std::string>* value) const { return joined(*value, " "); }
-  std::string operator()(const std::vector<double>* value) const {
-    std::vector<std::string> texts;
-    for (const double v : *value) texts.push_back(shortest(v));
-    return joined(texts, ",");
-  }
+  std::string operator()(const std::vector<double>* value) const { return joined(*value, ",", shortest); }
 };
 
 std::string default_of(const Option& option) {

@@ -26,9 +26,7 @@ void drop_curve(paint::Measurement& measurement, const std::vector<paint::Geomet
 }
 
 std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", shown(word));
-  return text;
+  return joined(words, ", ", [](const std::string& word) { return fmt::format("\"{}\"", shown(word)); });
 }
 
 }  // namespace

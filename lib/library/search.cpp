@@ -7,16 +7,14 @@
 #include <tuple>
 
 #include "base/parallel.h"
+#include "base/text.h"
 
 namespace goniochrome::library {
 
 namespace {
 
 std::string names_of(const std::vector<paint::Geometry>& geometries) {
-  std::string names;
-  for (const paint::Geometry& geometry : geometries)
-    names += (names.empty() ? "" : ",") + paint::geometry_name(geometry);
-  return names;
+  return joined(geometries, ",", paint::geometry_name);
 }
 
 std::string condition_name(const color::ViewingCondition& condition) {

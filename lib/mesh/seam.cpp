@@ -349,9 +349,7 @@ std::vector<SeamPoint> in_order(std::vector<SeamPoint> points, double spacing) {
 Result<const MeshPart*> part_of(const Mesh& mesh, const std::string& name) {
   for (const MeshPart& part : mesh.parts)
     if (part.name == name) return &part;
-  std::vector<std::string> names;
-  for (const MeshPart& part : mesh.parts) names.push_back(part.name);
-  return input_error("the mesh has no part \"{}\": it has {}", name, joined(names, ", "));
+  return input_error("the mesh has no part \"{}\": it has {}", name, joined(mesh.parts, ", ", &MeshPart::name));
 }
 
 double nearest_distance(const RimTree& a, const RimTree& b) {

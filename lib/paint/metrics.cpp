@@ -441,15 +441,13 @@ Result<MetricRange> parse_metric_range(std::string_view text) {
 }
 
 std::string metric_advice(std::string_view unknown) {
-  std::vector<std::string> names;
   const MetricColumn* nearest = nullptr;
   std::size_t distance = std::max<std::size_t>(3, unknown.size() / 2);
   for (const MetricColumn& column : metric_columns()) {
-    names.push_back(column.name);
     if (const std::size_t d = edit_distance(unknown, column.name); d < distance) nearest = &column, distance = d;
   }
   if (nearest) return fmt::format("; did you mean {}?", nearest->name);
-  return fmt::format("; there are {}", joined(names, ", "));
+  return fmt::format("; there are {}", joined(metric_columns(), ", ", &MetricColumn::name));
 }
 
 }  // namespace goniochrome::paint

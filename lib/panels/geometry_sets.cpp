@@ -47,12 +47,10 @@ Result<std::vector<View>> views_of(const char* option, const std::string& text, 
     if (piece.starts_with("set:")) {
       const std::string_view name = piece.substr(4);
       const auto& sets = geometry_sets();
-      const auto set = std::ranges::find_if(sets, [&](const GeometrySet& s) { return s.name == name; });
-      if (set == sets.end()) {
-        std::vector<std::string> names;
-        for (const GeometrySet& s : sets) names.emplace_back(s.name);
-        return usage_error("{} names the set \"{}\": there are {}", option, name, joined(names, ", "));
-      }
+      const auto set = std::ranges::find(sets, name, &GeometrySet::name);
+      if (set == sets.end())
+        return usage_error("{} names the set \"{}\": there are {}", option, name,
+                           joined(sets, ", ", &GeometrySet::name));
       GONIO_ASSIGN(const std::vector<View> more, views_of(option, (*set).*member, member));
       views.insert(views.end(), more.begin(), more.end());
       continue;

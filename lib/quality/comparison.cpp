@@ -24,9 +24,7 @@ std::string light_name(const color::ViewingCondition& condition) {
 }
 
 std::string names_of_rows(const std::vector<paint::LabReading>& rows) {
-  std::vector<std::string> names;
-  for (const paint::LabReading& row : rows) names.push_back(paint::geometry_name(row.geometry));
-  return joined(names, ",");
+  return joined(rows, ",", [](const paint::LabReading& row) { return paint::geometry_name(row.geometry); });
 }
 
 bool has_spectra(const paint::Paint& paint) {

@@ -7,6 +7,7 @@
 #include "base/angles.h"
 #include "base/large_pages.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "paint/geometry.h"
 
 namespace goniochrome::render {
@@ -68,16 +69,13 @@ void add_channels(image::Image& picture, const std::vector<std::string>& names, 
 }  // namespace
 
 std::string aov_names() {
-  std::string known;
-  for (const Aov& a : aovs()) known += (known.empty() ? "" : ", ") + a.name;
-  return known;
+  return joined(aovs(), ", ", &Aov::name);
 }
 
 Result<void> add_aov(image::Image& picture, const Gbuffer& gbuffer, const std::string& name, const Vec3& to_light) {
-  const auto aov = std::find_if(aovs().begin(), aovs().end(), [&](const Aov& a) { return a.name == name; });
-  if (aov == aovs().end()) {
+  const auto aov = std::ranges::find(aovs(), name, &Aov::name);
+  if (aov == aovs().end())
     return usage_error("there is no buffer \"{}\": there are {}, error and transport", name, aov_names());
-  }
   add_channels(picture, aov->channels, [&](int x, int y, float* to) {
     if (gbuffer.part(x, y) >= 0) {
       aov->evaluate(gbuffer, x, y, to_light, to);

@@ -74,10 +74,8 @@ Result<std::vector<std::string>> effects_of_word(const std::string& name) {
   if (gone != std::end(kGone)) return usage_error("--effects names \"{}\", which is gone: {}", name, gone->second);
   const auto known = std::ranges::find(all_words(), name, &Word::word);
   if (known != all_words().end()) return known->effects;
-  std::string words;
-  for (const Word& word : all_words()) words += (words.empty() ? "" : ", ") + std::string(word.word);
   return usage_error("--effects names \"{}\": there are {}, and single lobes such as lobe-20 or gloss-900", name,
-                     words);
+                     joined(all_words(), ", ", &Word::word));
 }
 
 }  // namespace

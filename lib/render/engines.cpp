@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/text.h"
 #include "render/cpu/cpu_engine.h"
 #include "render/gl/gl_engine.h"
 #include "render/integral/integral_engine.h"
@@ -28,9 +29,7 @@ std::vector<std::string> engine_choices() {
 Result<const EngineInfo*> engine_named(const std::string& name) {
   const auto found = std::ranges::find(engines(), name, &EngineInfo::name);
   if (found != engines().end()) return *found;
-  std::string known;
-  for (const EngineInfo* engine : engines()) known += (known.empty() ? "" : ", ") + std::string(engine->name);
-  return usage_error("there is no engine \"{}\": there are {}", name, known);
+  return usage_error("there is no engine \"{}\": there are {}", name, joined(engines(), ", ", &EngineInfo::name));
 }
 
 }  // namespace goniochrome::render

@@ -21,10 +21,7 @@ namespace {
 constexpr std::size_t kWarningsShown = 10;
 
 std::string names_of(const std::vector<paint::Geometry>& geometries) {
-  std::string names;
-  for (const paint::Geometry& geometry : geometries)
-    names += (names.empty() ? "" : ",") + paint::geometry_name(geometry);
-  return names;
+  return joined(geometries, ",", paint::geometry_name);
 }
 
 const char* origin_name(library::LibraryIndex::Origin origin) {

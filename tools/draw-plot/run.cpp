@@ -58,9 +58,7 @@ Result<Columns> columns_of(const std::string& name, int line, const std::vector<
 // The series of a row: its cell or, where several columns tell series apart, each heading with its cell.
 std::string label_of(const Columns& columns, const std::vector<std::string>& words) {
   if (columns.series.size() == 1) return words[columns.series.front()];
-  std::vector<std::string> parts;
-  for (const std::size_t i : columns.series) parts.push_back(columns.headings[i] + " " + words[i]);
-  return joined(parts, ", ");
+  return joined(columns.series, ", ", [&](std::size_t i) { return columns.headings[i] + " " + words[i]; });
 }
 
 // A number, or NaN where the table has none, which breaks a line.

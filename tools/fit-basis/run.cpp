@@ -70,9 +70,7 @@ Result<std::vector<fit::BasisTarget>> read_targets(const Options& options, cli::
 }
 
 std::string list(const std::vector<double>& exponents) {
-  std::vector<std::string> texts;
-  for (const double e : exponents) texts.push_back(fmt::format("{:.4g}", e));
-  return joined(texts, " ");
+  return joined(exponents, " ", [](double exponent) { return fmt::format("{:.4g}", exponent); });
 }
 
 // The dE00 of the worst paint at its worst angle, for each set.

@@ -17,10 +17,7 @@ const std::vector<paint::Geometry> kUsual = {{.aspecular_deg = -15}, {.aspecular
                                              {.aspecular_deg = 45},  {.aspecular_deg = 75}, {.aspecular_deg = 110}};
 
 std::string listed(const std::vector<paint::Geometry>& geometries) {
-  std::string text;
-  for (const paint::Geometry& geometry : geometries)
-    text += (text.empty() ? "" : ", ") + paint::geometry_name(geometry);
-  return text;
+  return joined(geometries, ", ", paint::geometry_name);
 }
 
 }  // namespace

@@ -73,8 +73,7 @@ std::string table_line(const paint::Paint& paint, const Figures& figures) {
   const int decimals = decimals_for(paint);
   for (const paint::MetricColumn& column : paint::metric_columns())
     text += "\t" + table_number(numbers.*column.value, decimals);
-  std::string flags;
-  for (const char* flag : numbers.flags) flags += (flags.empty() ? "" : ",") + std::string(flag);
+  const std::string flags = joined({numbers.flags.begin(), numbers.flags.end()}, ",");
   return text + "\t" + paint::source_name(numbers.source) + "\t" + (flags.empty() ? "-" : flags) +
          figures.elsewhere.columns + (figures.inferred ? std::string("\t") + class_source(paint, figures) : "") + "\n";
 }

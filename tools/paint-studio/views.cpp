@@ -26,9 +26,8 @@ constexpr double kSameNormal = 0.999, kMostOther = 0.01;
 constexpr std::size_t kMostJudges = 4;  // paints that packing is judged by
 
 std::string listed(const std::vector<double>& exponents) {
-  std::string text;
-  for (const double exponent : exponents) text += fmt::format("{}{:.6g}", text.empty() ? "" : ", ", exponent);
-  return text.empty() ? "no lobes" : text;
+  if (exponents.empty()) return "no lobes";
+  return joined(exponents, ", ", [](double exponent) { return fmt::format("{:.6g}", exponent); });
 }
 
 Result<void> check_basis(const std::string& path, const render::LobeColumns& columns, const formats::Basis& basis) {

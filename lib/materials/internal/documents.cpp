@@ -9,9 +9,7 @@ namespace goniochrome::materials {
 namespace {
 
 std::string joined(const std::vector<double>& values) {
-  std::string text;
-  for (std::size_t i = 0; i < values.size(); ++i) text += fmt::format("{}{:.6g}", i == 0 ? "" : ", ", values[i]);
-  return text;
+  return goniochrome::joined(values, ", ", [](double value) { return fmt::format("{:.6g}", value); });
 }
 
 }  // namespace

@@ -140,10 +140,9 @@ std::string over_tilts(const Effects& effects, const std::string& sum, const std
 }
 
 std::string luminance_constant() {
-  std::string luminance;
-  for (const color::Rgb& rgb : {color::Rgb{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
-    luminance += (luminance.empty() ? "" : ", ") + glsl(color::xyz_d65_from_rgb(rgb).Y);
-  return fmt::format("const vec3 luminance = vec3({});\n", luminance);
+  constexpr color::Rgb kPrimaries[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  return fmt::format("const vec3 luminance = vec3({});\n",
+                     joined(kPrimaries, ", ", [](const color::Rgb& rgb) { return glsl(color::luminance(rgb)); }));
 }
 
 std::string occlusion_start(const Effects& effects) {

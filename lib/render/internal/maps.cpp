@@ -18,14 +18,12 @@ constexpr double kSmallest = 0.4;
 // Checks that the lobe is there; else an error has the command that adds it.
 Result<void> check_lobe(const envmap::PrefilteredEnvironment& env, double exponent, const Effects& effects) {
   if (env.lobe(exponent) != nullptr) return {};
-  std::string list;
   std::set<double> exponents = {exponent};
   for (const Effects::LobeUse& use : effects.lobes) exponents.insert(use.exponent);
-  for (const double of : exponents) list += (list.empty() ? "" : ",") + shortest(of);
   return input_error(
       "the environment has no lobe of exponent {}, which a paint needs: make it with `prefilter-envmap {} --exponents "
       "{} -o ENV.env.exr`, or fit the paints to the basis it was made for",
-      shortest(exponent), env.source.empty() ? "SOURCE" : env.source, list);
+      shortest(exponent), env.source.empty() ? "SOURCE" : env.source, joined(exponents, ",", shortest));
 }
 
 envmap::MapPointer resized(envmap::MapPointer from, int size) {

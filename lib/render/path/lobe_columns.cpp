@@ -49,12 +49,11 @@ Result<std::vector<color::Rgb>> column_weights(const LobeColumns& columns, const
     const auto found = std::ranges::find_if(
         columns.exponents, [&](double e) { return std::abs(e - lobe.exponent) <= kSame * lobe.exponent; });
     if (found == columns.exponents.end()) {
-      std::string known;
-      for (const double e : columns.exponents) known += (known.empty() ? "" : ", ") + shortest(e);
       return input_error(
           "a paint has a lobe of exponent {}, and the transport has those of {}: fit the paint to that basis, or "
           "trace with this one",
-          shortest(lobe.exponent), known.empty() ? "no lobes" : known);
+          shortest(lobe.exponent),
+          columns.exponents.empty() ? "no lobes" : joined(columns.exponents, ", ", shortest));
     }
     const auto j = static_cast<std::size_t>(found - columns.exponents.begin());
     weights[LobeColumns::flake(j)] = lobe.directional_diffuse;

@@ -10,6 +10,7 @@
 
 #include "base/angles.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "render/internal/lobe_curves.h"
 
 namespace goniochrome::render {
@@ -90,9 +91,7 @@ std::string wanted_exponents(const std::vector<double>& there, double low, doubl
     if (low < there.front()) wanted.insert(wanted.begin(), low);
     if (high > there.back()) wanted.push_back(high);
   }
-  std::string list;
-  for (const double exponent : wanted) list += fmt::format("{}{:.6g}", list.empty() ? "" : ",", exponent);
-  return list;
+  return joined(wanted, ",", [](double exponent) { return fmt::format("{:.6g}", exponent); });
 }
 
 }  // namespace
