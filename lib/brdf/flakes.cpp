@@ -22,7 +22,7 @@ std::vector<double> flake_shares(const paint::LobeFit& fit) {
   std::vector<double> shares;
   double sum = 0;
   for (const paint::Lobe& lobe : fit.lobes) {
-    const double light = lobe.is_mirror() ? 0 : color::xyz_d65_from_rgb(lobe.directional_diffuse).Y;
+    const double light = lobe.is_mirror() ? 0 : color::luminance(lobe.directional_diffuse);
     shares.push_back(std::max(0.0, light) / (lobe.is_mirror() ? 1 : lobe.exponent + 1));
     sum += shares.back();
   }

@@ -106,10 +106,6 @@ LobeReading lobe_integrals(const Meter& meter, const std::vector<Sample>& source
   return sum;
 }
 
-double luminance(const color::Rgb& rgb) {
-  return color::xyz_d65_from_rgb(rgb).Y;
-}
-
 Error no_meter(double angle_deg) {
   return input_error("gloss angle {} deg: gloss meters have 20, 60 or 85", angle_deg);
 }
@@ -331,17 +327,17 @@ double gloss_units(const GlossTable& table, const GlossColumns& meter, const pai
   const double cosine = math::cos(meter.angle_deg * kDegree), base = coat_passages(fit.coat_index, cosine, cosine);
   const double fresnel = gloss_deg == meter.angle_deg ? 1 : coat_fresnel(cosine, gloss_deg);
   const paint::LobeFit seen = at_view(fit, meter.angle_deg);
-  double gu = base * meter.diffuse * luminance(seen.diffuse);
+  double gu = base * meter.diffuse * color::luminance(seen.diffuse);
   for (const paint::Lobe& lobe : seen.lobes) {
     if (lobe.is_mirror()) {
-      if (lobe.gloss != color::Rgb{}) gu += mirror_reading(meter, fit.coat_index) * luminance(lobe.gloss);
+      if (lobe.gloss != color::Rgb{}) gu += mirror_reading(meter, fit.coat_index) * color::luminance(lobe.gloss);
       continue;
     }
     const auto found = std::find(table.exponents().begin(), table.exponents().end(), lobe.exponent);
     if (found == table.exponents().end()) continue;
     const std::size_t j = found - table.exponents().begin();
-    gu += base * meter.directional_diffuse[j] * luminance(lobe.directional_diffuse) +
-          fresnel * meter.gloss[j] * luminance(lobe.gloss);
+    gu += base * meter.directional_diffuse[j] * color::luminance(lobe.directional_diffuse) +
+          fresnel * meter.gloss[j] * color::luminance(lobe.gloss);
   }
   return gu;
 }

@@ -54,7 +54,7 @@ double highlight_edge_deg(const paint::LobeFit& fit, double extent_deg) {
   const auto brightness = [&](double angle_rad) {
     double sum = 0;
     for (const paint::Lobe& lobe : fit.lobes) {
-      const double weight = color::xyz_d65_from_rgb(lobe.gloss).Y;
+      const double weight = color::luminance(lobe.gloss);
       if (!lobe.is_mirror())
         sum += weight * lobe_of_disc(lobe.exponent, radius, angle_rad).power;
       else if (angle_rad <= radius)

@@ -52,10 +52,6 @@ struct AxesMatrix {
   }
 };
 
-double gray(const color::Rgb& c) {
-  return (c.x + c.y + c.z) / 3;
-}
-
 // A lobe as the viewers see it: with p = A wo, what it reflects to each, 2 pi/(n+1) rho |p|^n, and its middle p/|p|.
 struct Part {
   TurnedLobe lobe;
@@ -163,12 +159,12 @@ Part united(const Part& a, const Part& b) {
                (1 - share) * a.axes.z + share * b.axes.z < 0 ? -1.0 : 1.0};
   lobe.albedo = color::Rgb{1, 1, 1};
   Part result(turned_lobe(lobe, turn));
-  const double gray_a = gray(a.lobe.lobe.albedo), gray_b = gray(b.lobe.lobe.albedo);
+  const double gray_a = color::mean(a.lobe.lobe.albedo), gray_b = color::mean(b.lobe.lobe.albedo);
   color::Rgb albedo;
   if (gray_a > 0) albedo += (a.energy / (gray_a * result.energy)) * a.lobe.lobe.albedo;
   if (gray_b > 0) albedo += (b.energy / (gray_b * result.energy)) * b.lobe.lobe.albedo;
   result.lobe.lobe.albedo = albedo;
-  const double scale = gray(albedo);
+  const double scale = color::mean(albedo);
   for (double& strength : result.strength) strength *= scale;
   result.energy *= scale;
   return result;

@@ -45,6 +45,14 @@ Xyz adapted(const Xyz& xyz, const Xyz& from_white, const Xyz& to_white);
 // Working-space RGB <-> XYZ relative to D65/2.
 Rgb rgb_from_xyz_d65(const Xyz& xyz);
 Xyz xyz_d65_from_rgb(const Rgb& rgb);
+inline double luminance(const Rgb& rgb) {
+  return xyz_d65_from_rgb(rgb).Y;
+}
+
+// The mean of the channels.
+constexpr double mean(const Rgb& rgb) {
+  return (rgb.x + rgb.y + rgb.z) / 3;
+}
 
 // A paint's Lab, relative to `white`, as working-space reflectance factors, and back. Channels may be negative.
 Rgb rgb_from_lab(const Lab& lab, const Xyz& white);

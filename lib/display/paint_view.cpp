@@ -37,7 +37,7 @@ double beyond_knee(double value) {
 // The shoulder k + (1-k) x/(1+x), x = (m-k)/(1-k), leaves the line with slope 1 and ends at white.
 color::Rgb paint_view(const color::Rgb& rec709) {
   color::Rgb c = rec709;
-  if (least_channel(c) < 0) c = mixed_with_gray(c, color::xyz_d65_from_rgb(color::rec2020_from_rec709(c)).Y);
+  if (least_channel(c) < 0) c = mixed_with_gray(c, color::luminance(color::rec2020_from_rec709(c)));
   const double m = largest_channel(c);
   if (m <= kKnee) return c;
   const double x = beyond_knee(m);
@@ -55,7 +55,7 @@ color::Rgb paint_view_undone(const color::Rgb& rec709) {
 color::Rgb in_display_gamut(const color::Rgb& rgb) {
   const color::Rgb c = color::rec709_from_rec2020(rgb);
   if (least_channel(c) >= 0) return rgb;
-  return color::rec2020_from_rec709(mixed_with_gray(c, color::xyz_d65_from_rgb(rgb).Y));
+  return color::rec2020_from_rec709(mixed_with_gray(c, color::luminance(rgb)));
 }
 
 double srgb_signal(double light) {

@@ -23,10 +23,6 @@ constexpr double kWidestSun_rad = 0.03;  // the air about a sun shines, and a pr
 constexpr double kLeastSun = 0.1;        // of all light
 constexpr double kMostWhite = 1e30;      // of a spot: far from what a float cannot hold
 
-double mean_of(const color::Rgb& c) {
-  return (c.x + c.y + c.z) / 3;
-}
-
 color::Rgb texel(const Environment& environment, int column, int row) {
   const float* rgb = environment.radiance(column, row);
   return {rgb[0], rgb[1], rgb[2]};
@@ -47,7 +43,7 @@ struct Cluster {
   Vec3 mean;  // direction, weighed by the light; shorter the wider the cluster is
 
   explicit Cluster(std::vector<Excess> of) : texels(std::move(of)) {
-    for (const Excess& e : texels) light += e.light, mean += mean_of(e.radiance) * e.moment;
+    for (const Excess& e : texels) light += e.light, mean += color::mean(e.radiance) * e.moment;
     if (light > 0) mean = (1 / light) * mean;
   }
   // 1 - |mean|^2: the sum of the variances along the axes.
@@ -77,18 +73,18 @@ Vec3 Cluster::longer_axis() const {
 
 // All light of the environment, the mean of the channels.
 double whole_light(const Environment& environment) {
-  return mean_of(environment.flux());
+  return color::mean(environment.flux());
 }
 
 std::vector<Excess> brighter_in_row(const Environment& environment, int row, double level) {
   std::vector<Excess> found;
   for (int column = 0; column < environment.width(); ++column) {
     const color::Rgb radiance = texel(environment, column, row);
-    const double mean = mean_of(radiance);
+    const double mean = color::mean(radiance);
     if (!(mean > level)) continue;
     Excess e{column, row, (1 - level / mean) * radiance, {}, 0};
     e.moment = moment_of_cell(environment, {1.0 * column, 1.0 * row, column + 1.0, row + 1.0});
-    e.light = mean_of(e.radiance) * environment.solid_angle(column, row);
+    e.light = color::mean(e.radiance) * environment.solid_angle(column, row);
     if (length(e.moment) > 0) found.push_back(e);
   }
   return found;
@@ -174,7 +170,7 @@ std::optional<SunlitSky> sunlit_sky(const Environment& environment) {
     return std::nullopt;
   std::vector<Environment::Dimmed> dimmed;
   for (const Excess& e : brightest.texels)
-    dimmed.push_back({e.column, e.row, level / mean_of(texel(environment, e.column, e.row))});
+    dimmed.push_back({e.column, e.row, level / color::mean(texel(environment, e.column, e.row))});
   return SunlitSky{sun, environment.dimmed(dimmed)};
 }
 

@@ -32,10 +32,6 @@ struct Sample {
   double root_weight = 0;
 };
 
-double gray(const color::Rgb& f) {
-  return (f.x + f.y + f.z) / 3;
-}
-
 // The fractional part of `first` + i times the share that covers an interval evenly in one dimension.
 double spread(double first, double share, int i) {
   const double at = first + share * i;
@@ -168,8 +164,8 @@ std::vector<Sample> samples_of(const LobeSurface& target) {
           if (at > 0) density += other.count * brdf::scaled_power((other.exponent + 1) / (2 * kPi), at, other.exponent);
         }
         const color::Rgb f = brdf::brdf(target, to_light, to_viewer);
-        if (!(gray(f) > 0) || !(density > 0)) continue;
-        samples.push_back({to_light, to_viewer, f, std::sqrt(to_light.z / (density * kViewers * gray(f)))});
+        if (!(color::mean(f) > 0) || !(density > 0)) continue;
+        samples.push_back({to_light, to_viewer, f, std::sqrt(to_light.z / (density * kViewers * color::mean(f)))});
       }
     }
   }
@@ -180,7 +176,7 @@ std::vector<Sample> samples_of(const LobeSurface& target) {
 double whole_of(const std::vector<Sample>& samples) {
   double whole = 0;
   for (const Sample& sample : samples) {
-    const double at = sample.root_weight * gray(sample.target);
+    const double at = sample.root_weight * color::mean(sample.target);
     whole += at * at;
   }
   return whole;

@@ -49,10 +49,6 @@ double view_rad(std::size_t k) {
   return (k < kEven ? 3.75 * static_cast<double>(k) : kGrazing_deg[k - kEven]) * kDegree;
 }
 
-double luminance(const color::Rgb& rgb) {
-  return color::xyz_d65_from_rgb(rgb).Y;
-}
-
 // Shapes of the tables: a paint as a diffuse ground and lobes, in luminance.
 struct Shapes {
   struct Lobe {
@@ -67,9 +63,9 @@ struct Shapes {
 // where a narrow D would leave color steep.
 Shapes shapes_of(const paint::LobeFit& lobes) {
   Shapes shapes;
-  shapes.ground = std::max(luminance(lobes.diffuse), 1e-4);
+  shapes.ground = std::max(color::luminance(lobes.diffuse), 1e-4);
   for (const paint::Lobe& lobe : lobes.lobes)
-    shapes.lobes.push_back({luminance(lobe.directional_diffuse + lobe.gloss), lobe.exponent});
+    shapes.lobes.push_back({color::luminance(lobe.directional_diffuse + lobe.gloss), lobe.exponent});
   constexpr double kTail = 0.3;
   for (std::size_t i = 0; i < kFine; ++i) {
     const double t = polar_of(part(i, kFine));
@@ -393,9 +389,7 @@ Result<Material> rgl_material(const paint::Paint& fitted, const Naming& naming) 
   for (std::size_t k = 0; k < kViews; ++k)
     fill_view(SeenRgb(lobes, view_rad(k)), SeenRgb::kLuminance, shapes, k, tables);
   return with_shown(file_of(shapes, tables, {}, naming), paint, naming.identifier + kRgl.ending,
-                    [](const std::vector<double>& f) {
-                      return color::rec2020_from_rec709({f[0], f[1], f[2]});
-                    });
+                    [](const std::vector<double>& f) { return color::rec2020_from_rec709({f[0], f[1], f[2]}); });
 }
 
 // The bands are those of the paint's spectra, which the color of its lobes is kept with.
@@ -412,7 +406,7 @@ Result<Material> rgl_spectral_material(const paint::Paint& fitted, const Naming&
   std::array<double, color::kBands> luminances{};
   for (int band = 0; band < color::kBands; ++band) {
     wavelengths.push_back(static_cast<float>(color::band_nm(band)));
-    luminances[static_cast<std::size_t>(band)] = luminance(eye.weights()[static_cast<std::size_t>(band)]);
+    luminances[static_cast<std::size_t>(band)] = color::luminance(eye.weights()[static_cast<std::size_t>(band)]);
   }
   for (std::size_t k = 0; k < kViews; ++k) fill_view(SeenBands(*bands, view_rad(k)), luminances, shapes, k, tables);
   return with_shown(file_of(shapes, tables, wavelengths, naming), paint, naming.identifier + kRglSpectral.ending,

@@ -23,7 +23,7 @@ bool is_glare(const Vec3& light, const Vec3& view, const Vec3& normal) {
 }
 
 double luminance(const float* rgb) {
-  return color::xyz_d65_from_rgb({rgb[0], rgb[1], rgb[2]}).Y;
+  return color::luminance({rgb[0], rgb[1], rgb[2]});
 }
 
 Result<std::vector<Vec3>> directions_of(const char* option, const std::vector<std::string>& texts) {

@@ -17,10 +17,6 @@ bool has_weight(const paint::Lobe& lobe) {
   return lobe.directional_diffuse != color::Rgb{} || lobe.gloss != color::Rgb{};
 }
 
-double luminance(const color::Rgb& rgb) {
-  return color::xyz_d65_from_rgb(rgb).Y;
-}
-
 }  // namespace
 
 Ground ground_below(const mesh::Mesh& mesh, const std::optional<double>& height, double eye_height) {
@@ -136,22 +132,23 @@ DiffuseWhite diffuse_white(const envmap::PrefilteredEnvironment* env, const std:
     for (int row = 0; row < n; ++row) {
       for (int column = 0; column < n; ++column) {
         const float* texel = env->diffuse.map.at(face, row, column);
-        const double y = luminance({texel[0], texel[1], texel[2]});
+        const double y = color::luminance({texel[0], texel[1], texel[2]});
         if (y <= white.luminance) continue;
         white = {y, envmap::cube_direction(face, column + 0.5, row + 0.5, n)};
       }
     }
   }
-  for (const Light& light : lights) white.luminance += luminance(light.white);
+  for (const Light& light : lights) white.luminance += color::luminance(light.white);
   return white;
 }
 
 double facing_white(const envmap::PrefilteredEnvironment* env, const std::vector<Light>& lights,
                     const Vec3& direction) {
   double sum = 0;
-  if (env != nullptr && env->diffuse.map.size > 0) sum = luminance(envmap::bilinear(env->diffuse.map, direction));
+  if (env != nullptr && env->diffuse.map.size > 0)
+    sum = color::luminance(envmap::bilinear(env->diffuse.map, direction));
   for (const Light& light : lights)
-    sum += brdf::disc_irradiance(dot(light.direction, direction), light.radius_rad) * luminance(light.white);
+    sum += brdf::disc_irradiance(dot(light.direction, direction), light.radius_rad) * color::luminance(light.white);
   return sum;
 }
 

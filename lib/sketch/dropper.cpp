@@ -36,7 +36,7 @@ DropperColor dropper_color(const std::vector<color::Rgb>& lights) {
   std::vector<double> brightness;
   for (const color::Rgb& light : lights) {
     sum += light;
-    brightness.push_back(display::srgb_signal(color::xyz_d65_from_rgb(light).Y));
+    brightness.push_back(display::srgb_signal(color::luminance(light)));
   }
   DropperColor result;
   result.mean = (1.0 / static_cast<double>(lights.size())) * sum;

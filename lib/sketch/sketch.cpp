@@ -139,7 +139,7 @@ class Seen {
 };
 
 double luminance(const std::array<float, 3>& rgb) {
-  return color::xyz_d65_from_rgb({rgb[0], rgb[1], rgb[2]}).Y;
+  return color::luminance({rgb[0], rgb[1], rgb[2]});
 }
 
 // The evidence on gloss in the pixels within 15 deg of specular; both are empty where there is none.
@@ -158,14 +158,14 @@ Highlight highlight_of(const SketchInput& input, const SketchPixels& pixels, con
     if (s.aspecular_deg >= kContrastRegion_deg) return;
     const double y = luminance(s.seen);
     const color::Rgb matt = static_cast<double>(s.cos_i) * curve.reflectance(s.aspecular_deg);
-    const double matt_y = std::max(0.0, color::xyz_d65_from_rgb(as_displayed(matt, input)).Y);
+    const double matt_y = std::max(0.0, color::luminance(as_displayed(matt, input)));
     brightness.push_back(display::srgb_signal(y) - display::srgb_signal(matt_y));
     const auto shifted = static_cast<std::size_t>(static_cast<int>(place) + input.shift_y * width + input.shift_x);
     if (input.edited->state[shifted] == Picture::kClipped) {
       ++clipped;
       return;
     }
-    highlight.push_back({s.aspecular_deg, y - color::xyz_d65_from_rgb(matt).Y});
+    highlight.push_back({s.aspecular_deg, y - color::luminance(matt)});
   };
   for (const std::uint32_t place : pixels.glare) look(place);
   for (const std::uint32_t place : pixels.used) look(place);

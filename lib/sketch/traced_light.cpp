@@ -58,7 +58,7 @@ std::optional<double> TracedLight::aspecular_deg(int x, int y) const {
   const auto point = point_at(x, y);
   if (!point || transport_->columns.exponents.empty()) return std::nullopt;
   const render::LobeTransport& t = *transport_;
-  const auto luminance = [&](std::size_t column) { return color::xyz_d65_from_rgb(t.light(*point, column)).Y; };
+  const auto luminance = [&](std::size_t column) { return color::luminance(t.light(*point, column)); };
   const double base = luminance(render::LobeColumns::diffuse());
   if (!(base > 0)) return std::nullopt;
   std::vector<double> shares;

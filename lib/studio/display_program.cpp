@@ -51,8 +51,8 @@ void main() {{
   color = vec4(srgb_signal(shown.r), srgb_signal(shown.g), srgb_signal(shown.b), 1.0);
 }}
 )",
-                     display::kKnee, 1 - display::kKnee, color::xyz_d65_from_rgb({1, 0, 0}).Y,
-                     color::xyz_d65_from_rgb({0, 1, 0}).Y, color::xyz_d65_from_rgb({0, 0, 1}).Y);
+                     display::kKnee, 1 - display::kKnee, color::luminance({1, 0, 0}), color::luminance({0, 1, 0}),
+                     color::luminance({0, 0, 1}));
 }
 
 std::vector<double> to_srgb_screen() {

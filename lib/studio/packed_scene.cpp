@@ -52,7 +52,7 @@ Json programs_json(const render::PageShading& programs) {
 
 // Where most of the light comes from: the brightest spot, or, without spots, the brightest side.
 Json brightest_json(const envmap::PrefilteredEnvironment& env) {
-  const auto luminance = [](const envmap::Spot& spot) { return color::xyz_d65_from_rgb(spot.white).Y; };
+  const auto luminance = [](const envmap::Spot& spot) { return color::luminance(spot.white); };
   const auto spot = std::ranges::max_element(env.spots, {}, luminance);
   if (spot == env.spots.end())
     return {{"direction", vector_json(render::diffuse_white(&env, {}).direction)}, {"extent", 0}};

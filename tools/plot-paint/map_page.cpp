@@ -32,7 +32,7 @@ double exposure_of(const brdf::ColorMap& map) {
     for (double view = -85; view < 85; view += 2.5)
       if (is_covered(map, direction(light), direction(view)))
         values.push_back(
-            color::xyz_d65_from_rgb(brdf::reflectance_factor(map, direction(light), direction(view), kTreatment)).Y);
+            color::luminance(brdf::reflectance_factor(map, direction(light), direction(view), kTreatment)));
   if (values.empty()) return 1;
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 19 / 20);
   std::nth_element(values.begin(), at, values.end());

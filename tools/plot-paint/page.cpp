@@ -98,10 +98,6 @@ report::Plot lab_plot(const Subject& s, int channel, int width, int height) {
   return plot;
 }
 
-double luminance(const color::Rgb& rgb) {
-  return color::xyz_d65_from_rgb(rgb).Y;
-}
-
 // Each lobe's part of the luminance.
 report::Plot parts_plot(const paint::LobeFit& fit) {
   report::Plot plot{.title = "Parts of the reflectance factor",
@@ -120,12 +116,11 @@ report::Plot parts_plot(const paint::LobeFit& fit) {
     }
     plot.series.push_back(line);
   };
-  add(
-      "diffuse", [&](double) { return M_PI * luminance(fit.diffuse); }, report::Series::Style::kLine);
+  add("diffuse", [&](double) { return M_PI * color::luminance(fit.diffuse); }, report::Series::Style::kLine);
   for (const paint::Lobe& lobe : fit.lobes) {
     if (lobe.is_mirror()) continue;
     const auto curve_of = [&](const color::Rgb& weight) {
-      return [&lobe, y = M_PI * luminance(weight)](double t) { return y * math::cos_power(t, lobe.exponent); };
+      return [&lobe, y = M_PI * color::luminance(weight)](double t) { return y * math::cos_power(t, lobe.exponent); };
     };
     if (lobe.directional_diffuse != color::Rgb{})
       add(fmt::format("E {:.3g}", lobe.exponent), curve_of(lobe.directional_diffuse), report::Series::Style::kLine);
@@ -217,11 +212,9 @@ class Slices {
   std::vector<report::Drawing> drawings(int width, int height) const {
     std::vector<report::Drawing> both;
     if (has_target())
-      both.push_back(square(
-          s_.input.brdf ? "measured" : "curve", [this](const Vec3& v) { return target(v); }, width, height));
-    if (s_.lobes)
-      both.push_back(square(
-          "fit", [this](const Vec3& v) { return fit(v); }, width, height));
+      both.push_back(
+          square(s_.input.brdf ? "measured" : "curve", [this](const Vec3& v) { return target(v); }, width, height));
+    if (s_.lobes) both.push_back(square("fit", [this](const Vec3& v) { return fit(v); }, width, height));
     return both;
   }
 
@@ -252,7 +245,7 @@ class Slices {
     for (int i = 0; i < kCells; ++i)
       for (int j = 0; j < kCells; ++j) {
         const Vec3 view = report::hemisphere_direction((2 * i + 1.0) / kCells - 1, (2 * j + 1.0) / kCells - 1);
-        if (view.z > 0.05) values.push_back(luminance(has_target() ? target(view) : fit(view)));
+        if (view.z > 0.05) values.push_back(color::luminance(has_target() ? target(view) : fit(view)));
       }
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 19 / 20);
     std::nth_element(values.begin(), at, values.end());

@@ -24,17 +24,13 @@ constexpr int kSteps = 60;
 constexpr int kPlate = 96;  // pixels
 constexpr double kMiddleGray = 0.18;
 
-double grain_luminance(const color::Rgb& rgb) {
-  return color::xyz_d65_from_rgb(rgb).Y;
-}
-
 // The light of a level panel. Its varying part has a variance over square meters, relative to its square.
 struct PanelLight {
   color::Rgb all, varying;
   double variance_m2 = 0;
 
   double contrast_m() const {
-    return grain_luminance(all) > 0 ? std::sqrt(variance_m2) * grain_luminance(varying) / grain_luminance(all) : 0;
+    return color::luminance(all) > 0 ? std::sqrt(variance_m2) * color::luminance(varying) / color::luminance(all) : 0;
   }
 };
 
@@ -81,8 +77,8 @@ PanelLight under_cloud(const paint::LobeFit& fit, const paint::Flakes& flakes) {
     auto sum = 0.0 * value(normal, 1.0);
     for (int i = 0; i < kRings; ++i) {
       const double angle = (i + 0.5) * kPi / (2 * kRings), cosine = std::cos(angle);
-      sum += kPi * kPi / kRings * std::sin(angle) * cosine *
-             value(Vec3{std::sin(angle), 0, cosine}, (1 + 2 * cosine) / 3);
+      sum +=
+          kPi * kPi / kRings * std::sin(angle) * cosine * value(Vec3{std::sin(angle), 0, cosine}, (1 + 2 * cosine) / 3);
     }
     return sum;
   };
@@ -98,10 +94,10 @@ PanelLight under_cloud(const paint::LobeFit& fit, const paint::Flakes& flakes) {
              brdf::coat_transmission(1, seen.coat_index) * weight_of(seen, lobe.exponent);
     });
     light.varying += of_lobe;
-    variance += std::pow(grain_luminance(of_lobe), 2) * (moment(2) * moment(0) / std::pow(moment(1), 2) - 1) /
+    variance += std::pow(color::luminance(of_lobe), 2) * (moment(2) * moment(0) / std::pow(moment(1), 2) - 1) /
                 (lobe.share * flakes.per_m2());
   }
-  if (grain_luminance(light.varying) > 0) light.variance_m2 = variance / std::pow(grain_luminance(light.varying), 2);
+  if (color::luminance(light.varying) > 0) light.variance_m2 = variance / std::pow(color::luminance(light.varying), 2);
   return light;
 }
 
@@ -115,7 +111,7 @@ report::Drawing plate(const PanelLight& light, const paint::Flakes& flakes, doub
   const double of_flake = light.variance_m2 * flakes.per_m2();
   box.shown = std::min(1.0, 1 / std::max(1e-9, of_flake));
   const double varying = std::sqrt(box.shown * of_flake), expected = flakes.per_m2() * box.area() * box.shown,
-               exposure = kMiddleGray / std::max(1e-9, grain_luminance(light.all));
+               exposure = kMiddleGray / std::max(1e-9, color::luminance(light.all));
   for (int i = 0; i < kPlate * kPlate; ++i) {
     box.place = {(i % kPlate) * box.size[0], (i / kPlate) * box.size[1]};
     const color::Rgb shown = light.all + varying * (tree.count(box) / expected - 1) * light.varying;
@@ -171,8 +167,8 @@ report::Drawing sparkle_page(const paint::Paint& paint, const paint::KnownFlakes
     y += 18;
   }
   std::vector<report::Drawing> plates;
-  for (const auto& [light, name] : {std::pair(in_sun(*paint.lobes, known.flakes, 25), "sun"),
-                                    {under_cloud(*paint.lobes, known.flakes), "cloud"}})
+  for (const auto& [light, name] :
+       {std::pair(in_sun(*paint.lobes, known.flakes, 25), "sun"), {under_cloud(*paint.lobes, known.flakes), "cloud"}})
     for (const double distance_m : {0.3, 1.0, 3.0}) plates.push_back(plate(light, known.flakes, distance_m, name));
   return report::column_of({report::drawing(plot), caption, report::row_of(plates)});
 }

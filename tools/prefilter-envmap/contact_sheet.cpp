@@ -34,7 +34,7 @@ std::vector<const envmap::PrefilteredLobe*> maps_of(const envmap::PrefilteredEnv
 double mean_luminance(const envmap::CubeMap& map) {
   double sum = 0;
   for (std::size_t i = 0; i < map.texels.size(); i += 3)
-    sum += color::xyz_d65_from_rgb({map.texels[i], map.texels[i + 1], map.texels[i + 2]}).Y;
+    sum += color::luminance({map.texels[i], map.texels[i + 1], map.texels[i + 2]});
   return 3 * sum / static_cast<double>(map.texels.size());
 }
 

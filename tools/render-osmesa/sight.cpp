@@ -90,7 +90,7 @@ double white_by_gray(const render::Frame& frame) {
     for (int x = 0; x < frame.gbuffer->width; ++x) {
       if (frame.gbuffer->part(x, y) < 0) continue;
       const float* rgb = frame.picture.pixel(x, y);
-      sum += color::xyz_d65_from_rgb({rgb[0], rgb[1], rgb[2]}).Y / color::xyz_d65_from_rgb({1, 1, 1}).Y;
+      sum += color::luminance({rgb[0], rgb[1], rgb[2]}) / color::luminance({1, 1, 1});
       ++count;
     }
   }

@@ -44,7 +44,7 @@ class Sheet {
         for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(rgb[c]);
         pixel[3] = 1;
       }
-    brightest_ = std::max(brightest_, color::xyz_d65_from_rgb(rgb).Y);
+    brightest_ = std::max(brightest_, color::luminance(rgb));
   }
 
   Result<image::Image> shown() const {
@@ -158,7 +158,7 @@ double stops_of(const image::Image& picture) {
   std::vector<double> luminances;
   for (std::size_t i = 0; i < picture.data.size(); i += 4)
     if (picture.data[i + 3] > 0.99F)
-      luminances.push_back(color::xyz_d65_from_rgb({picture.data[i], picture.data[i + 1], picture.data[i + 2]}).Y);
+      luminances.push_back(color::luminance({picture.data[i], picture.data[i + 1], picture.data[i + 2]}));
   if (luminances.empty()) return 0;
   std::ranges::sort(luminances);
   return std::log2(0.75 / std::max(1e-6, luminances[luminances.size() * 99 / 100]));

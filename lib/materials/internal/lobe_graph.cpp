@@ -272,7 +272,7 @@ class Problem {
   // An error of this light counts by what it makes of the lightness.
   double lightness_weight(std::size_t sample) const {
     constexpr double kDarkest = 0.003;  // L* of 3: below, differences are of the instruments
-    const double luminance = kPi * color::xyz_d65_from_rgb(samples_[sample].f).Y;
+    const double luminance = kPi * color::luminance(samples_[sample].f);
     return std::sqrt(samples_[sample].weight) * std::pow(std::max(luminance, kDarkest), -2.0 / 3);
   }
 

@@ -26,7 +26,7 @@ color::Lab searched(const color::Lab& wanted, const color::Xyz& white) {
   const auto lab_of = [&](const color::Rgb& rec709) {
     return color::lab_from_rgb(color::rec2020_from_rec709(rec709), white);
   };
-  const double gray = std::max(0.0, color::xyz_d65_from_rgb(color::rec2020_from_rec709(outside)).Y),
+  const double gray = std::max(0.0, color::luminance(color::rec2020_from_rec709(outside))),
                share = gray / std::max(gray - least(outside), 1e-12);
   const color::Rgb starts[] = {outside,
                                color::Rgb{gray, gray, gray} + share * (outside - color::Rgb{gray, gray, gray})};

@@ -41,10 +41,6 @@ constexpr int kBlock = 4;
 // A surface that is seen at a smaller cosine has no footprint.
 constexpr double kGrazing = 0.02;
 
-double seen_luminance(const color::Rgb& rgb) {
-  return color::xyz_d65_from_rgb(rgb).Y;
-}
-
 std::array<int, 2> other_axes(int axis) {
   return {(axis + 1) % 3, (axis + 2) % 3};
 }
@@ -113,7 +109,7 @@ struct Sparkle::Grain {
   double further_m2 = 0;   // the variance of its luminance and of all further light of the place together
   bool is_seen = false;    // at the last pixel
 
-  double deviation_m() const { return std::sqrt(variance_m2) * seen_luminance(mean); }
+  double deviation_m() const { return std::sqrt(variance_m2) * color::luminance(mean); }
 };
 
 void Sparkle::add_further(std::vector<Grain>& grains) {
@@ -264,11 +260,11 @@ Sparkle::Place Sparkle::place(const Part& part, const Footprint& at, const Lit& 
     const Vec3 mean = envmap::bilinear(*part.maps[j].mean, at.mirrored),
                rms = envmap::bilinear(*part.maps[j].rms, at.mirrored);
     const color::Rgb light = let_out * whole.cosine * met(worn->directional_diffuse, {mean.x, mean.y, mean.z});
-    const double of_mean = seen_luminance({mean.x, mean.y, mean.z}), of_rms = seen_luminance({rms.x, rms.y, rms.z});
+    const double of_mean = color::luminance({mean.x, mean.y, mean.z}), of_rms = color::luminance({rms.x, rms.y, rms.z});
     const double variance = of_mean > 0 ? of_rms * of_rms / (of_mean * of_mean) - 1 : 0;
     rest.mean += light;
     if (variance > kMapVariance)
-      rest_variance += variance * std::pow(seen_luminance(light), 2) / (part.lobes[j].share * part.per_m2);
+      rest_variance += variance * std::pow(color::luminance(light), 2) / (part.lobes[j].share * part.per_m2);
   }
   std::ranges::stable_sort(place.grains, std::greater<>(), &Grain::deviation_m);
   add_further(place.grains);
@@ -282,11 +278,11 @@ Sparkle::Place Sparkle::place(const Part& part, const Footprint& at, const Lit& 
     return true;
   });
   // Lobes share out the flakes, and their variances add.
-  if (const double light = seen_luminance(rest.mean); light > 0) rest.variance_m2 = rest_variance / (light * light);
+  if (const double light = color::luminance(rest.mean); light > 0) rest.variance_m2 = rest_variance / (light * light);
   place.grains.push_back(std::move(rest));
   color::Rgb sum;
   for (const Grain& grain : place.grains) sum += grain.mean;
-  const double least_m = kLeast * seen_luminance(sum) * std::sqrt(at.area_m2);
+  const double least_m = kLeast * color::luminance(sum) * std::sqrt(at.area_m2);
   std::erase_if(place.grains, [&](const Grain& grain) {
     if (grain.deviation_m() > least_m) return false;
     place.steady += grain.mean;
@@ -300,7 +296,7 @@ Sparkle::Place Sparkle::place(const Part& part, const Footprint& at, const Lit& 
 // The light of all flakes is no more than what the pixel shows.
 template <class See>
 void Sparkle::visit_seen(Place& place, const color::Rgb& shown, const Lit& lit, const See& see) {
-  const double least_m = kLeast * seen_luminance(shown) * std::sqrt(place.at.area_m2);
+  const double least_m = kLeast * color::luminance(shown) * std::sqrt(place.at.area_m2);
   color::Rgb sum = place.steady;
   double seen_m2 = 0;
   for (Grain& grain : place.grains) {

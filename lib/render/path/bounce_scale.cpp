@@ -135,7 +135,7 @@ OfClasses of_classes(const LobeTransport& t, const Products& own, const std::vec
   }
   color::Rgb total;
   for (const color::Rgb& light : of.before) total += light;
-  of.weight = 1 / (color::xyz_d65_from_rgb(total).Y + kDark * t.white_luminance);
+  of.weight = 1 / (color::luminance(total) + kDark * t.white_luminance);
   return of;
 }
 

@@ -22,10 +22,6 @@ constexpr float kLeastSquare = 1e-24F;
 constexpr double kTie = 1e-9;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-double mean_of(const color::Rgb& c) {
-  return (c.x + c.y + c.z) / 3;
-}
-
 float along(const Float3& a, int axis) {
   return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
 }
@@ -68,7 +64,7 @@ Result<Emitters> Emitters::create(const rays::RayScene& scene, std::vector<color
   double total = 0;
   for (std::uint32_t triangle = 0; triangle < scene.triangles(); ++triangle) {
     const int part = scene.part(triangle);
-    const double power = mean_of(emitters.radiance(part)), area = 0.5 * length(scene.doubled_area(triangle));
+    const double power = color::mean(emitters.radiance(part)), area = 0.5 * length(scene.doubled_area(triangle));
     if (!(power > 0)) continue;
     part_area[static_cast<std::size_t>(part)] += area;
     if (!(area > 0)) continue;
@@ -80,7 +76,7 @@ Result<Emitters> Emitters::create(const rays::RayScene& scene, std::vector<color
     leaves.push_back(leaf);
   }
   for (std::size_t part = 0; part < part_area.size(); ++part)
-    if (mean_of(emitters.radiance_[part]) > 0 && !(part_area[part] > 0))
+    if (color::mean(emitters.radiance_[part]) > 0 && !(part_area[part] > 0))
       return input_error("part {} emits light but has no area: no ray can find it", part);
   if (leaves.empty()) return emitters;
   for (std::size_t i = 0; i < leaves.size(); ++i) leaves[i].power = static_cast<float>(powers[i] / total);

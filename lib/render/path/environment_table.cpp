@@ -48,7 +48,7 @@ EnvironmentTable::EnvironmentTable(const envmap::Environment& environment)
   for (int row = 0; row < height_; ++row) {
     for (int column = 0; column < width_; ++column) {
       const color::Rgb light = texel_radiance(environment, column, row);
-      const double mean = (light.x + light.y + light.z) / 3, solid_angle = solid_angles.at(column, row);
+      const double mean = color::mean(light), solid_angle = solid_angles.at(column, row);
       const auto at = static_cast<std::size_t>(column);
       sums[at + 1] = sums[at] + mean * solid_angle;
       squares += mean * mean * solid_angle;

@@ -42,10 +42,6 @@ double upward_weight(const envmap::Environment& environment, int column, int row
   return weight / (kParts * kParts);
 }
 
-double gray_of(const color::Rgb& light) {
-  return (light.x + light.y + light.z) / 3;
-}
-
 std::size_t place_of(const envmap::Environment& environment, int column, int row) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(environment.width()) +
          static_cast<std::size_t>(column);
@@ -90,17 +86,17 @@ Result<ProjectedGround> ProjectedGround::create(const Ground& ground, const envm
 void ProjectedGround::find_bright() {
   constexpr double kTimes = 30, kPart = 0.1;
   const envmap::Environment& environment = *environment_;
-  const double mean = gray_of(irradiance_) / kPi;
+  const double mean = color::mean(irradiance_) / kPi;
   std::vector<bool> bright(static_cast<std::size_t>(environment.width()) *
                            static_cast<std::size_t>(environment.height()));
   color::Rgb sum;
   for_upper_texels([&](int column, int row, double weight) {
     const color::Rgb light = texel(environment, column, row);
-    if (gray_of(light) <= kTimes * mean) return;
+    if (color::mean(light) <= kTimes * mean) return;
     bright[place_of(environment, column, row)] = true;
     sum += weight * light;
   });
-  if (!(gray_of(sum) > kPart * gray_of(irradiance_))) return;
+  if (!(color::mean(sum) > kPart * color::mean(irradiance_))) return;
   bright_ = std::move(bright), bright_irradiance_ = sum, soft_irradiance_ += -1.0 * sum;
 }
 
@@ -108,7 +104,7 @@ void ProjectedGround::find_bright() {
 // known; where a channel has no light in the draws, it is shared evenly.
 std::vector<ProjectedGround::SharedRay> ProjectedGround::shared_rays(std::uint32_t count, bool bright) const {
   const color::Rgb& irradiance = bright ? bright_irradiance_ : soft_irradiance_;
-  if (!(gray_of(irradiance) > 1e-9 * gray_of(irradiance_))) return {};
+  if (!(color::mean(irradiance) > 1e-9 * color::mean(irradiance_))) return {};
   std::vector<envmap::Environment::Dimmed> factors(environment_->values().size() / 3);
   for (int row = 0; row < environment_->height(); ++row)
     for (int column = 0; column < environment_->width(); ++column)

@@ -103,8 +103,7 @@ std::shared_ptr<const BrightPlaces> Transport::find_bright_places(int bounces, s
   Transport by_lobes = *this;
   by_lobes.draw_toward(nullptr);
   const auto sent = [&](const Hit& hit, const Float3& direction, const Sequence& sequence, std::uint32_t index) {
-    const color::Rgb light = by_lobes.bounced(hit, {}, direction, bounces, sequence, index, 2);
-    return (light.x + light.y + light.z) / 3;
+    return color::mean(by_lobes.bounced(hit, {}, direction, bounces, sequence, index, 2));
   };
   return BrightPlaces::find(*rays_, emitters_, sent, seed);
 }

@@ -37,7 +37,7 @@ double visible_white(const Transport& transport, const Gbuffer& g, int bounces, 
     color::Rgb white = at.deterministic();
     for (std::uint64_t batch = 0; batch < kBatches && !at.certain(); ++batch)
       white += (1.0 / kBatches) * at.batch_shares(mixed(mixed(seed, i), batch)).sum();
-    luminance[k] = color::xyz_d65_from_rgb(white).Y;
+    luminance[k] = color::luminance(white);
   });
   return math::median(std::move(luminance));
 }

@@ -108,7 +108,7 @@ std::string extent_reason(const Scene& scene, const Effects& all) {
 double light_chroma(const Scene& scene, const Effects& all) {
   double most = 0;
   const auto meet = [&](const color::Rgb& rgb) {
-    const double y = color::xyz_d65_from_rgb(rgb).Y;
+    const double y = color::luminance(rgb);
     if (y > 0)
       most = std::max(most, color::chroma(color::lab_from_rgb((1 / y) * rgb, color::xyz_d65_from_rgb({1, 1, 1}))));
   };
