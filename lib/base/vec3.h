@@ -17,6 +17,10 @@ struct Vec3 {
   friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
 };
 
+// Three floats that lie one behind the other.
+constexpr Vec3 vec3(const float* v) {
+  return {v[0], v[1], v[2]};
+}
 constexpr Vec3 operator+(const Vec3& a, const Vec3& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }

@@ -13,10 +13,6 @@ namespace {
 
 constexpr float kRounding = 1e-6F;  // caps are kept a little wider than floats round
 
-Vec3 vec(const float* v) {
-  return {v[0], v[1], v[2]};
-}
-
 void set_cap(const Vec3& axis, double radius_rad, BlockTree::Block& block) {
   const double radius = std::min(radius_rad, kPi);
   for (int k = 0; k < 3; ++k) block.axis[k] = static_cast<float>(axis[k]);
@@ -45,7 +41,7 @@ BlockTree::Block BlockTree::merged(const Sheet::Level& finer, int column, int ro
         body(finer.blocks[static_cast<std::size_t>(y) * finer.width + x]);
   };
   each_child([&](const Block& child) {
-    axis += child.area * vec(child.axis);
+    axis += child.area * vec3(child.axis);
     block.area += child.area;
     for (int c = 0; c < 3; ++c) {
       block.flux[c] += child.flux[c];
@@ -55,7 +51,7 @@ BlockTree::Block BlockTree::merged(const Sheet::Level& finer, int column, int ro
   axis = length(axis) > 1e-6 * block.area ? normalized(axis) : Vec3{0, 1, 0};
   double radius = 0;
   each_child([&](const Block& child) {
-    radius = std::max(radius, angle_between(axis, vec(child.axis)) + std::atan2(child.sine, child.cosine));
+    radius = std::max(radius, angle_between(axis, vec3(child.axis)) + std::atan2(child.sine, child.cosine));
   });
   set_cap(axis, radius, block);
   return block;

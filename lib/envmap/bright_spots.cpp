@@ -23,11 +23,6 @@ constexpr double kWidestSun_rad = 0.03;  // the air about a sun shines, and a pr
 constexpr double kLeastSun = 0.1;        // of all light
 constexpr double kMostWhite = 1e30;      // of a spot: far from what a float cannot hold
 
-color::Rgb texel(const Environment& environment, int column, int row) {
-  const float* rgb = environment.radiance(column, row);
-  return {rgb[0], rgb[1], rgb[2]};
-}
-
 // The light of a texel beyond a level.
 struct Excess {
   int column = 0, row = 0;
@@ -79,7 +74,7 @@ double whole_light(const Environment& environment) {
 std::vector<Excess> brighter_in_row(const Environment& environment, int row, double level) {
   std::vector<Excess> found;
   for (int column = 0; column < environment.width(); ++column) {
-    const color::Rgb radiance = texel(environment, column, row);
+    const color::Rgb radiance = environment.texel(column, row);
     const double mean = color::mean(radiance);
     if (!(mean > level)) continue;
     Excess e{column, row, (1 - level / mean) * radiance, {}, 0};
@@ -170,7 +165,7 @@ std::optional<SunlitSky> sunlit_sky(const Environment& environment) {
     return std::nullopt;
   std::vector<Environment::Dimmed> dimmed;
   for (const Excess& e : brightest.texels)
-    dimmed.push_back({e.column, e.row, level / color::mean(texel(environment, e.column, e.row))});
+    dimmed.push_back({e.column, e.row, level / color::mean(environment.texel(e.column, e.row))});
   return SunlitSky{sun, environment.dimmed(dimmed)};
 }
 

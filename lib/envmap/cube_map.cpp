@@ -58,17 +58,12 @@ double cube_cell_solid_angle(double s0, double s1, double t0, double t1) {
 
 namespace {
 
-Vec3 texel(const CubeMap& map, int face, int column, int row) {
-  const float* rgb = map.at(face, row, column);
-  return {rgb[0], rgb[1], rgb[2]};
-}
-
 // The texel beside a face: its center, in the plane of the face, lies less than half a texel from the center of the
 // neighbor's first texel, so the direction finds it.
 Vec3 texel_across(const CubeMap& map, int face, int column, int row) {
   const CubePosition p = cube_position(cube_direction(face, column + 0.5, row + 0.5, map.size), map.size);
   const auto inside = [&](double x) { return std::clamp(static_cast<int>(x), 0, map.size - 1); };
-  return texel(map, p.face, inside(p.column), inside(p.row));
+  return vec3(map.at(p.face, inside(p.row), inside(p.column)));
 }
 
 }  // namespace
@@ -89,7 +84,7 @@ Vec3 bilinear(const CubeMap& map, const Vec3& direction) {
         missing_x = i, missing_y = j;
       else
         corner[j][i] =
-            out_x || out_y ? texel_across(map, p.face, column + i, row + j) : texel(map, p.face, column + i, row + j);
+            out_x || out_y ? texel_across(map, p.face, column + i, row + j) : vec3(map.at(p.face, row + j, column + i));
     }
   if (missing_x >= 0) {
     const int i = missing_x, j = missing_y;

@@ -45,14 +45,7 @@ Result<Environment> Environment::scaled(double factor) const {
 
 Vec3 Environment::blended(const Vec3& direction) const {
   const bool cube = layout() == Layout::kCube;
-  const auto texel = [&](int column, int row) {
-    const float* rgb = radiance(column, row);
-    return Vec3{rgb[0], rgb[1], rgb[2]};
-  };
-  if (!cube && layout() != Layout::kLatLong) {
-    const float* rgb = lookup(direction);
-    return {rgb[0], rgb[1], rgb[2]};
-  }
+  if (!cube && layout() != Layout::kLatLong) return vec3(lookup(direction));
   const int rows = cube ? width() : height();
   double column = 0, row = 0;
   int top = 0;

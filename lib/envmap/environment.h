@@ -91,6 +91,7 @@ class Environment {
   const float* radiance(int column, int row) const {
     return &rgb_[3 * (static_cast<std::size_t>(row) * width() + column)];
   }
+  Vec3 texel(int column, int row) const { return vec3(radiance(column, row)); }
   double solid_angle(int column, int row) const { return grid_.solid_angle(column, row); }
   Vec3 direction(int column, int row) const { return grid_.direction(column, row); }
   double solid_angle(double column0, double row0, double column1, double row1) const {

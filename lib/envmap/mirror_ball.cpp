@@ -144,8 +144,7 @@ class BallTexels {
       for (int i = left; i <= left + 1; ++i) {
         if (!is_on_ball(i, j)) continue;
         const double weight = (1 - std::fabs(x - 0.5 - i)) * (1 - std::fabs(y - 0.5 - j));
-        const float* texel = rgb_.pixel(i, j);
-        sum = sum + weight * Vec3{texel[0], texel[1], texel[2]};
+        sum = sum + weight * vec3(rgb_.pixel(i, j));
         weights += weight;
       }
     if (weights > 1e-6) return (1 / weights) * sum;

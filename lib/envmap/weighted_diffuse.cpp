@@ -36,9 +36,8 @@ std::vector<Beam> beams_of(const CubeMap& map) {
   for (int face = 0; face < 6; ++face)
     for (int row = 0; row < n; ++row)
       for (int column = 0; column < n; ++column) {
-        const float* texel = map.at(face, row, column);
         const double area = areas[static_cast<std::size_t>(row * n + column)];
-        const Vec3 light = area * Vec3{texel[0], texel[1], texel[2]};
+        const Vec3 light = area * vec3(map.at(face, row, column));
         const auto into = static_cast<std::size_t>((face * grid + row * grid / n) * grid + column * grid / n);
         flux[into] += light;
         moment[into] += (light.x + light.y + light.z) * cube_direction(face, column + 0.5, row + 0.5, n);

@@ -22,10 +22,6 @@ bool is_glare(const Vec3& light, const Vec3& view, const Vec3& normal) {
   return paint::aspecular_angle_rad(light, view, normal) < kIndexGlare_deg * kDegree - 1e-9;
 }
 
-double luminance(const float* rgb) {
-  return color::luminance({rgb[0], rgb[1], rgb[2]});
-}
-
 Result<std::vector<Vec3>> directions_of(const char* option, const std::vector<std::string>& texts) {
   std::vector<Vec3> directions;
   for (const std::string& text : texts) {
@@ -143,7 +139,8 @@ Result<EnvironmentPanels> EnvironmentPanels::make(const envmap::PrefilteredEnvir
     return input_error("the environment has no lobes: make it by prefilter-envmap with a basis or --exponents");
   double most = 0;
   const envmap::CubeMap& diffuse = env.diffuse.map;
-  for (std::size_t i = 0; i < diffuse.texels.size(); i += 3) most = std::max(most, luminance(&diffuse.texels[i]));
+  for (std::size_t i = 0; i < diffuse.texels.size(); i += 3)
+    most = std::max(most, color::luminance(vec3(&diffuse.texels[i])));
   if (!(most > 0)) return input_error("the environment is black: there is no white to compare with");
   panels.luminance_ = most;
   render::Scene scene;

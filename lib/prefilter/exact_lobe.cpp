@@ -269,7 +269,7 @@ class MirrorSearch {
     std::array<const float*, 4> sees;
     for (std::size_t k = 0; k < 4; ++k) sees[k] = seen(corner[k]);
     const auto same = [&](const float* rgb) { return std::count(sees.begin(), sees.end(), rgb); };
-    if (depth >= kMost || (depth >= kLeast && same(middle) == 4)) return area * vec(middle);
+    if (depth >= kMost || (depth >= kLeast && same(middle) == 4)) return area * vec3(middle);
     // One corner, or two neighbors, on the far side of a line.
     const float* other = nullptr;
     for (const float* rgb : sees)
@@ -278,14 +278,13 @@ class MirrorSearch {
     const bool crossed = two && same(other) == 2 && sees[0] == sees[2];
     if (two && !crossed && same(other) <= 2) {
       const double part = far_part(corner, sees, other);
-      return area * ((1 - part) * vec(middle) + part * vec(other));
+      return area * ((1 - part) * vec3(middle) + part * vec3(other));
     }
     return integral(s0, t0, s, t, depth + 1) + integral(s, t0, s1, t, depth + 1) + integral(s0, t, s, t1, depth + 1) +
            integral(s, t, s1, t1, depth + 1);
   }
 
  private:
-  static Vec3 vec(const float* rgb) { return {rgb[0], rgb[1], rgb[2]}; }
   const float* seen(const std::array<double, 2>& at) const {
     return env_.lookup(turn_.to_environment(grid_.direction_at(at[0], at[1])));
   }
@@ -364,8 +363,7 @@ LobeError map_error(const envmap::PrefilteredLobe& lobe, const envmap::SphereGri
 
 Vec3 reference_lobe(const envmap::Environment& env, const Vec3& d, double exponent) {
   if (!paint::is_mirror(exponent)) return reference_lobe(env, d, CosineKernel(exponent));
-  const float* rgb = env.lookup(d);
-  return {rgb[0], rgb[1], rgb[2]};
+  return vec3(env.lookup(d));
 }
 
 Vec3 reference_lobe(const envmap::Environment& env, const Vec3& d, const ZonalKernel& kernel) {

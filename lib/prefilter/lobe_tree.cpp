@@ -23,10 +23,6 @@ namespace {
 
 constexpr double kCoarseTolerance = 0.05;  // of the first walk
 
-Vec3 vec(const float* v) {
-  return {v[0], v[1], v[2]};
-}
-
 }  // namespace
 
 struct LobeTree::Walk {
@@ -43,7 +39,7 @@ bool LobeTree::opens(const Walk& walk, const envmap::BlockTree::Block& block, Ve
   if (weight == 0) return false;
 
   // The cosines of the nearest and the farthest point of the cap.
-  const double t0 = dot(walk.d, vec(block.axis)), s0 = std::sqrt(std::max(0.0, 1 - t0 * t0));
+  const double t0 = dot(walk.d, vec3(block.axis)), s0 = std::sqrt(std::max(0.0, 1 - t0 * t0));
   const double cosine = block.cosine, sine = block.sine;
   const double high = t0 >= cosine ? 1 : t0 * cosine + s0 * sine;
   const ZonalKernel& kernel = walk.kernel;
@@ -56,7 +52,7 @@ bool LobeTree::opens(const Walk& walk, const envmap::BlockTree::Block& block, Ve
   if (low <= edge) {
     if (!(cosine > 0.8 && weight * most <= budget / std::max(sine, 1e-9))) return true;
     // On average half of the block is inside the edge.
-    sum += 0.5 * kernel.mean_to_edge(most) * vec(block.flux);
+    sum += 0.5 * kernel.mean_to_edge(most) * vec3(block.flux);
     return false;
   }
   const double least = kernel.value(low);
@@ -64,7 +60,7 @@ bool LobeTree::opens(const Walk& walk, const envmap::BlockTree::Block& block, Ve
   if (error > walk.tolerance * least && weight * error > budget) return true;
   const double k = kernel.value(t0), slope = kernel.slope(t0, k);
   for (int c = 0; c < 3; ++c)
-    sum[c] += block.flux[c] * k + slope * (dot(walk.d, vec(block.moment[c])) - t0 * block.flux[c]);
+    sum[c] += block.flux[c] * k + slope * (dot(walk.d, vec3(block.moment[c])) - t0 * block.flux[c]);
   return false;
 }
 
@@ -82,7 +78,7 @@ void LobeTree::add_texel(const Walk& walk, int column, int row, Vec3& sum) const
   const envmap::Cell cell = {double(column), double(row), column + 1.0, row + 1.0};
   sum +=
       lobe_over_cell(env, cell, walk.d, walk.kernel, relative, std::clamp(allowed / cut, 0.1 * walk.tolerance, 0.1)) *
-      vec(rgb);
+      vec3(rgb);
 }
 
 Vec3 LobeTree::walked(const Walk& walk) const {

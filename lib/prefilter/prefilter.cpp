@@ -366,7 +366,7 @@ class WideLobe {
         lobe_values(shop_.rest(), k, angles, taps(shop_.flux(), shop_.largest(), *plan_.kernel, tolerance_));
     if (shop_.bright().count() > 0)
       for_each_texel(grid, shop_.turn(), texels, [&](const Vec3& d, float* rgb) {
-        const Vec3 extra = bright_lobe(d, {rgb[0], rgb[1], rgb[2]});
+        const Vec3 extra = bright_lobe(d, vec3(rgb));
         for (int c = 0; c < 3; ++c) rgb[c] += static_cast<float>(extra[c]);
       });
     return texels;
@@ -550,8 +550,8 @@ double energy_ratio(const Vec3& flux, const envmap::PrefilteredLobe& lobe) {
     const std::size_t width = static_cast<std::size_t>(grid.width());
     for (std::size_t row = begin; row < end; ++row)
       for (std::size_t column = 0; column < width; ++column) {
-        const float* rgb = &lobe.map.texels[3 * (row * width + column)];
-        sums[row] += solid_angles.at(static_cast<int>(column), static_cast<int>(row)) * Vec3{rgb[0], rgb[1], rgb[2]};
+        sums[row] += solid_angles.at(static_cast<int>(column), static_cast<int>(row)) *
+                     vec3(&lobe.map.texels[3 * (row * width + column)]);
       }
   });
   Vec3 sum;

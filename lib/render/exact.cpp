@@ -27,8 +27,7 @@ template <class AnyGatherer>
 void gather_texels(const envmap::Environment& env, std::vector<AnyGatherer>& points) {
   for (int row = 0; row < env.height(); ++row) {
     for (int column = 0; column < env.width(); ++column) {
-      const float* texel = env.radiance(column, row);
-      const color::Rgb radiance{texel[0], texel[1], texel[2]};
+      const color::Rgb radiance = env.texel(column, row);
       if (radiance == color::Rgb{}) continue;
       const Patch whole{env.direction(column, row), env.solid_angle(column, row)};
       for (AnyGatherer& point : points) gather_texel(env, column, row, whole, radiance, point);

@@ -16,8 +16,7 @@ bool Gbuffer::shows_inside() const {
 }
 
 Vec3 Gbuffer::normal(int x, int y) const {
-  const float* n = at(x, y);
-  return normalized({n[0], n[1], n[2]});
+  return normalized(vec3(at(x, y)));
 }
 
 VisiblePoint Gbuffer::point(int x, int y, const std::vector<TexturePlace>& places, const mesh::Mesh* mesh) const {

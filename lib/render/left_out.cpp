@@ -34,8 +34,7 @@ void compare(const Frame& planned, const Frame& full, double white, LeftOut& res
   for (int y = 0; y < full.picture.height; ++y) {
     for (int x = 0; x < full.picture.width; ++x) {
       if (full.gbuffer->part(x, y) < 0) continue;
-      const float *a = planned.picture.pixel(x, y), *b = full.picture.pixel(x, y);
-      de00.push_back(seen_difference({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, white));
+      de00.push_back(seen_difference(vec3(planned.picture.pixel(x, y)), vec3(full.picture.pixel(x, y)), white));
     }
   }
   if (de00.empty()) return;

@@ -72,8 +72,7 @@ PictureError picture_error(const Frame& frame, const Scene& scene, const Surroun
   const std::vector<color::Rgb> truth = exact_radiance(sample.points, scene, effects_of(scene), around);
   std::vector<double> de00;
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    const float* pixel = frame.centers.pixel(sample.places[i][0], sample.places[i][1]);
-    de00.push_back(seen_difference({pixel[0], pixel[1], pixel[2]}, truth[i], white));
+    de00.push_back(seen_difference(vec3(sample.pixel(frame.centers, i)), truth[i], white));
   }
   PictureError error = error_of(sample, de00);
   error.time_s = clock.elapsed_s();

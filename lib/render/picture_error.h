@@ -29,6 +29,7 @@ struct PixelSample {
   std::vector<std::array<int, 2>> places;
   std::vector<VisiblePoint> points;
   std::size_t visible = 0;  // pixels that may be drawn
+  const float* pixel(const image::Image& image, std::size_t i) const { return image.pixel(places[i][0], places[i][1]); }
 };
 PixelSample sampled_pixels(const Gbuffer& gbuffer, const Scene& scene, int count, std::uint64_t seed);
 

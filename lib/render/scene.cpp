@@ -131,8 +131,7 @@ DiffuseWhite diffuse_white(const envmap::PrefilteredEnvironment* env, const std:
   for (int face = 0; face < 6; ++face) {
     for (int row = 0; row < n; ++row) {
       for (int column = 0; column < n; ++column) {
-        const float* texel = env->diffuse.map.at(face, row, column);
-        const double y = color::luminance({texel[0], texel[1], texel[2]});
+        const double y = color::luminance(vec3(env->diffuse.map.at(face, row, column)));
         if (y <= white.luminance) continue;
         white = {y, envmap::cube_direction(face, column + 0.5, row + 0.5, n)};
       }

@@ -79,11 +79,6 @@ double noiseless(const PointTruth& a, const PointTruth& b, const Difference& dif
   return std::sqrt(std::max(0.0, 2 * whole - halves));
 }
 
-color::Rgb pixel_of(const image::Image& image, const std::array<int, 2>& place) {
-  const float* p = image.pixel(place[0], place[1]);
-  return {p[0], p[1], p[2]};
-}
-
 // A truth that is refined until its noise is small against what it is compared with.
 class Judge {
  public:
@@ -222,9 +217,9 @@ class Judge {
     return values.empty() ? 0 : percentile_95(std::move(values));
   }
   color::Rgb truth(std::size_t i) const { return open_[i] + truth_[i].mean().sum(); }
-  color::Rgb picture(std::size_t i) const { return pixel_of(frame_.centers, sample_.places[i]); }
+  color::Rgb picture(std::size_t i) const { return vec3(sample_.pixel(frame_.centers, i)); }
   color::Rgb open_picture(std::size_t i) const {
-    return frame_.open_centers.data.empty() ? picture(i) : pixel_of(frame_.open_centers, sample_.places[i]);
+    return frame_.open_centers.data.empty() ? picture(i) : vec3(sample_.pixel(frame_.open_centers, i));
   }
   double changed(std::size_t i, const color::Rgb& by) const { return seen_difference(truth(i) + by, truth(i), white_); }
 

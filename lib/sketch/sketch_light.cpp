@@ -87,10 +87,7 @@ class Shading {
   Shading(const image::AovFile& buffers, formats::Basis basis, int normal, int part)
       : buffers_(buffers), basis_(std::move(basis)), normal_(normal), part_(part) {}
 
-  Vec3 normal(int x, int y) const {
-    const float* pixel = buffers_.image.pixel(x, y) + normal_;
-    return {pixel[0], pixel[1], pixel[2]};
-  }
+  Vec3 normal(int x, int y) const { return vec3(buffers_.image.pixel(x, y) + normal_); }
 
   // The change of the normal for each pixel, from one to the other beyond a pixel; none where they lie on two parts.
   Vec3 change(int x0, int y0, int x1, int y1) const {

@@ -60,7 +60,7 @@ Result<std::size_t> relit(image::Image& image, const color::Matrix3& matrix, boo
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       float* pixel = image.pixel(x, y);
-      const color::Rgb color = color::product(matrix, {pixel[0], pixel[1], pixel[2]});
+      const color::Rgb color = color::product(matrix, vec3(pixel));
       negative += color.x < 0 || color.y < 0 || color.z < 0;
       for (int c = 0; c < 3; ++c) {
         pixel[c] = static_cast<float>(keep_negative ? color[c] : std::max(color[c], 0.0));

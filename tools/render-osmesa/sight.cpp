@@ -89,8 +89,7 @@ double white_by_gray(const render::Frame& frame) {
   for (int y = 0; y < frame.gbuffer->height; ++y) {
     for (int x = 0; x < frame.gbuffer->width; ++x) {
       if (frame.gbuffer->part(x, y) < 0) continue;
-      const float* rgb = frame.picture.pixel(x, y);
-      sum += color::luminance({rgb[0], rgb[1], rgb[2]}) / color::luminance({1, 1, 1});
+      sum += color::luminance(vec3(frame.picture.pixel(x, y))) / color::luminance({1, 1, 1});
       ++count;
     }
   }

@@ -346,10 +346,7 @@ std::vector<color::Rgb> CpuEngine::colors(const std::vector<VisiblePoint>& point
       batch.add(i, normal, to_viewer, point.part, from_origin(point.position, origin_));
     }
     batch.shade();
-    for (int i = 0; i < batch.count(); ++i) {
-      const float* rgb = batch.rgba(i);
-      colors[batch.index(i)] = {rgb[0], rgb[1], rgb[2]};
-    }
+    for (int i = 0; i < batch.count(); ++i) colors[batch.index(i)] = vec3(batch.rgba(i));
   });
   return colors;
 }

@@ -42,7 +42,7 @@ inline Beam beam_of(const envmap::BlockTree::Block& block) {
   Vec3 moment;
   double flux = 0;
   for (int c = 0; c < 3; ++c) {
-    moment += Vec3{block.moment[c][0], block.moment[c][1], block.moment[c][2]};
+    moment += vec3(block.moment[c]);
     flux += block.flux[c];
   }
   const double size = length(moment);
@@ -53,7 +53,7 @@ inline Beam beam_of(const envmap::BlockTree::Block& block) {
   Beam beam{direction, variance < kRounded ? std::min(even, kRounded) : variance, {}};
   for (std::size_t c = 0; c < 3; ++c) {
     if (!(block.flux[c] > 0)) continue;
-    const Vec3 own = (1 / block.flux[c]) * Vec3{block.moment[c][0], block.moment[c][1], block.moment[c][2]};
+    const Vec3 own = (1 / block.flux[c]) * vec3(block.moment[c]);
     beam.of_channels[c] = own - dot(own, direction) * direction;
   }
   return beam;
@@ -64,10 +64,10 @@ void gather_blocks(const envmap::BlockTree& tree, AnyGatherer& point) {
   const envmap::Environment& env = tree.environment();
   tree.walk(
       [&](const envmap::BlockTree::Block& block) {
-        const color::Rgb flux{block.flux[0], block.flux[1], block.flux[2]};
+        const color::Rgb flux = vec3(block.flux);
         if (flux == color::Rgb{}) return false;
         if (point.ends_at_horizon()) {
-          const double above = dot(point.normal(), {block.axis[0], block.axis[1], block.axis[2]});
+          const double above = dot(point.normal(), vec3(block.axis));
           if (block.cosine > 0 && above < -block.sine) return false;
           if (above < block.sine && point.grain().opens_at_horizon(block)) return true;
         }
@@ -78,8 +78,7 @@ void gather_blocks(const envmap::BlockTree& tree, AnyGatherer& point) {
         return false;
       },
       [&](int column, int row) {
-        const float* texel = env.radiance(column, row);
-        const color::Rgb radiance{texel[0], texel[1], texel[2]};
+        const color::Rgb radiance = env.texel(column, row);
         if (radiance == color::Rgb{}) return;
         gather_texel(env, column, row, {env.direction(column, row), env.solid_angle(column, row)}, radiance, point);
       });

@@ -35,10 +35,6 @@ double view_deg(const SurfacePoint& point) {
   return std::atan2(length(cross(point.normal, point.to_viewer)), dot(point.normal, point.to_viewer)) / kDegree;
 }
 
-Vec3 vec(const float* v) {
-  return {v[0], v[1], v[2]};
-}
-
 // The most that a lobe exp(-q) bends, over all that is farther from its middle than q, relative to its bend there:
 // (1 + 2q) exp(-q), in steps.
 double bend_beyond(double q) {
@@ -96,7 +92,7 @@ bool Grain::opens(const envmap::BlockTree::Block& block, double variance) const 
   if (block.cosine < kHalfSphere) return true;
   const double extent = 1.2 * block.sine;  // at least the chord of the cap's radius
   for (const Bundle& bundle : bundles_) {
-    const double nearest = std::max(0.0, length(bundle.axis - vec(block.axis)) - bundle.radius - extent);
+    const double nearest = std::max(0.0, length(bundle.axis - vec3(block.axis)) - bundle.radius - extent);
     for (const Reach& reach : bundle.reaches) {
       if (variance * reach.exponent <= most) break;
       if (variance * reach.exponent * bend_beyond(0.5 * reach.exponent * nearest * nearest) > most) return true;

@@ -259,8 +259,8 @@ Sparkle::Place Sparkle::place(const Part& part, const Footprint& at, const Lit& 
     const LobeIntegrals whole = lobe_integrals(worn->exponent, cos_o, false, paint.coat_index);
     const Vec3 mean = envmap::bilinear(*part.maps[j].mean, at.mirrored),
                rms = envmap::bilinear(*part.maps[j].rms, at.mirrored);
-    const color::Rgb light = let_out * whole.cosine * met(worn->directional_diffuse, {mean.x, mean.y, mean.z});
-    const double of_mean = color::luminance({mean.x, mean.y, mean.z}), of_rms = color::luminance({rms.x, rms.y, rms.z});
+    const color::Rgb light = let_out * whole.cosine * met(worn->directional_diffuse, mean);
+    const double of_mean = color::luminance(mean), of_rms = color::luminance(rms);
     const double variance = of_mean > 0 ? of_rms * of_rms / (of_mean * of_mean) - 1 : 0;
     rest.mean += light;
     if (variance > kMapVariance)

@@ -47,10 +47,8 @@ Arriving arriving(const LobeTransport& t, const BounceProbe& probe, int group, c
     const std::size_t row = (static_cast<std::size_t>(group) * count + k) * count;
     for (std::size_t l = 0; l < count; ++l) {
       if (paint.dark(l)) continue;
-      const float* once = &probe.once[3 * (row + l)];
-      const float* deeper = &probe.deeper[3 * (row + l)];
-      (t.columns.is_gloss(l) ? result.gloss : result.base)[k] += paint.of(l, {once[0], once[1], once[2]});
-      result.deeper[k] += paint.of(l, {deeper[0], deeper[1], deeper[2]});
+      (t.columns.is_gloss(l) ? result.gloss : result.base)[k] += paint.of(l, vec3(&probe.once[3 * (row + l)]));
+      result.deeper[k] += paint.of(l, vec3(&probe.deeper[3 * (row + l)]));
     }
   }
   return result;
@@ -251,8 +249,7 @@ color::Rgb bounce_factor(const LobeTransport& t, std::size_t point, const Bounce
   if (!t.has_lobes(point)) return scale.of_class[t.worn.floor_class()];
   color::Rgb weighted, all;
   for (std::size_t k = 0; k < t.classes.size(); ++k) {
-    const float* light = &t.classes[k][std::size_t{3} * t.with_lobes[point]];
-    const color::Rgb shown{light[0], light[1], light[2]};
+    const color::Rgb shown = vec3(&t.classes[k][std::size_t{3} * t.with_lobes[point]]);
     all += shown, weighted += shown * scale.of_class[k];
   }
   return ratio(weighted, all);

@@ -10,11 +10,6 @@ namespace {
 
 using rays::Float3;
 
-color::Rgb texel_radiance(const envmap::Environment& environment, int column, int row) {
-  const float* rgb = environment.radiance(column, row);
-  return {rgb[0], rgb[1], rgb[2]};
-}
-
 constexpr int kRowGuide = 1024, kColumnGuide = 256;
 
 // The number of the interval of ascending `edges` that holds u, never an empty one, from where the guide says.
@@ -47,7 +42,7 @@ EnvironmentTable::EnvironmentTable(const envmap::Environment& environment)
   const envmap::SolidAngles solid_angles(environment.grid());
   for (int row = 0; row < height_; ++row) {
     for (int column = 0; column < width_; ++column) {
-      const color::Rgb light = texel_radiance(environment, column, row);
+      const color::Rgb light = environment.texel(column, row);
       const double mean = color::mean(light), solid_angle = solid_angles.at(column, row);
       const auto at = static_cast<std::size_t>(column);
       sums[at + 1] = sums[at] + mean * solid_angle;
@@ -130,8 +125,7 @@ LightSample EnvironmentTable::light(const Float3& direction, int column, int row
   const auto r = static_cast<std::size_t>(row);
   const float* edge = cumulative(r) + column;
   const double share = (rows_[r + 1] - rows_[r]) * (static_cast<double>(edge[1]) - edge[0]);
-  return {direction, density > 0 ? static_cast<float>(share / density) : 0.0F,
-          texel_radiance(*environment_, column, row)};
+  return {direction, density > 0 ? static_cast<float>(share / density) : 0.0F, environment_->texel(column, row)};
 }
 
 LightSample EnvironmentTable::light(const Place& place) const {

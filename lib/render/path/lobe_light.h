@@ -76,10 +76,8 @@ struct LobeTransport {
   color::Rgb light(std::size_t point, std::size_t column, bool with_bounced = true) const {
     const auto i = at(point, column);
     if (!i) return {};
-    color::Rgb sum{direct[column][*i], direct[column][*i + 1], direct[column][*i + 2]};
-    if (with_bounced && bounces > 0)
-      sum += color::Rgb{bounced[column][*i], bounced[column][*i + 1], bounced[column][*i + 2]};
-    return sum;
+    const color::Rgb sum = vec3(&direct[column][*i]);
+    return with_bounced && bounces > 0 ? sum + vec3(&bounced[column][*i]) : sum;
   }
 };
 

@@ -226,7 +226,7 @@ color::Rgb OpenResidual::shown(const TransportPaint& paint, const float* sums, d
   color::Rgb radiance;
   for (std::size_t k = 0; k < floats() / 3; ++k) {
     const color::Rgb weight = paint.weights[low][k] + share * (paint.weights[high][k] - paint.weights[low][k]);
-    const color::Rgb light{sums[3 * k], sums[3 * k + 1], sums[3 * k + 2]};
+    const color::Rgb light = vec3(sums + 3 * k);
     radiance += effects_.reflection ? color::reflected(scene_.reflection, weight, light) : weight * light;
   }
   return radiance;
@@ -237,10 +237,9 @@ color::Rgb OpenResidual::told(const Wear& wear, const ViewGrid::Place& place) co
   const std::array<ViewGrid::Node, ViewGrid::kCorners> corners = grid_.corners(place.node);
   const std::array<float, ViewGrid::kCorners> weights = ViewGrid::weights(place);
   color::Rgb told;
-  for (std::size_t c = 0; c < corners.size(); ++c) {
-    const float* of = &wear.residual[3 * static_cast<std::size_t>(surface.slot(corners[c]))];
-    told += static_cast<double>(weights[c]) * color::Rgb{of[0], of[1], of[2]};
-  }
+  for (std::size_t c = 0; c < corners.size(); ++c)
+    told +=
+        static_cast<double>(weights[c]) * vec3(&wear.residual[3 * static_cast<std::size_t>(surface.slot(corners[c]))]);
   return told;
 }
 

@@ -403,8 +403,8 @@ PackingError packing_error(const LobeTransport& t, const std::vector<float>& vie
     std::vector<double> differences;
     double sum = 0;
     for (const std::uint32_t place : t.places) {
-      const float *a = &pictures[0].data[4 * std::size_t{place}], *b = &pictures[1].data[4 * std::size_t{place}];
-      differences.push_back(seen_difference({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, 1));
+      const std::size_t at = 4 * std::size_t{place};
+      differences.push_back(seen_difference(vec3(&pictures[0].data[at]), vec3(&pictures[1].data[at]), 1));
       sum += differences.back();
     }
     error.mean_de00 =

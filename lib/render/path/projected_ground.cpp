@@ -13,11 +13,6 @@ namespace goniochrome::render {
 
 namespace {
 
-color::Rgb texel(const envmap::Environment& environment, int column, int row) {
-  const float* rgb = environment.radiance(column, row);
-  return {rgb[0], rgb[1], rgb[2]};
-}
-
 // The integral of the upward cosine over the part of a texel that is above the horizon. Of a lat-long map in closed
 // form: the width in longitude times half the difference of the squared cosines of its edges. Elsewhere by points of a
 // grid within the texel.
@@ -74,7 +69,7 @@ Result<ProjectedGround> ProjectedGround::create(const Ground& ground, const envm
                                                         : upward_weight(environment, column, row));
   // Each texel is a constant patch.
   result.for_upper_texels(
-      [&](int column, int row, double weight) { result.soft_irradiance_ += weight * texel(environment, column, row); });
+      [&](int column, int row, double weight) { result.soft_irradiance_ += weight * environment.texel(column, row); });
   result.irradiance_ = result.soft_irradiance_;
   for (const Light& light : lights)
     result.irradiance_ += (kPi * brdf::disc_irradiance(light.direction.y, light.radius_rad)) * light.white;
@@ -91,7 +86,7 @@ void ProjectedGround::find_bright() {
                            static_cast<std::size_t>(environment.height()));
   color::Rgb sum;
   for_upper_texels([&](int column, int row, double weight) {
-    const color::Rgb light = texel(environment, column, row);
+    const color::Rgb light = environment.texel(column, row);
     if (color::mean(light) <= kTimes * mean) return;
     bright[place_of(environment, column, row)] = true;
     sum += weight * light;

@@ -370,9 +370,8 @@ void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const 
   float turned[3];
   if (!packed_.normals.empty()) {
     const float* own = &packed_.normals[std::size_t{3} * packed_.shape[texel]];
-    const Vec3 n = brdf::texel_normal({own[0], place.mirrored ? -own[1] : own[1], own[2]},
-                                      {normal[0], normal[1], normal[2]}, {tangent[0], tangent[1], tangent[2]},
-                                      normalized({to_viewer[0], to_viewer[1], to_viewer[2]}));
+    const Vec3 n = brdf::texel_normal({own[0], place.mirrored ? -own[1] : own[1], own[2]}, vec3(normal), vec3(tangent),
+                                      normalized(vec3(to_viewer)));
     for (int c = 0; c < 3; ++c) turned[c] = static_cast<float>(n[c]);
     normal = turned;
   }
@@ -399,7 +398,7 @@ std::vector<color::Rgb> SbrdfShader::shade(std::size_t texture, const SbrdfLight
   const auto flush = [&] {
     const int count = batch.count();
     const float* rgba = batch.shade();
-    for (int i = 0; i < count; ++i) colors[number[i]] += color::Rgb{rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]};
+    for (int i = 0; i < count; ++i) colors[number[i]] += vec3(rgba + 4 * i);
   };
   std::vector<std::array<TexelShare, 4>> texels(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
