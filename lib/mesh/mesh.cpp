@@ -259,20 +259,14 @@ Result<Mesh> mesh_from_polygons(Polygons polygons, const std::string& path) {
 Box bounding_box(const Mesh& mesh) {
   if (mesh.positions.empty()) return {};
   Box box{mesh.positions.front(), mesh.positions.front()};
-  for (const Vec3& p : mesh.positions) {
-    for (int axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], p[axis]);
-      box.high[axis] = std::max(box.high[axis], p[axis]);
-    }
-  }
+  for (const Vec3& position : mesh.positions) box.add(position);
   return box;
 }
 
 // Up to 8 sizes from the origin a float is within 2^-24 8 = 5e-7 sizes.
 Vec3 float_origin(const Box& box) {
   constexpr double kNear = 8;
-  const Vec3 middle = 0.5 * (box.low + box.high);
-  return length(middle) > kNear * length(box.high - box.low) ? middle : Vec3{};
+  return length(box.middle()) > kNear * length(box.size()) ? box.middle() : Vec3{};
 }
 
 namespace {

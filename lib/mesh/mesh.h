@@ -1,7 +1,9 @@
 // Triangle meshes of named parts, read from OBJ, glTF 2.0, OFF, PLY and STL files and mended on the way.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -44,7 +46,17 @@ struct Mesh {
 
 struct Box {
   Vec3 low, high;
+
+  Vec3 size() const { return high - low; }
+  Vec3 middle() const { return 0.5 * (low + high); }
+  double longest_side() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
+  // Grows to hold a point.
+  void add(const Vec3& point) {
+    for (int axis = 0; axis < 3; ++axis)
+      low[axis] = std::min(low[axis], point[axis]), high[axis] = std::max(high[axis], point[axis]);
+  }
 };
+inline constexpr Box kEmptyBox = {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
 Box bounding_box(const Mesh& mesh);
 
 // The middle of a box that lies so far from the origin, as in surveyors' coordinates, that floats are coarser there

@@ -432,7 +432,7 @@ Result<Seam> seam_between(const Mesh& mesh, const std::string& part_a, const std
   GONIO_ASSIGN(const MeshPart* a, part_of(mesh, part_a));
   GONIO_ASSIGN(const MeshPart* b, part_of(mesh, part_b));
   const Box box = bounding_box(mesh);
-  const double size = length(box.high - box.low), spacing = size / 1000;
+  const double size = length(box.size()), spacing = size / 1000;
   Seam seam;
   seam.unit_guessed = !(options.unit_m > 0) && !(mesh.unit_m > 0);
   seam.unit_m = options.unit_m > 0 ? options.unit_m : length_unit(mesh).meters;

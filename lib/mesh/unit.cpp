@@ -66,7 +66,7 @@ double stated_unit_m(std::string_view content) {
 }
 
 LengthUnit likely_unit(const Box& box) {
-  const double size = length(box.high - box.low);
+  const double size = length(box.size());
   return size <= 30 ? kMeters : size <= 300 ? kInches : size <= 900 ? kCentimeters : kMillimeters;
 }
 

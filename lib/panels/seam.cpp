@@ -257,13 +257,9 @@ std::string seam_light_text(const SeamTexts& texts, const SeamWorld& world, cons
 // The sphere about the middle of the seam's box that holds all places just fits between the borders that are nearer.
 render::Camera seam_camera_from(const mesh::Seam& seam, const Vec3& direction, double aspect, double fov_deg,
                                 double margin) {
-  mesh::Box box{seam.points.front().a, seam.points.front().a};
-  for (const mesh::SeamPoint& p : seam.points)
-    for (int c = 0; c < 3; ++c) {
-      box.low[c] = std::min({box.low[c], p.a[c], p.b[c]});
-      box.high[c] = std::max({box.high[c], p.a[c], p.b[c]});
-    }
-  const Vec3 middle = 0.5 * (box.low + box.high);
+  mesh::Box box = mesh::kEmptyBox;
+  for (const mesh::SeamPoint& p : seam.points) box.add(p.a), box.add(p.b);
+  const Vec3 middle = box.middle();
   double radius = 0;
   for (const mesh::SeamPoint& p : seam.points) radius = std::max(radius, length(p.a - middle));
   const double half = fov_deg / 2 * kDegree;

@@ -68,7 +68,7 @@ Result<TracedSeam> TracedSeam::create(const mesh::Mesh& mesh, const envmap::Pref
   GONIO_ASSIGN(rays::RayScene rays, rays::RayScene::create(mesh));
   state->rays = std::make_shared<const rays::RayScene>(std::move(rays));
   const mesh::Box box = mesh::bounding_box(mesh);
-  state->step = kBeside * length(box.high - box.low);
+  state->step = kBeside * length(box.size());
   return TracedSeam(std::move(state));
 }
 

@@ -34,10 +34,9 @@ struct Placing {
 // The power of two that brings the largest half extent of the box between 1/2 and 1.
 Placing placing_of(const mesh::Mesh& mesh) {
   const mesh::Box box = bounding_box(mesh);
-  const Vec3 half = 0.5 * (box.high - box.low);
   int exponent = 0;
-  std::frexp(std::max({half.x, half.y, half.z}), &exponent);
-  return {0.5 * (box.low + box.high), std::ldexp(1.0, -exponent)};
+  std::frexp(0.5 * box.longest_side(), &exponent);
+  return {box.middle(), std::ldexp(1.0, -exponent)};
 }
 
 bool is_finite(const Vec3& v) {

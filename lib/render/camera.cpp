@@ -38,7 +38,7 @@ Vec3 orbit_direction(double azimuth_deg, double elevation_deg) {
 Camera Camera::orbit(const mesh::Mesh& mesh, double azimuth_deg, double elevation_deg, double distance, double fov_deg,
                      double aspect) {
   const mesh::Box box = mesh::bounding_box(mesh);
-  const Vec3 middle = 0.5 * (box.low + box.high);
+  const Vec3 middle = box.middle();
   double radius = 0;
   for (const Vec3& p : mesh.positions) radius = std::max(radius, std::hypot(p.x - middle.x, p.z - middle.z));
   const double half_height = 0.5 * (box.high.y - box.low.y);

@@ -21,10 +21,10 @@ bool has_weight(const paint::Lobe& lobe) {
 
 Ground ground_below(const mesh::Mesh& mesh, const std::optional<double>& height, double eye_height) {
   const mesh::Box box = mesh::bounding_box(mesh);
-  const Vec3 size = box.high - box.low, middle = 0.5 * (box.low + box.high);
+  const Vec3 middle = box.middle();
   Ground ground;
   ground.height = height.value_or(box.low.y);
-  const double eye = eye_height > 0 ? eye_height : std::max({size.x, size.y, size.z}) / 3;
+  const double eye = eye_height > 0 ? eye_height : box.longest_side() / 3;
   ground.probe_eye = {middle.x, ground.height + eye, middle.z};
   return ground;
 }

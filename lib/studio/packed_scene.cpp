@@ -63,7 +63,7 @@ Json brightest_json(const envmap::PrefilteredEnvironment& env) {
 
 Json packed_mesh(const mesh::Mesh& mesh, PackedNumbers& numbers) {
   const mesh::Box box = mesh::bounding_box(mesh);
-  const Vec3 size = box.high - box.low;
+  const Vec3 size = box.size();
   std::vector<std::uint16_t> positions;
   std::vector<std::int16_t> normals;
   for (const Vec3& p : mesh.positions)

@@ -189,8 +189,7 @@ Result<render::Light> parse_light(const std::string& text, std::optional<color::
 Result<void> stand_lamps(const mesh::Mesh& mesh, std::vector<render::Light>& lights) {
   for (render::Light& light : lights) {
     if (!light.place) continue;
-    const mesh::Box box = bounding_box(mesh);
-    const Vec3 toward = light.place->position - 0.5 * (box.low + box.high);
+    const Vec3 toward = light.place->position - bounding_box(mesh).middle();
     light.place->distance = length(toward);
     if (!(light.place->distance > 0))
       return usage_error("--light has a lamp in the middle of the mesh: place it outside of the mesh");

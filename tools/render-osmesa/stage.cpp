@@ -25,9 +25,7 @@ void tell_repairs(const mesh::Mesh& mesh, cli::Session& session) {
                                   {"degenerate_dropped", repairs.degenerate_dropped},
                                   {"polygons_split", repairs.polygons_split},
                                   {"triangles_turned", repairs.triangles_turned}};
-  const mesh::Box box = mesh::bounding_box(mesh);
-  const Vec3 sides = box.high - box.low;
-  const double longest = std::max({sides.x, sides.y, sides.z});
+  const double longest = mesh::bounding_box(mesh).longest_side();
   const mesh::LengthUnit unit = mesh::length_unit(mesh);
   session.results()["mesh"] = {{"longest_side", json_number(longest)}, {"unit_m", unit.meters}};
   if (unit.meters != 1)
@@ -161,8 +159,7 @@ Result<void> take_path_below(const mesh::Mesh& mesh, Request& request) {
   const bool traces = request.engine != nullptr && request.engine->traces_rays;
   if (traces || request.floor.kind == FloorRequest::Kind::kNone || !request.floor.height) return {};
   const mesh::Box box = mesh::bounding_box(mesh);
-  const double margin = 1e-6 * std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z});
-  if (*request.floor.height <= box.low.y + margin) return {};
+  if (*request.floor.height <= box.low.y + 1e-6 * box.longest_side()) return {};
   if (request.engine != nullptr)
     return usage_error(
         "--floor lies at {}, above the lowest point of the mesh, which is at {:.6g}: --engine path hides what is below",

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "base/angles.h"
@@ -96,18 +95,10 @@ std::optional<Vec3> vector_of(const std::string& text) {
 }
 
 mesh::Box box_of(const mesh::Mesh& mesh, const std::vector<std::size_t>& parts) {
-  constexpr double kFar = std::numeric_limits<double>::max();
-  mesh::Box box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
-  for (const std::size_t part : parts) {
-    for (std::size_t i = mesh.parts[part].first; i < mesh.parts[part].first + mesh.parts[part].count; ++i) {
-      for (const std::uint32_t vertex : mesh.triangles[i]) {
-        for (int c = 0; c < 3; ++c) {
-          box.low[c] = std::min(box.low[c], mesh.positions[vertex][c]);
-          box.high[c] = std::max(box.high[c], mesh.positions[vertex][c]);
-        }
-      }
-    }
-  }
+  mesh::Box box = mesh::kEmptyBox;
+  for (const std::size_t part : parts)
+    for (std::size_t i = mesh.parts[part].first; i < mesh.parts[part].first + mesh.parts[part].count; ++i)
+      for (const std::uint32_t vertex : mesh.triangles[i]) box.add(mesh.positions[vertex]);
   return box;
 }
 
@@ -124,7 +115,7 @@ bool has_coordinates(const mesh::Mesh& mesh, std::size_t part) {
 // The least width at which a texture covers the box in the projection along the axis.
 double covering_width(const mesh::Box& box, const render::TextureLaying& laying) {
   const auto [across, up] = render::texture_axes(laying.axis, laying.turn_rad);
-  const Vec3 size = box.high - box.low;
+  const Vec3 size = box.size();
   const auto extent = [&](const Vec3& way) {
     return std::abs(way.x) * size.x + std::abs(way.y) * size.y + std::abs(way.z) * size.z;
   };
@@ -140,8 +131,8 @@ Result<render::TextureLaying> laying_of(const std::string& option, const Texture
   laying.ends = !map.alpha.empty();
   const bool boxed = projection == Projection::kBox || projection == Projection::kFacet;
   laying.half_texel_u = 0.5 / map.width, laying.half_texel_v = 0.5 / map.height;
-  laying.center = 0.5 * (box.low + box.high);
-  const Vec3 size = box.high - box.low;
+  laying.center = box.middle();
+  const Vec3 size = box.size();
   const auto word = [&](const char* name) -> const std::string* {
     const auto found = texture.words.find(name);
     return found == texture.words.end() ? nullptr : &found->second;
@@ -180,7 +171,7 @@ Result<render::TextureLaying> laying_of(const std::string& option, const Texture
   if (*scale > 0)
     laying.width = *scale;
   else if (boxed)
-    laying.width = std::max({size.x, size.y, size.z});
+    laying.width = box.longest_side();
   else if (!turns)
     laying.width = covering_width(box, laying);
   laying.width = std::max(laying.width, 1e-300);

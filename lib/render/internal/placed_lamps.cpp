@@ -24,8 +24,7 @@ std::vector<PlacedLamp> placed_lamps(const std::vector<Light>& lights, const Vec
 }
 
 Vec3 origin_of(const mesh::Mesh& mesh) {
-  const mesh::Box box = mesh::bounding_box(mesh);
-  return 0.5 * (box.low + box.high);
+  return mesh::bounding_box(mesh).middle();
 }
 
 std::array<float, 3> from_origin(const Vec3& position, const Vec3& origin) {

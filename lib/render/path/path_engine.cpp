@@ -87,7 +87,7 @@ std::vector<std::string> PathEngine::remarks() const {
                     gaining));
   if (scene_.ground) {
     const mesh::Box box = bounding_box(*scene_.mesh);
-    const double margin = 1e-6 * std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z});
+    const double margin = 1e-6 * box.longest_side();
     if (scene_.ground->height > box.low.y + margin)
       all.push_back(
           fmt::format("the floor at height {:.6g} lies above the lowest point of the mesh, which is at {:.6g}: "

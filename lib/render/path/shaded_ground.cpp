@@ -219,14 +219,9 @@ void ShadedGround::mark(Source& source) const {
                     each = std::max<std::size_t>(1, triangles / kBoxes);
   std::vector<mesh::Box> boxes;
   for (std::size_t first = 0; first < triangles; first += each) {
-    mesh::Box box{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
-    for (std::size_t t = first; t < std::min(triangles, first + each); ++t) {
-      for (const Float3& corner : scene_->corners(static_cast<std::uint32_t>(t))) {
-        const Vec3 at = rays::vec3(corner);
-        for (int c = 0; c < 3; ++c)
-          box.low[c] = std::min(box.low[c], at[c]), box.high[c] = std::max(box.high[c], at[c]);
-      }
-    }
+    mesh::Box box = mesh::kEmptyBox;
+    for (std::size_t t = first; t < std::min(triangles, first + each); ++t)
+      for (const Float3& corner : scene_->corners(static_cast<std::uint32_t>(t))) box.add(rays::vec3(corner));
     if (box.high.y > height_) boxes.push_back(box);
   }
   source.states.assign(columns * (occluded_.z.size() - 1), Source::kFree);

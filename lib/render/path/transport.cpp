@@ -54,7 +54,7 @@ Result<Transport> Transport::in_channels(const PathScene& path_scene) {
   }
   const mesh::Box box = bounding_box(*scene.mesh);
   transport.mesh_box_ = box;
-  transport.mesh_radius_ = static_cast<float>(1.0001 * transport.rays_->scale() * length(0.5 * (box.high - box.low)));
+  transport.mesh_radius_ = static_cast<float>(1.0001 * transport.rays_->scale() * length(0.5 * box.size()));
   const auto tilts = tilts_for(path_scene);
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
     const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : brdf::kGlossIncidence_deg;

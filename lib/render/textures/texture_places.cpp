@@ -14,13 +14,11 @@ namespace {
 
 using Uv = std::array<double, 2>;
 
-// So many rows are done at a time.
-
 // The texture coordinates of a triangle's corners.
 class Unwrapped {
  public:
   explicit Unwrapped(const mesh::Mesh& mesh) : mesh_(mesh), box_(mesh::bounding_box(mesh)) {
-    middle_ = 0.5 * (box_.low + box_.high);
+    middle_ = box_.middle();
     for (const Vec3& p : mesh.positions) radius_ = std::max(radius_, std::hypot(p.x - middle_.x, p.z - middle_.z));
   }
 
