@@ -93,4 +93,13 @@ Vec3 bilinear(const CubeMap& map, const Vec3& direction) {
   return (1 - fy) * ((1 - fx) * corner[0][0] + fx * corner[0][1]) + fy * ((1 - fx) * corner[1][0] + fx * corner[1][1]);
 }
 
+CubeMap resized(const CubeMap& map, int size) {
+  CubeMap result(size);
+  for_texels(size, [&](int face, int row, int column, const Vec3& direction) {
+    const Vec3 value = bilinear(map, direction);
+    for (int c = 0; c < 3; ++c) result.at(face, row, column)[c] = static_cast<float>(value[c]);
+  });
+  return result;
+}
+
 }  // namespace goniochrome::envmap

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/vec3.h"
 
 namespace goniochrome::envmap {
@@ -46,5 +47,18 @@ double cube_cell_solid_angle(double s0, double s1, double t0, double t1);
 // Bilinear lookup between texel centers, across face edges as OpenGL's seamless filtering does it (at a corner the
 // three texels that meet there are averaged for the missing fourth).
 Vec3 bilinear(const CubeMap& map, const Vec3& direction);
+
+// Calls visit(face, row, column, direction) for each texel of faces of this size, on all cores.
+template <class Visit>
+void for_texels(int size, const Visit& visit) {
+  parallel_each(static_cast<std::size_t>(6 * size), 8, [&](std::size_t line) {
+    const int face = static_cast<int>(line) / size, row = static_cast<int>(line) % size;
+    for (int column = 0; column < size; ++column)
+      visit(face, row, column, cube_direction(face, column + 0.5, row + 0.5, size));
+  });
+}
+
+// The map with faces of this size, by bilinear lookups.
+CubeMap resized(const CubeMap& map, int size);
 
 }  // namespace goniochrome::envmap

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "base/parallel.h"
 #include "brdf/disc_light.h"
 #include "brdf/lobe_model.h"
 #include "envmap/internal/weighted_diffuse.h"
@@ -18,20 +17,13 @@ namespace {
 template <std::size_t kMaps, class OfSpot>
 void take_out(const std::vector<Spot>& spots, const OfSpot& of_spot, const std::array<CubeMap*, kMaps>& maps) {
   if (spots.empty()) return;
-  const int size = maps[0]->size;
-  parallel_for(static_cast<std::size_t>(6 * size), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const int face = static_cast<int>(i) / size, row = static_cast<int>(i) % size;
-      for (int column = 0; column < size; ++column) {
-        const Vec3 direction = cube_direction(face, column + 0.5, row + 0.5, size);
-        for (std::size_t k = 0; k < spots.size(); ++k) {
-          const std::array<double, kMaps> shares = of_spot(k, direction);
-          for (std::size_t j = 0; j < kMaps; ++j) {
-            if (shares[j] == 0) continue;
-            float* texel = maps[j]->at(face, row, column);
-            for (int c = 0; c < 3; ++c) texel[c] -= static_cast<float>(shares[j] * spots[k].white[c]);
-          }
-        }
+  for_texels(maps[0]->size, [&](int face, int row, int column, const Vec3& direction) {
+    for (std::size_t k = 0; k < spots.size(); ++k) {
+      const std::array<double, kMaps> shares = of_spot(k, direction);
+      for (std::size_t j = 0; j < kMaps; ++j) {
+        if (shares[j] == 0) continue;
+        float* texel = maps[j]->at(face, row, column);
+        for (int c = 0; c < 3; ++c) texel[c] -= static_cast<float>(shares[j] * spots[k].white[c]);
       }
     }
   });
@@ -95,11 +87,9 @@ CubeMap diffuse_without_spots(CubeMap map, bool coated, const std::vector<Spot>&
   const DiffuseOfSpots diffuse(spots);
   const std::array maps{&map};
   if (coated)
-    take_out(
-        spots, [&](std::size_t k, const Vec3& normal) { return diffuse.coated(k, normal); }, maps);
+    take_out(spots, [&](std::size_t k, const Vec3& normal) { return diffuse.coated(k, normal); }, maps);
   else
-    take_out(
-        spots, [&](std::size_t k, const Vec3& normal) { return diffuse.plain(k, normal); }, maps);
+    take_out(spots, [&](std::size_t k, const Vec3& normal) { return diffuse.plain(k, normal); }, maps);
   return map;
 }
 

@@ -70,23 +70,17 @@ std::vector<float> weighted_cosines(const std::function<double(double)>& share) 
 // The weighted sum over the plain one at the texels of a grid.
 CubeMap ratios(const std::vector<Beam>& beams, const std::vector<float>& table, int grid) {
   CubeMap ratio(grid);
-  parallel_for(static_cast<std::size_t>(6 * grid), 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t line = begin; line < end; ++line) {
-      const int face = static_cast<int>(line) / grid, row = static_cast<int>(line) % grid;
-      for (int column = 0; column < grid; ++column) {
-        const Vec3 n = cube_direction(face, column + 0.5, row + 0.5, grid);
-        float plain[3] = {}, weighted[3] = {};
-        for (const Beam& beam : beams) {
-          const auto c = static_cast<float>(dot(n, beam.direction));
-          if (!(c > 0)) continue;
-          const float at = std::min(c, 1.0F) * kSteps;
-          const auto i = static_cast<std::size_t>(at);
-          const float w = table[i] + (at - static_cast<float>(i)) * (table[i + 1] - table[i]);
-          for (std::size_t k = 0; k < 3; ++k) plain[k] += c * beam.flux[k], weighted[k] += w * beam.flux[k];
-        }
-        for (int k = 0; k < 3; ++k) ratio.at(face, row, column)[k] = plain[k] > 0 ? weighted[k] / plain[k] : 1;
-      }
+  for_texels(grid, [&](int face, int row, int column, const Vec3& n) {
+    float plain[3] = {}, weighted[3] = {};
+    for (const Beam& beam : beams) {
+      const auto c = static_cast<float>(dot(n, beam.direction));
+      if (!(c > 0)) continue;
+      const float at = std::min(c, 1.0F) * kSteps;
+      const auto i = static_cast<std::size_t>(at);
+      const float w = table[i] + (at - static_cast<float>(i)) * (table[i + 1] - table[i]);
+      for (std::size_t k = 0; k < 3; ++k) plain[k] += c * beam.flux[k], weighted[k] += w * beam.flux[k];
     }
+    for (int k = 0; k < 3; ++k) ratio.at(face, row, column)[k] = plain[k] > 0 ? weighted[k] / plain[k] : 1;
   });
   return ratio;
 }
@@ -100,14 +94,9 @@ CubeMap weighted_diffuse(const PrefilteredEnvironment& env, const std::function<
   if (source.size == 0 || map.size == 0) return map;
   const std::vector<float> table = weighted_cosines(share);
   const CubeMap ratio = ratios(beams_of(source), table, std::min(map.size, kGrid));
-  parallel_for(static_cast<std::size_t>(6 * map.size), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t line = begin; line < end; ++line) {
-      const int face = static_cast<int>(line) / map.size, row = static_cast<int>(line) % map.size;
-      for (int column = 0; column < map.size; ++column) {
-        const Vec3 r = bilinear(ratio, cube_direction(face, column + 0.5, row + 0.5, map.size));
-        for (int c = 0; c < 3; ++c) map.at(face, row, column)[c] *= static_cast<float>(r[c]);
-      }
-    }
+  for_texels(map.size, [&](int face, int row, int column, const Vec3& direction) {
+    const Vec3 r = bilinear(ratio, direction);
+    for (int c = 0; c < 3; ++c) map.at(face, row, column)[c] *= static_cast<float>(r[c]);
   });
   return map;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "base/parallel.h"
 #include "base/text.h"
 #include "render/internal/tilt_table.h"
 #include "render/surface_layer.h"
@@ -26,18 +25,8 @@ Result<void> check_lobe(const envmap::PrefilteredEnvironment& env, double expone
       shortest(exponent), env.source.empty() ? "SOURCE" : env.source, joined(exponents, ",", shortest));
 }
 
-envmap::MapPointer resized(envmap::MapPointer from, int size) {
-  const envmap::CubeMap& map = *from;
-  if (map.size == size) return from;
-  envmap::CubeMap result(size);
-  parallel_each(static_cast<std::size_t>(6 * size), 16, [&](std::size_t i) {
-    const int face = static_cast<int>(i) / size, row = static_cast<int>(i) % size;
-    for (int column = 0; column < size; ++column) {
-      const Vec3 value = envmap::bilinear(map, envmap::cube_direction(face, column + 0.5, row + 0.5, size));
-      for (int c = 0; c < 3; ++c) result.at(face, row, column)[c] = static_cast<float>(value[c]);
-    }
-  });
-  return std::make_shared<const envmap::CubeMap>(std::move(result));
+envmap::MapPointer of_size(envmap::MapPointer map, int size) {
+  return map->size == size ? map : std::make_shared<const envmap::CubeMap>(envmap::resized(*map, size));
 }
 
 MapClass single(int slot, envmap::MapPointer map) {
@@ -86,7 +75,7 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
     for (const std::size_t j : of.lobes) {
       into.slots.push_back(WeightTable::lobe_slot(j));
       const double exponent = effects.lobes[j].exponent;
-      into.maps.push_back(resized(envmap::open_map(env, *env.lobe(exponent), effects.spots), into.size));
+      into.maps.push_back(of_size(envmap::open_map(env, *env.lobe(exponent), effects.spots), into.size));
     }
     maps.lobes.push_back(std::move(into));
   }

@@ -42,14 +42,7 @@ Result<MipCube> mip_cube(const envmap::PrefilteredEnvironment& env) {
           "{}: lacks the lobe of exponent {:g}: prefilter with quarters of the sharpest, such as --exponents "
           "4,16,64,256",
           env.source, exponent);
-    envmap::CubeMap level(size);
-    for (int face = 0; face < 6; ++face)
-      for (int row = 0; row < size; ++row)
-        for (int column = 0; column < size; ++column) {
-          const Vec3 value = envmap::bilinear(lobe->map, envmap::cube_direction(face, column + 0.5, row + 0.5, size));
-          for (int c = 0; c < 3; ++c) level.at(face, row, column)[c] = static_cast<float>(value[c]);
-        }
-    mip.levels.push_back(std::move(level));
+    mip.levels.push_back(envmap::resized(lobe->map, size));
     size = std::max(size / 2, 1);
   }
   return mip;
