@@ -5,6 +5,15 @@
 
 namespace goniochrome::brdf {
 
+void LobeRange::add(const SbrdfTexture& texture) {
+  for (std::size_t i = 0; i < texture.values.size(); i += static_cast<std::size_t>(texture.stride()))
+    for (int lobe = 0; lobe < texture.lobes; ++lobe) {
+      const float* values = &texture.values[i + 5 + 7 * static_cast<std::size_t>(lobe)];
+      if (vec3(values) == Vec3{}) continue;
+      low = std::min<double>(low, values[6]), high = std::max<double>(high, values[6]);
+    }
+}
+
 // The half of an angle -180..180 deg lies at -90..90: its cosine is not negative, its sine has the sign of the whole.
 SbrdfAxis sbrdf_axis(const float* frame) {
   const double size = std::hypot(frame[0], frame[1]), cosine = size > 0 ? frame[0] / size : 1;

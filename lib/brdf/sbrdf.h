@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -31,13 +32,19 @@ struct SbrdfTexture {
   }
   Vec3 normal(std::size_t texel) const {
     if (normals.empty()) return {0, 0, 1};
-    return {normals[3 * texel], normals[3 * texel + 1], normals[3 * texel + 2]};
+    return vec3(&normals[3 * texel]);
   }
   // Cos and sin of twice the angle of the x axis of a lobe.
   const float* frame(int column, int row, int lobe) const {
     if (turns.empty()) return texel(column, row) + 3;
     return &turns[2 * ((static_cast<std::size_t>(row) * width + column) * static_cast<std::size_t>(lobes) + lobe)];
   }
+};
+
+// The exponents of all lobes of textures that reflect anything. Without such lobes `low` is infinite and `high` is 0.
+struct LobeRange {
+  double low = HUGE_VAL, high = 0;
+  void add(const SbrdfTexture& texture);
 };
 
 // The x axis whose cosine and sine of twice the angle these are: tangent * t + bitangent * b.

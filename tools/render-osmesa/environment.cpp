@@ -65,25 +65,14 @@ Result<std::vector<double>> worn_exponents(const Options& options, const Stage& 
   return exponents;
 }
 
-// The least and the largest exponent of the lobes of textures that reflect; 0 where there are none.
-std::pair<double, double> texture_exponents(const Stage& stage) {
-  double low = HUGE_VAL, high = 0;
-  for (const DressedMesh& dress : stage.dresses)
-    for (const auto& texture : dress.textures)
-      for (std::size_t i = 0; i < texture->values.size(); i += static_cast<std::size_t>(texture->stride()))
-        for (int lobe = 0; lobe < texture->lobes; ++lobe) {
-          const float* values = &texture->values[i + 5 + 7 * static_cast<std::size_t>(lobe)];
-          if (values[0] == 0 && values[1] == 0 && values[2] == 0) continue;
-          low = std::min<double>(low, values[6]), high = std::max<double>(high, values[6]);
-        }
-  return {std::min(low, high), high};
-}
-
 // Adds maps between which the lobes of textures lie: the sharpest, each four times as sharp as the next, and the
 // widest. One cube with levels needs every quarter of its sharpest.
 void add_texture_exponents(const Options& options, const Stage& stage, std::vector<double>& exponents) {
   constexpr double kStep = 4;
-  const auto [low, high] = texture_exponents(stage);
+  brdf::LobeRange range;
+  for (const DressedMesh& dress : stage.dresses)
+    for (const auto& texture : dress.textures) range.add(*texture);
+  const auto [low, high] = range;
   if (high == 0) return;
   const double most = std::max(1.0, std::ranges::max(exponents));
   if (options.texture_maps == "mip") {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <unordered_map>
@@ -50,17 +49,9 @@ Result<MipCube> mip_cube(const envmap::PrefilteredEnvironment& env) {
 
 SbrdfShader::SbrdfShader(const envmap::PrefilteredEnvironment* env, const MipCube* mip,
                          const std::vector<const brdf::SbrdfTexture*>& textures) {
-  double low = std::numeric_limits<double>::infinity(), high = 0;
-  for (const brdf::SbrdfTexture* texture : textures) {
-    for (std::size_t i = 0; i < texture->values.size(); i += static_cast<std::size_t>(texture->stride())) {
-      for (int lobe = 0; lobe < texture->lobes; ++lobe) {
-        const float* values = &texture->values[i + 5 + 7 * static_cast<std::size_t>(lobe)];
-        if (values[0] == 0 && values[1] == 0 && values[2] == 0) continue;
-        low = std::min<double>(low, values[6]), high = std::max<double>(high, values[6]);
-      }
-    }
-  }
-  low = std::min(low, high);
+  brdf::LobeRange range;
+  for (const brdf::SbrdfTexture* texture : textures) range.add(*texture);
+  const double high = range.high, low = std::min(range.low, high);
   // Lobes about normals that vary may become as wide as there are maps.
   const bool bent = std::ranges::any_of(textures, [](const auto* texture) { return !texture->normals.empty(); });
   if (env != nullptr) {
