@@ -74,12 +74,12 @@ struct EngineInfo {
   const char* sentence;  // what it does, for help
   // True if plans may choose it and leave effects out for it. Otherwise it is used when it is asked for by name, and it
   // draws all effects, because leaving one out saves no time.
-  bool is_planned;
-  bool needs_texels;        // It sums the image that the environment was made from: Scene::texels.
-  bool traces_rays;         // It sees the mesh in the way of light: it draws shadows, floors and parts that shine.
-  bool needs_opengl;        // It shades in the OpenGL context of the renderer.
-  bool needs_mesh;          // It cannot shade a G-buffer that comes from a file.
-  bool draws_placed_lamps;  // Lamps may stand at a place.
+  bool is_planned = false;
+  bool needs_texels = false;  // It sums the image that the environment was made from: Scene::texels.
+  bool traces_rays = false;   // It sees the mesh in the way of light: it draws shadows, floors and parts that shine.
+  bool needs_opengl = false;  // It shades in the OpenGL context of the renderer.
+  bool needs_mesh = false;    // It cannot shade a G-buffer that comes from a file.
+  bool draws_placed_lamps = false;  // Lamps may stand at a place.
   std::unique_ptr<Engine> (*make)(Sight& sight);
 };
 

@@ -70,10 +70,6 @@ const EngineInfo CpuEngine::kInfo = {
     .name = "cpu",
     .sentence = "shades by prefiltered maps on the processor, and reads all lobes of a texel at once",
     .is_planned = true,
-    .needs_texels = false,
-    .traces_rays = false,
-    .needs_opengl = false,
-    .needs_mesh = false,
     .draws_placed_lamps = true,
     .make = [](Sight&) -> std::unique_ptr<Engine> { return std::make_unique<CpuEngine>(); }};
 

@@ -16,11 +16,8 @@ const EngineInfo GlEngine::kInfo = {
     .name = "gl",
     .sentence = "shades by prefiltered maps in OpenGL, where each map is a cube texture",
     .is_planned = true,
-    .needs_texels = false,
-    .traces_rays = false,
     .needs_opengl = true,
     .needs_mesh = true,
-    .draws_placed_lamps = false,
     .make = [](Sight& sight) -> std::unique_ptr<Engine> { return std::make_unique<GlEngine>(sight.gl()); }};
 
 Result<void> GlEngine::can_shade(const Scene&) const {

@@ -22,12 +22,7 @@ std::vector<color::Rgb> integrals(const std::vector<VisiblePoint>& points, const
 const EngineInfo IntegralEngine::kInfo = {
     .name = "integral",
     .sentence = "sums the image that the environment was made from at every visible point, without prefiltered maps",
-    .is_planned = false,
     .needs_texels = true,
-    .traces_rays = false,
-    .needs_opengl = false,
-    .needs_mesh = false,
-    .draws_placed_lamps = false,
     .make = [](Sight&) -> std::unique_ptr<Engine> { return std::make_unique<IntegralEngine>(); }};
 
 double spread_for(double tolerance_de00) {
