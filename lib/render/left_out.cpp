@@ -66,7 +66,7 @@ Result<LeftOut> left_out(Renderer& renderer, const Scene& scene, const Plan& pla
     GONIO_TRY(draw_fastest(renderer, view, planned, result.planned_ms));
   }
   if (whole) result.full_ms = result.planned_ms;
-  if (!whole) compare(planned, full, white_luminance > 0 ? white_luminance : 1, result);
+  if (!whole) compare(planned, full, white_luminance, result);
   GONIO_TRY(renderer.load(scene, plan.effects, plan.engine));
   return result;
 }

@@ -67,13 +67,11 @@ PictureError error_of(const PixelSample& sample, const std::vector<double>& de00
 PictureError picture_error(const Frame& frame, const Scene& scene, const Surroundings& around, double white_luminance,
                            int count, std::uint64_t seed) {
   const Stopwatch clock;
-  const double white = white_luminance > 0 ? white_luminance : 1;  // in the dark all is black
   const PixelSample sample = sampled_pixels(*frame.gbuffer, scene, count, seed);
   const std::vector<color::Rgb> truth = exact_radiance(sample.points, scene, effects_of(scene), around);
   std::vector<double> de00;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    de00.push_back(seen_difference(vec3(sample.pixel(frame.centers, i)), truth[i], white));
-  }
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    de00.push_back(seen_difference(vec3(sample.pixel(frame.centers, i)), truth[i], white_luminance));
   PictureError error = error_of(sample, de00);
   error.time_s = clock.elapsed_s();
   return error;

@@ -299,7 +299,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   const std::vector<VisiblePoint> highlights = highlight_points(scene, all, probe);
   points.insert(points.end(), highlights.begin(), highlights.end());
   const Compact compact = compacted(scene, points);
-  const double white = request.white_luminance > 0 ? request.white_luminance : 1;
+  const double white = request.white_luminance;
   Prober prober{
       probe.size(), compact.scene, all, switches, compact.points, points, white, tried, tries_plain ? &plain : nullptr};
   Plan plan;
@@ -353,7 +353,6 @@ void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& 
   by_lobes.satin = false;
   const std::vector<color::Rgb> full = exact_radiance(points, scene, all, env),
                                 lobes = all.satin ? exact_radiance(points, scene, by_lobes, env) : full;
-  const double white = white_luminance > 0 ? white_luminance : 1;
   for (std::size_t i = 0; i < switches.size(); ++i) {
     if (!switches[i].needed || switches[i].refines) continue;  // the reference has no sets
     Effects without = by_lobes;
@@ -361,13 +360,13 @@ void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& 
     const std::vector<color::Rgb>& with = switches[i].beyond_maps ? full : lobes;
     const std::vector<color::Rgb> colors = exact_radiance(points, scene, without, env);
     std::vector<double> de00;
-    for (std::size_t j = 0; j < with.size(); ++j) de00.push_back(seen_difference(with[j], colors[j], white));
+    for (std::size_t j = 0; j < with.size(); ++j) de00.push_back(seen_difference(with[j], colors[j], white_luminance));
     plan.items[i].truth_de00_p95 = percentile_95(std::move(de00));
   }
   PlanItem* flakes = row_of(plan, kSparkleName);
   if (flakes == nullptr || std::isnan(flakes->de00_p95) || pixels.empty()) return;
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].shown = full[i];
-  flakes->truth_de00_p95 = sparkle_truth(scene, all, pixels, white);
+  flakes->truth_de00_p95 = sparkle_truth(scene, all, pixels, white_luminance);
 }
 
 namespace {

@@ -7,7 +7,8 @@
 
 namespace goniochrome::render {
 
-// CIEDE2000 of two radiances, as Lab relative to D65 of that luminance.
+// CIEDE2000 of two radiances, as Lab relative to D65 of that luminance; 1 where that is not above 0, as in the dark,
+// where all is black.
 double seen_difference(const color::Rgb& a, const color::Rgb& b, double white_luminance);
 
 // The smallest value that 95 % of them do not exceed; 0 of none.

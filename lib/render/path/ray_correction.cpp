@@ -28,7 +28,7 @@ double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Ba
   std::vector<double> de00;
   for (const RayPoint& point : floor_points(transport.rays(), gbuffer, kPoints))
     de00.push_back(seen_difference(transport.shaded_ground(point.spot).shown(effects), backdrop.at(-point.to_viewer),
-                                   white_luminance > 0 ? white_luminance : 1));
+                                   white_luminance));
   return percentile_95(std::move(de00));
 }
 

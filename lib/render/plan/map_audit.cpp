@@ -27,10 +27,9 @@ FoundMaps MapAudit::found(const std::shared_ptr<const Gbuffer>& seen, int sample
   std::vector<VisiblePoint> points = probe_points(probe_pixels({seen}, kAudited), scene, samples);
   std::erase_if(points,
                 [&](const VisiblePoint& point) { return is_pane(scene, static_cast<std::size_t>(point.part)); });
-  const double white = white_luminance > 0 ? white_luminance : 1;
   const auto differences = [&](const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) {
     std::vector<double> de00(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) de00[i] = seen_difference(a[i], b[i], white);
+    for (std::size_t i = 0; i < points.size(); ++i) de00[i] = seen_difference(a[i], b[i], white_luminance);
     return de00;
   };
   std::vector<color::Rgb> shown = maps.colors(points);

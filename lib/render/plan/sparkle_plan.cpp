@@ -56,11 +56,11 @@ PlanItem sparkle_item(const Scene& scene, const std::vector<ProbePixel>& pixels,
     return unmeasured(kSparkleName, "buffers without their mesh: flakes have no places");
   const Sparkle sparkle(scene, effects);
   if (!sparkle.absent().empty()) return unmeasured(kSparkleName, sparkle.absent());
-  const double white = request.white_luminance > 0 ? request.white_luminance : 1;
   std::vector<double> de00;
   for (const ProbePixel& pixel : pixels)
-    de00.push_back(seen_difference(
-        pixel.shown, pixel.shown + sparkle.deviation(*pixel.gbuffer, pixel.x, pixel.y, pixel.shown), white));
+    de00.push_back(seen_difference(pixel.shown,
+                                   pixel.shown + sparkle.deviation(*pixel.gbuffer, pixel.x, pixel.y, pixel.shown),
+                                   request.white_luminance));
   const double change = percentile_95(std::move(de00));
   PlanItem item = unmeasured(
       kSparkleName, fmt::format("{}; {}", sparkle.reason(), seen_from(scene, pixels, change / request.tolerance_de00)),
