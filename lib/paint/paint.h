@@ -66,6 +66,7 @@ struct Appearance {
 
 struct Anisotropy {
   double alpha_x = 0, alpha_y = 0;
+  bool operator==(const Anisotropy&) const = default;
 };
 
 // The flat mirrors in the base of a paint. goniochrome-flakes(7)
@@ -96,6 +97,7 @@ struct Lobe {
   double exponent = 1;
   color::Rgb directional_diffuse;
   color::Rgb gloss;
+  bool operator==(const Lobe&) const = default;
 
   bool is_mirror() const { return paint::is_mirror(exponent); }
 };
@@ -105,6 +107,7 @@ struct ViewLobes {
   double view_deg = 0;  // 0..90
   color::Rgb diffuse;
   std::vector<Lobe> lobes;
+  bool operator==(const ViewLobes&) const = default;
 };
 
 // A lobe cos^E about an axis that stands beside the mirror direction: turned by `tilt_deg` away from the normal within

@@ -141,7 +141,7 @@ std::vector<color::Rgb> exact_radiance(const std::vector<VisiblePoint>& points, 
     paints.push_back(with_effects(scene.paints[part], effects));
     ExactModel& model = models[part];
     model.fresnel = effects.fresnel;
-    if (part < scene.gloss_deg.size()) model.gloss_deg = scene.gloss_deg[part];
+    model.gloss_deg = gloss_deg_of(scene, part);
     model.horizon = effects.horizon || effects.lobes.empty() || !effects.environment;
     if (tilts[part].size() > 1) model.tilts = tilts[part];
     if (effects.reflection) model.reflection = &scene.reflection;

@@ -7,7 +7,6 @@
 #include "base/angles.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
-#include "render/internal/worn_lobes.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {

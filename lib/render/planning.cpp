@@ -65,8 +65,8 @@ Compact compacted(const Scene& scene, const std::vector<VisiblePoint>& points) {
     if (same != first.end()) continue;
     first.push_back(part);
     compact.scene.paints.push_back(scene.paints[part]);
-    compact.scene.gloss_deg.push_back(part < scene.gloss_deg.size() ? scene.gloss_deg[part] : 45);
-    compact.scene.anisotropy.push_back(part < scene.anisotropy.size() ? scene.anisotropy[part] : paint::Anisotropy{});
+    compact.scene.gloss_deg.push_back(gloss_deg_of(scene, part));
+    compact.scene.anisotropy.push_back(anisotropy_of(scene, part));
   }
   for (VisiblePoint& point : compact.points) point.part = place[static_cast<std::size_t>(point.part)];
   return compact;

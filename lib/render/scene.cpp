@@ -7,7 +7,6 @@
 #include "brdf/disc_light.h"
 #include "color/color.h"
 #include "math/elementary.h"
-#include "render/internal/worn_lobes.h"
 
 namespace goniochrome::render {
 

@@ -112,6 +112,11 @@ std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints);
 // True if any paint has a mirror lobe.
 bool has_mirror(const std::vector<paint::LobeFit>& paints);
 
+// True if the lobe of this exponent, which may be the mirror's, has such a weight in the paint's own lobes or in those
+// of one of its views: an exponent may stand in a view alone.
+enum class LobeWeight { kDirectionalDiffuse, kGloss };
+bool wears_lobe(const paint::LobeFit& paint, double exponent, LobeWeight weight);
+
 // A paint's lobe of this exponent, or null where it has none.
 const paint::Lobe* find_lobe(const paint::LobeFit& paint, double exponent);
 

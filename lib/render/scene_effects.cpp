@@ -16,7 +16,6 @@
 #include "render/internal/lobe_curves.h"
 #include "render/internal/tilt_table.h"
 #include "render/internal/wear.h"
-#include "render/internal/worn_lobes.h"
 #include "render/panes.h"
 #include "render/surface_layer.h"
 

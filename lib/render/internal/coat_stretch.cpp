@@ -12,7 +12,6 @@
 #include "brdf/lobe_model.h"
 #include "math/elementary.h"
 #include "render/internal/wear.h"
-#include "render/internal/worn_lobes.h"
 
 namespace goniochrome::render {
 

@@ -8,7 +8,6 @@
 #include "math/elementary.h"
 #include "render/internal/coat_stretch.h"
 #include "render/internal/wear.h"
-#include "render/internal/worn_lobes.h"
 
 namespace goniochrome::render {
 

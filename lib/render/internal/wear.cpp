@@ -1,21 +1,9 @@
 #include "render/internal/wear.h"
 
-#include <algorithm>
-
 #include "brdf/coat_facets.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
-
-namespace {
-
-bool same_lobes(const std::vector<paint::Lobe>& a, const std::vector<paint::Lobe>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const paint::Lobe& x, const paint::Lobe& y) {
-    return x.exponent == y.exponent && x.directional_diffuse == y.directional_diffuse && x.gloss == y.gloss;
-  });
-}
-
-}  // namespace
 
 double gloss_deg_of(const Scene& scene, std::size_t part) {
   return part < scene.gloss_deg.size() ? scene.gloss_deg[part] : 45;
@@ -40,14 +28,9 @@ bool wears_rough_coat(const Scene& scene, std::size_t part) {
 
 bool same_wear(const Scene& scene, std::size_t a, std::size_t b) {
   const paint::LobeFit &x = scene.paints[a], &y = scene.paints[b];
-  const paint::Anisotropy brushed_x = anisotropy_of(scene, a), brushed_y = anisotropy_of(scene, b);
-  return x.diffuse == y.diffuse && x.coat_index == y.coat_index && x.tilts == y.tilts && same_lobes(x.lobes, y.lobes) &&
-         gloss_deg_of(scene, a) == gloss_deg_of(scene, b) && brushed_x.alpha_x == brushed_y.alpha_x &&
-         brushed_x.alpha_y == brushed_y.alpha_y &&
-         std::equal(x.views.begin(), x.views.end(), y.views.begin(), y.views.end(),
-                    [](const paint::ViewLobes& v, const paint::ViewLobes& w) {
-                      return v.view_deg == w.view_deg && v.diffuse == w.diffuse && same_lobes(v.lobes, w.lobes);
-                    });
+  return x.diffuse == y.diffuse && x.coat_index == y.coat_index && x.tilts == y.tilts && x.lobes == y.lobes &&
+         x.views == y.views && gloss_deg_of(scene, a) == gloss_deg_of(scene, b) &&
+         anisotropy_of(scene, a) == anisotropy_of(scene, b);
 }
 
 }  // namespace goniochrome::render

@@ -52,8 +52,7 @@ Result<std::vector<color::Rgb>> column_weights(const LobeColumns& columns, const
       return input_error(
           "a paint has a lobe of exponent {}, and the transport has those of {}: fit the paint to that basis, or "
           "trace with this one",
-          shortest(lobe.exponent),
-          columns.exponents.empty() ? "no lobes" : joined(columns.exponents, ", ", shortest));
+          shortest(lobe.exponent), columns.exponents.empty() ? "no lobes" : joined(columns.exponents, ", ", shortest));
     }
     const auto j = static_cast<std::size_t>(found - columns.exponents.begin());
     weights[LobeColumns::flake(j)] = lobe.directional_diffuse;

@@ -527,16 +527,15 @@ Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path
     while (group < static_cast<int>(first.size()) && !same_wear(scene, first[static_cast<std::size_t>(group)], part))
       ++group;
     if (group == static_cast<int>(first.size())) {
-      const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : brdf::kGlossIncidence_deg;
-      GONIO_ASSIGN(auto weights,
-                   column_weights(columns, scene.paints[part].diffuse, scene.paints[part].lobes, gloss_deg));
+      GONIO_ASSIGN(auto weights, column_weights(columns, scene.paints[part].diffuse, scene.paints[part].lobes,
+                                                gloss_deg_of(scene, part)));
       worn.weights.push_back(std::move(weights));
       first.push_back(part);
     }
     worn.groups.of_part.push_back(group);
     worn.emission.push_back(part < path.emission.size() ? path.emission[part] : color::Rgb{});
     worn.coats.push_back(scene.paints[part].coat_index);
-    worn.brushed.push_back(part < scene.anisotropy.size() ? scene.anisotropy[part] : paint::Anisotropy{});
+    worn.brushed.push_back(anisotropy_of(scene, part));
   }
   if (path.ground) {
     worn.floor_is_projected = path.ground->kind == Ground::Kind::kShadow;

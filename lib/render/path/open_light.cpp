@@ -58,8 +58,7 @@ Result<OpenLight> OpenLight::create(const Scene& scene, const LobeColumns& colum
     if (part < coats.size()) surface.coat_index = coats[part];
     if (part < scene.anisotropy.size()) surface.brushed = scene.anisotropy[part];
     const auto same = std::ranges::find_if(open.surfaces_, [&](const Surface& other) {
-      return other.coat_index == surface.coat_index && other.brushed.alpha_x == surface.brushed.alpha_x &&
-             other.brushed.alpha_y == surface.brushed.alpha_y;
+      return other.coat_index == surface.coat_index && other.brushed == surface.brushed;
     });
     open.of_parts_.push_back(static_cast<std::size_t>(same - open.surfaces_.begin()));
     if (same == open.surfaces_.end()) open.surfaces_.push_back(surface);

@@ -124,8 +124,7 @@ Result<void> OpenResidual::set_paints(const Scene& scene) {
         wears_, [&](const Wear& wear) { return same_wear(scene_, static_cast<std::size_t>(wear.part), part); });
     wear_of_part_.back() = static_cast<std::int32_t>(same - wears_.begin());
     if (same != wears_.end()) continue;
-    const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : brdf::kGlossIncidence_deg;
-    GONIO_ASSIGN(TransportPaint weights, transport_paint(columns_, paint, gloss_deg));
+    GONIO_ASSIGN(TransportPaint weights, transport_paint(columns_, paint, gloss_deg_of(scene, part)));
     wears_.push_back({surface_of(paint.coat_index), static_cast<int>(part), std::move(weights), {}});
   }
   return {};

@@ -33,8 +33,7 @@ Result<ShownPaints> shown_paints(const LobeColumns& columns, const WornPaints& w
     const auto named = [&](const Error& error) {
       return Error{error.kind, part.name.empty() ? error.message : part.name + ": " + error.message};
     };
-    if (i < worn.brushed.size() &&
-        (worn.brushed[i].alpha_x != part.anisotropy.alpha_x || worn.brushed[i].alpha_y != part.anisotropy.alpha_y))
+    if (i < worn.brushed.size() && worn.brushed[i] != part.anisotropy)
       return input_error(
           "{}: is brushed otherwise than the paint of part {} was when its light was traced: render again with "
           "--aov transport in this paint",

@@ -5,6 +5,7 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "render/internal/wear.h"
 #include "render/path/path_loop.h"
 
 namespace goniochrome::render {
@@ -118,8 +119,8 @@ Result<Transport> SpectralPaths::transport(const PathScene& path_scene) {
   auto paths = std::make_shared<SpectralPaths>();
   paths->eye_ = spectra.eye.weights();
   for (std::size_t part = 0; part < spectra.paints.size(); ++part) {
-    const double gloss_deg = part < mean.gloss_deg.size() ? mean.gloss_deg[part] : brdf::kGlossIncidence_deg;
-    paths->paints_.push_back(laid_out(spectra.paints[part], gloss_deg, transport.paints_[part].has_rough_coat()));
+    paths->paints_.push_back(
+        laid_out(spectra.paints[part], gloss_deg_of(mean, part), transport.paints_[part].has_rough_coat()));
   }
   if (spectra.floor)
     paths->paints_.push_back(

@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "brdf/lobe_model.h"
 #include "render/effects.h"
+#include "render/internal/wear.h"
 #include "render/panes.h"
 #include "render/scene_effects.h"
 #include "render/surface_layer.h"
@@ -57,7 +58,7 @@ Result<Transport> Transport::in_channels(const PathScene& path_scene) {
   transport.mesh_radius_ = static_cast<float>(1.0001 * transport.rays_->scale() * length(0.5 * box.size()));
   const auto tilts = tilts_for(path_scene);
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
-    const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : brdf::kGlossIncidence_deg;
+    const double gloss_deg = gloss_deg_of(scene, part);
     // A color map takes the place of diffuse and flake weights at all views; the gloss of each view stays.
     auto paint = TracedPaint::create(scene.paints[part], gloss_deg, tilts[part]);
     if (!paint.ok()) return input_error("part {}: {}", scene.mesh->parts[part].name, paint.error().message);

@@ -6,7 +6,6 @@
 #include "base/angles.h"
 #include "base/text.h"
 #include "color/color.h"
-#include "render/internal/worn_lobes.h"
 #include "render/panes.h"
 #include "render/scene_effects.h"
 #include "render/surface_layer.h"
