@@ -106,7 +106,7 @@ void put_textured(const Scene& scene, const std::vector<VisiblePoint>& points, c
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const VisiblePoint& point = points[i];
-    if (scene.layer == nullptr || scene.layer->surface(point.part).texture == nullptr) continue;
+    if (scene.layer == nullptr || scene.layer->surface(point.part).textures.empty()) continue;
     SurfaceLayer::Place place = scene.layer->place(point, i, effects);
     colors[i] = place.bare * colors[i];
     const std::size_t first = textured.size();

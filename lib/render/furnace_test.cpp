@@ -65,7 +65,7 @@ double brightest(const EngineInfo& engine, const Worn& worn, const envmap::Block
   Scene scene;
   scene.mesh = &mesh, scene.env = &env, scene.texels = &sky, scene.gloss_deg = {60}, scene.paints = {worn.lobes};
   std::optional<SurfaceLayer> layer;
-  if (worn.map) layer.emplace(scene, std::vector<PartSurface>{{nullptr, 1, &*worn.map}}, brdf::CriticalAngle::kSlide);
+  if (worn.map) layer.emplace(scene, std::vector<PartSurface>{{{}, &*worn.map}}, brdf::CriticalAngle::kSlide);
   if (layer) scene.layer = &*layer;
   auto renderer = Renderer::create();
   EXPECT_TRUE(renderer.ok() && renderer->load(scene, engine.name).ok()) << engine.name << " " << worn.name;

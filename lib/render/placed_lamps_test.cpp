@@ -148,7 +148,7 @@ TEST_F(PlacedLamps, MapsAreLitByPointsAndSpheres) {
   for (const double radius : {0.0, 0.12}) {
     scene.env = nullptr;
     scene.lights = {placed({1.3, 0.7, 1.0}, {1, 0.8, 0.6}, radius), {normalized({-1, 0.2, 0.3}), {0.1, 0.2, 0.4}}};
-    lay({&map, 3, nullptr});
+    lay({{{&map, 3}}});
     ASSERT_EQ(effects_of(scene).extent, radius > 0);
     expect_place("map");
     // The reference has the integral of a sphere, from which a Gaussian differs the more the wider the sphere is seen.
@@ -156,7 +156,7 @@ TEST_F(PlacedLamps, MapsAreLitByPointsAndSpheres) {
       EXPECT_LT(picture_error(drawn("cpu"), scene, nullptr, 1, 500, 5).de00_p95, 0.05);
     }
     scene.env = &env;
-    lay({&map, 3, nullptr});
+    lay({{{&map, 3}}});
     expect_place("map in an environment");
   }
 }

@@ -32,10 +32,10 @@ SurfaceLayer::SurfaceLayer(const Scene& scene, std::vector<PartSurface> surfaces
   std::vector<std::vector<TextureLaying>> layings;
   for (std::size_t part = 0; part < surfaces_.size(); ++part) {
     const PartSurface& surface = surfaces_[part];
-    empty_ = empty_ && surface.texture == nullptr && surface.color_map == nullptr;
+    empty_ = empty_ && surface.textures.empty() && surface.color_map == nullptr;
     mapped_ = mapped_ || (surface.color_map != nullptr && !surface.hides_paint() && !scene.lights.empty());
-    dims_ = dims_ || (surface.texture != nullptr && !surface.hides_paint());
-    for (const LaidTexture& laid : surface.textures()) {
+    dims_ = dims_ || (!surface.textures.empty() && !surface.hides_paint());
+    for (const LaidTexture& laid : surface.textures) {
       const std::size_t level = laid_[part].size();
       if (level == kMostLaid) break;
       textured_ = true;
@@ -212,13 +212,6 @@ SbrdfLight light_of(const Scene& scene, const Effects& effects) {
 
 }  // namespace
 
-std::vector<LaidTexture> PartSurface::textures() const {
-  if (texture == nullptr) return {};
-  std::vector<LaidTexture> all = {{texture, repeat, laying, false}};
-  all.insert(all.end(), over.begin(), over.end());
-  return all;
-}
-
 std::size_t SurfaceLayer::shading_of(const Laid& laid, const Effects& effects) const {
   return effects.texture ? laid.texture : textures_.size() + laid.texture;
 }
@@ -361,7 +354,7 @@ void SurfaceLayer::see(const Gbuffer& gbuffer, int first_row, int end_row, const
   SeenTexels texels;
   for (std::size_t i = gbuffer.index(0, first_row); i < gbuffer.index(0, end_row); ++i) {
     const int part = static_cast<int>(std::abs(gbuffer.data[4 * i + 3])) - 1;
-    const bool worn = part >= 0 && surfaces_[static_cast<std::size_t>(part)].texture != nullptr;
+    const bool worn = part >= 0 && !surfaces_[static_cast<std::size_t>(part)].textures.empty();
     if (worn) stack(part, &places[i], pixels, effects, scale, stacked);
     if (dims_) band.bare.push_back(worn ? static_cast<float>(stacked.bare) : 1.0F);
     for (std::size_t level = 0; worn && level < stacked.count; ++level) {

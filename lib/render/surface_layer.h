@@ -32,16 +32,11 @@ struct LaidTexture {
 
 // The surface of a part beyond its paint. A part whose paint is not seen has one without weights.
 struct PartSurface {
-  const brdf::SbrdfTexture* texture = nullptr;  // the lowest one
-  double repeat = 1;
+  std::vector<LaidTexture> textures = {};     // from the lowest one on
   const brdf::ColorMap* color_map = nullptr;  // of the paint
-  TextureLaying laying = {};
-  std::vector<LaidTexture> over = {};  // that lie over `texture`, the uppermost last
 
-  // All textures from the lowest one on.
-  std::vector<LaidTexture> textures() const;
   // True if no place of the part shows the paint: the lowest texture has no alpha.
-  bool hides_paint() const { return texture != nullptr && texture->alpha.empty(); }
+  bool hides_paint() const { return !textures.empty() && textures.front().texture->alpha.empty(); }
 };
 
 // The most textures of a part.

@@ -51,7 +51,7 @@ struct Stage {
 TEST(SurfaceLayer, AColorMapTakesTheFlakesPlaceAndLeavesTheGloss) {
   const Stage stage;
   const brdf::ColorMap map = even_map(0.4F);
-  const SurfaceLayer layer(stage.scene, {{nullptr, 1, &map}}, brdf::CriticalAngle::kSlide);
+  const SurfaceLayer layer(stage.scene, {{{}, &map}}, brdf::CriticalAngle::kSlide);
   ASSERT_FALSE(layer.empty());
   const Gbuffer g = sphere_row(40);
   for (int x = 0; x < g.width; x += 3) {
@@ -71,7 +71,7 @@ TEST(SurfaceLayer, AColorMapTakesTheFlakesPlaceAndLeavesTheGloss) {
 TEST(SurfaceLayer, AddsItsWeightAndNothingElsewhere) {
   const Stage stage;
   const brdf::ColorMap map = even_map(1);
-  const SurfaceLayer layer(stage.scene, {{nullptr, 1, &map}}, brdf::CriticalAngle::kClip);
+  const SurfaceLayer layer(stage.scene, {{{}, &map}}, brdf::CriticalAngle::kClip);
   Gbuffer g = sphere_row(8);
   g.data[3] = 0;  // the first pixel misses the mesh
   image::Image picture{8, 1, 4, std::vector<float>(32, 1), {}};
@@ -85,7 +85,7 @@ TEST(SurfaceLayer, AddsItsWeightAndNothingElsewhere) {
   // Without lights a color map adds nothing: an environment is lit by the paint's lobes.
   Stage dark;
   dark.scene.lights.clear();
-  const SurfaceLayer unlit(dark.scene, {{nullptr, 1, &map}}, brdf::CriticalAngle::kClip);
+  const SurfaceLayer unlit(dark.scene, {{{}, &map}}, brdf::CriticalAngle::kClip);
   EXPECT_FALSE(unlit.mapped());
   EXPECT_FALSE(unlit.empty());  // paths evaluate it under every light
 }
@@ -95,7 +95,7 @@ TEST(SurfaceLayer, BitsDoNotDependOnTheThreads) {
   brdf::SbrdfTexture texture = {1, 1, 1, {0.1F, 0.1F, 0.1F, 1, 0, 1, 1, 1, -1, -1, 1, 30}};
   Effects effects;
   effects.texture = true, effects.lights = 1;
-  const SurfaceLayer layer(stage.scene, {{&texture, 2, nullptr}}, brdf::CriticalAngle::kClip);
+  const SurfaceLayer layer(stage.scene, {{{{&texture, 2}}}}, brdf::CriticalAngle::kClip);
   Camera camera;
   camera.eye = {0, 0, 5};
   const Gbuffer g = seen_by_rays(stage.mesh, camera, 16, 16);

@@ -54,8 +54,7 @@ struct World {
     env =
         prefilter::prefiltered(source, request, prefilter::prefilter_plan(source, request), [](const auto&, double) {});
     scene.mesh = &mesh, scene.env = &env, scene.paints = {tilted};
-    layer = std::make_unique<SurfaceLayer>(scene, std::vector<PartSurface>{{nullptr, 1, &map}},
-                                           brdf::CriticalAngle::kSlide);
+    layer = std::make_unique<SurfaceLayer>(scene, std::vector<PartSurface>{{{}, &map}}, brdf::CriticalAngle::kSlide);
     scene.layer = layer.get();
   }
   Frame drawn(const Effects& effects, const std::string& engine) const {

@@ -242,7 +242,7 @@ void put_on(std::size_t part, const paint::Paint& paint, const brdf::ColorMap* m
   if (map == nullptr) dress.paints[part].tilts.clear();  // they stand for a map
   dress.gloss_deg[part] = paint.gloss.empty() ? kUnreadGlossDeg : paint.gloss.front().angle_deg;
   dress.anisotropy[part] = paint.anisotropy.value_or(paint::Anisotropy{});
-  dress.surfaces[part] = {nullptr, 1, map, {}};
+  dress.surfaces[part] = {{}, map};
   dress.names[part] = paint.name;
 }
 

@@ -123,7 +123,7 @@ class Gathering {
       const std::string& name = dress.names[part].empty() ? stage_.mesh.parts[part].name : dress.names[part];
       paint::Paint bare;
       bare.lobes = dress.paints[part];
-      const bool has_surface = dress.surfaces[part].texture != nullptr;
+      const bool has_surface = !dress.surfaces[part].textures.empty();
       const std::string what = fmt::format("the paint {}", name);
       auto lobes = lobes_of(dress.worn[part] ? *dress.worn[part] : bare, what);
       if (!lobes.ok() && !has_surface) add(fmt::format("{}: {}", what, lobes.error().message), lacks);

@@ -204,16 +204,10 @@ Result<void> lay(const std::string& option, const Texture& texture, const render
     dress.names[part] = texture.file;
     surface = {};
   }
-  const std::size_t there = surface.textures().size();
-  if (there + facets.size() > render::kMostLaid)
+  if (surface.textures.size() + facets.size() > render::kMostLaid)
     return wrong(option,
                  fmt::format("a part takes {} maps at most, of which a triplanar one counts three", render::kMostLaid));
-  std::size_t first = 0;
-  if (there == 0) {
-    surface.texture = laid.texture, surface.repeat = laid.repeat, surface.laying = facets.front().laying;
-    first = 1;
-  }
-  surface.over.insert(surface.over.end(), facets.begin() + static_cast<std::ptrdiff_t>(first), facets.end());
+  surface.textures.insert(surface.textures.end(), facets.begin(), facets.end());
   return {};
 }
 

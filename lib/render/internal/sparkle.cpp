@@ -133,7 +133,7 @@ std::string hindrance(const Scene& scene, std::size_t part) {
   if (!scene.paints[part].tilts.empty()) return "mapped";
   if (scene.layer == nullptr) return "";
   const PartSurface& surface = scene.layer->surface(static_cast<int>(part));
-  return surface.texture != nullptr ? "textured" : surface.color_map != nullptr ? "mapped" : "";
+  return !surface.textures.empty() ? "textured" : surface.color_map != nullptr ? "mapped" : "";
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ TEST(BadShapes, PathsEndBetweenMapsThatGainLight) {
   brdf::ColorMap map = brdf::color_map_of_size(4, 1.5);
   std::ranges::fill(map.factors, 1.2F);
   PathStage stage(box_mesh(true), {matt({1, 1, 1})});
-  const SurfaceLayer layer(stage.scene, std::vector<PartSurface>(6, {nullptr, 1, &map}), brdf::CriticalAngle::kSlide);
+  const SurfaceLayer layer(stage.scene, std::vector<PartSurface>(6, {{}, &map}), brdf::CriticalAngle::kSlide);
   stage.scene.layer = &layer;
   stage.emission.assign(6, {1, 1, 1});
   stage.build();

@@ -519,9 +519,9 @@ Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
     if (scene.layer != nullptr) {
       const PartSurface& surface = scene.layer->surface(static_cast<int>(part));
-      if (surface.texture != nullptr || surface.color_map != nullptr)
+      if (!surface.textures.empty() || surface.color_map != nullptr)
         return usage_error("part {} wears a {}, whose light is no sum of the lobes of a paint: trace without it",
-                           scene.mesh->parts[part].name, surface.texture != nullptr ? "texture" : "color map");
+                           scene.mesh->parts[part].name, surface.textures.empty() ? "color map" : "texture");
     }
     int group = scene.paints.size() <= kMostOwnGroups ? static_cast<int>(first.size()) : 0;
     while (group < static_cast<int>(first.size()) && !same_wear(scene, first[static_cast<std::size_t>(group)], part))

@@ -43,7 +43,7 @@ void for_weights(paint::LobeFit& paint, const Visit& visit) {
 // The part of a paint that is summed.
 paint::LobeFit summed(const Scene& scene, const Effects& effects, std::size_t part, bool brushed, bool stretched) {
   const bool covered = scene.layer != nullptr &&
-                       (scene.layer->surface(static_cast<int>(part)).texture != nullptr || is_mapped(scene, part));
+                       (!scene.layer->surface(static_cast<int>(part)).textures.empty() || is_mapped(scene, part));
   if (brushed || covered || !scene.paints[part].tilts.empty()) return {};
   paint::LobeFit paint = with_effects(scene.paints[part], effects);
   const auto strip = [&](std::vector<paint::Lobe>& lobes) {

@@ -22,7 +22,7 @@ float mean_size(const color::Rgb& c) {
 
 void TracedPaint::put_surface(const SurfaceLayer& layer, int part) {
   const PartSurface& surface = layer.surface(part);
-  if (surface.texture != nullptr) layer_ = &layer, part_ = part;
+  if (!surface.textures.empty()) layer_ = &layer, part_ = part;
   if (surface.hides_paint()) {
     views_.assign(1, {});
     coat_index_ = paint::kNoCoat;

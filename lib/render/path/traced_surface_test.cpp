@@ -137,7 +137,7 @@ TEST(TracedSurface, MapsAndTexturesAreDrawnAsTheirDensitySays) {
   LayeredStage stage(panels_mesh(3), {mapped_paint(), {}, {}});
   const brdf::ColorMap map = traveling_map();
   const brdf::SbrdfTexture texture = brushed(), tilted = with_normals(texture);
-  stage.surfaces = {{nullptr, 1, &map}, {&texture, 1.7, nullptr}, {&tilted, 1.7, nullptr}};
+  stage.surfaces = {{{}, &map}, {{{&texture, 1.7}}}, {{{&tilted, 1.7}}}};
   stage.build_with_layer();
   for (std::size_t part = 0; part < 3; ++part) {
     auto paint = TracedPaint::create(stage.scene.paints[part], 45, {});
@@ -161,7 +161,7 @@ TEST(TracedSurface, MapsAndTexturesAreDrawnAsTheirDensitySays) {
 TEST(TracedSurface, AMapTakesTheFlakesPlaceAndLeavesTheGloss) {
   LayeredStage stage(panels_mesh(1), {mapped_paint()});
   const brdf::ColorMap map = traveling_map();
-  stage.surfaces = {{nullptr, 1, &map}};
+  stage.surfaces = {{{}, &map}};
   stage.build_with_layer();
   auto paint = TracedPaint::create(mapped_paint(), 45, {});
   paint->put_surface(*stage.layer, 0);
@@ -209,7 +209,7 @@ color::Rgb mapped_integral(const brdf::ColorMap& map, const paint::LobeFit& glos
 TEST(TracedSurface, AMappedConvexShapeShowsTheIntegral) {
   LayeredStage stage(sphere_mesh(96), {mapped_paint()});
   const brdf::ColorMap map = traveling_map();
-  stage.surfaces = {{nullptr, 1, &map}};
+  stage.surfaces = {{{}, &map}};
   stage.environment = studio();
   const Transport& transport = stage.build_with_layer();
   paint::LobeFit gloss = mapped_paint();
@@ -244,7 +244,7 @@ TEST(TracedSurface, AMapLeavesTheGlossOfEachView) {
   satin.views = {{0, satin.diffuse, {{12, {}, {0.05, 0.05, 0.05}}, {300, {}, {0.5, 0.5, 0.5}}}},
                  {60, satin.diffuse, {{300, {}, {8, 8, 8}}, {1000, {}, {20, 20, 20}}}}};
   LayeredStage stage(sphere_mesh(96), {satin});
-  stage.surfaces = {{nullptr, 1, &map}};
+  stage.surfaces = {{{}, &map}};
   const Vec3 eye{0, 0, 3};
   for (const double off : {0.2, 0.5, 0.8}) {
     // The lamp of each place stands in the mirror direction.
@@ -276,7 +276,7 @@ TEST(TracedSurface, AConvexShapeShowsTheReference) {
   const brdf::SbrdfTexture texture = brushed();
   for (const bool textured : {false, true}) {
     LayeredStage stage(sphere_mesh(96), {textured ? paint::LobeFit{} : mapped_paint()});
-    stage.surfaces = {textured ? PartSurface{&texture, 6, nullptr} : PartSurface{nullptr, 1, &map}};
+    stage.surfaces = {textured ? PartSurface{{{&texture, 6}}} : PartSurface{{}, &map}};
     if (textured) stage.environment = studio();
     stage.scene.lights = {{normalized({1, 2, 1}), {0.5, 0.4, 0.3}}, {normalized({-1, 1, 2}), {0.2, 0.1, 0.5}}};
     stage.scene.reflection = color::iso_rgb_operator();
@@ -323,7 +323,7 @@ TEST(TracedSurface, RaysTakeTheLightThatTiltedTexelsHaveFromBelow) {
   LayeredStage stage(std::move(plate), {{}});
   brdf::SbrdfTexture texture = {1, 1, 1, {0.1F, 0.1F, 0.1F, 1, 0, 0.5F, 0.4F, 0.3F, -1, -1, 1, 6}};
   texture = with_normals(texture);
-  stage.surfaces = {{&texture, 1, nullptr}};
+  stage.surfaces = {{{{&texture, 1}}}};
   stage.environment = environment_of(32, 16, [](int, int row) { return color::Rgb{1, 1, row < 8 ? 1.0 : 2.0}; });
   stage.scene.lights = {{normalized({-1, 0.2, 2}), {0.5, 0.4, 0.3}, 0.1}, {normalized({1, 0, -0.2}), {0.2, 0.3, 0.4}}};
   const Transport& transport = stage.build_with_layer();
@@ -358,7 +358,7 @@ TEST(TracedSurface, BouncesFindTheTexelsAndTheMap) {
     add_rectangle(mesh, "wall", {-1, 0, -1}, {2, 0, 0}, {0, 1.5, 0});  // faces +Z
     for (const auto& p : mesh.positions) mesh.texture.push_back({static_cast<float>(p.x), static_cast<float>(p.y)});
     LayeredStage stage(std::move(mesh), {matt({0.8, 0.6, 0.5}), textured ? paint::LobeFit{} : mapped_paint()});
-    stage.surfaces = {{}, textured ? PartSurface{&texture, 1.3, nullptr} : PartSurface{nullptr, 1, &map}};
+    stage.surfaces = {{}, textured ? PartSurface{{{&texture, 1.3}}} : PartSurface{{}, &map}};
     stage.scene.lights = {{normalized({0.3, 0, 1}), {0.9, 0.8, 0.7}}};
     const Transport& transport = stage.build_with_layer();
     Effects effects = effects_of(stage.scene);
@@ -412,7 +412,7 @@ TEST(TracedSurface, TexturesAndBrushedPaintsAreThoseOfTheEngineCpu) {
   add_mesh(mesh, sphere_mesh(64), 0.7, {1.9, 0, 0});
   LayeredStage stage(std::move(mesh), {{}, mapped_paint()});
   const brdf::SbrdfTexture texture = brushed();
-  stage.surfaces = {{&texture, 6, nullptr}, {}};
+  stage.surfaces = {{{{&texture, 6}}}, {}};
   stage.scene.lights = {{normalized({0.1, 0.8, 1}), {1, 0.8, 0.6}}};
   stage.scene.anisotropy = {{}, {0.1, 0.4}};
   const Transport& transport = stage.build_with_layer();
@@ -470,7 +470,7 @@ TEST(TracedSurface, AreNoSumOfLobes) {
   path.scene = &stage.scene;
   EXPECT_TRUE(worn_paints(columns, path).ok());
   for (const bool textured : {false, true}) {
-    stage.surfaces = {{}, textured ? PartSurface{&texture, 1, nullptr} : PartSurface{nullptr, 1, &map}};
+    stage.surfaces = {{}, textured ? PartSurface{{{&texture, 1}}} : PartSurface{{}, &map}};
     stage.build_with_layer();
     const auto worn = worn_paints(columns, path);
     ASSERT_FALSE(worn.ok());
@@ -485,7 +485,7 @@ TEST(TracedSurface, WhiteMapsAndTexturesInEvenLightShowThatLight) {
   const brdf::SbrdfTexture diffuse{1, 1, 1, {third, third, third, 1, 0, 0, 0, 0, -1, -1, 1, 5}};
   for (const bool textured : {false, true}) {
     LayeredStage stage(box_mesh(false), {textured ? paint::LobeFit{} : matt({0.5, 0.7, 0.9})});
-    stage.surfaces.assign(5, textured ? PartSurface{&diffuse, 1, nullptr} : PartSurface{nullptr, 1, &white});
+    stage.surfaces.assign(5, textured ? PartSurface{{{&diffuse, 1}}} : PartSurface{{}, &white});
     stage.environment = even_environment();
     stage.build_with_layer();
     Worst ours, cut;

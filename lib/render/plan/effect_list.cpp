@@ -132,7 +132,7 @@ std::string reflection_reason(const Scene& scene, const Effects& all) {
 std::string texture_reason(const Scene& scene, const Effects& all, const std::vector<VisiblePoint>& seen) {
   if (!all.texture) return "no part has a texture";
   return fmt::format("{:.0f} % of what is seen is textured: beside its mean texel",
-                     percent(seen, [&](const auto& p) { return scene.layer->surface(p.part).texture != nullptr; }));
+                     percent(seen, [&](const auto& p) { return !scene.layer->surface(p.part).textures.empty(); }));
 }
 
 // The most texels that a pixel covers.

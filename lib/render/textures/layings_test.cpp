@@ -69,11 +69,11 @@ TEST_F(TexturedScene, EnginesAgreeOverAllLayings) {
           texture.values[i] *= texture.alpha[i / static_cast<std::size_t>(texture.stride())];
       }
     }
-    PartSurface surface{&texture, way.laying.projection == Projection::kOwn ? 1.5 : 1, nullptr, way.laying};
+    PartSurface surface{{{&texture, way.laying.projection == Projection::kOwn ? 1.5 : 1, way.laying}}};
     for (int facet = 1; way.facets && facet < 3; ++facet) {
       LaidTexture laid{&texture, 1, way.laying, true};
       laid.laying.facet = facet;
-      surface.over.push_back(laid);
+      surface.textures.push_back(laid);
     }
     for (const bool lit : {true, false}) {
       scene.env = lit ? nullptr : &env;

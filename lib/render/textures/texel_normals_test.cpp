@@ -57,7 +57,8 @@ class TexelNormals : public TexturedScene {
     mesh = on, texture = map;
     scene.env = engine == std::string("path") ? nullptr : &env;
     scene.texels = engine == std::string("integral") ? &blocks_ : nullptr;
-    layer = std::make_unique<SurfaceLayer>(scene, std::vector<PartSurface>{{&texture, 1}}, brdf::CriticalAngle::kSlide);
+    layer =
+        std::make_unique<SurfaceLayer>(scene, std::vector<PartSurface>{{{{&texture, 1}}}}, brdf::CriticalAngle::kSlide);
     scene.layer = layer.get();
     return drawn(engine, effects_of(scene), 0);
   }

@@ -63,7 +63,7 @@ void BM_Texture(benchmark::State& state) {
   scene.paints = {{}};
   if (state.range(2) != 0) scene.env = &env;
   for (int i = 0; i < state.range(1); ++i) scene.lights.push_back({normalized({1.0 * i, 1, 1}), {1, 1, 1}});
-  const SurfaceLayer layer(scene, {{&texture, 4, nullptr}}, brdf::CriticalAngle::kSlide);
+  const SurfaceLayer layer(scene, {{{{&texture, 4}}}}, brdf::CriticalAngle::kSlide);
   scene.layer = &layer;
   auto renderer = Renderer::create();
   if (!renderer.ok() || !renderer->load(scene, "cpu").ok()) return state.SkipWithError("no renderer");
@@ -123,7 +123,7 @@ void BM_MapOrPaint(benchmark::State& state) {
   } else {
     scene.lights = {{normalized({0.3, 1, 1}), {1, 1, 1}}};
   }
-  const SurfaceLayer layer(scene, {painted ? PartSurface{} : PartSurface{&texture, 1, nullptr}},
+  const SurfaceLayer layer(scene, {painted ? PartSurface{} : PartSurface{{{&texture, 1}}}},
                            brdf::CriticalAngle::kSlide);
   scene.layer = &layer;
   auto renderer = Renderer::create();

@@ -97,8 +97,8 @@ class TexturedScene : public testing::Test {
     view = {Camera::orbit(mesh, 30, 20, 1, 30, 1), 96, 96, 1, true};
   }
   void dress() {
-    layer = std::make_unique<SurfaceLayer>(scene, std::vector<PartSurface>{{&texture, 6, nullptr}},
-                                           brdf::CriticalAngle::kSlide);
+    layer =
+        std::make_unique<SurfaceLayer>(scene, std::vector<PartSurface>{{{{&texture, 6}}}}, brdf::CriticalAngle::kSlide);
     scene.layer = layer.get();
   }
   Frame drawn(const char* engine, const Effects& effects, int bounces = Effort::kUsualBounces) const {

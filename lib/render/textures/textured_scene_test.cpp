@@ -90,10 +90,10 @@ TEST_F(Alpha, AShareOfThePaintIsSeen) {
     const Frame paint = drawn(engine, effects_of(scene));
     std::vector<paint::LobeFit> bare = {{}};
     std::swap(scene.paints, bare);
-    wear({&texture, 6});
+    wear({{{&texture, 6}}});
     const Frame map = drawn(engine, effects_of(scene));
     std::swap(scene.paints, bare);
-    wear({&sheer, 6});
+    wear({{{&sheer, 6}}});
     const Frame both = drawn(engine, effects_of(scene));
     double worst = 0, control = 0;
     for (std::size_t i = 0; i < both.picture.data.size(); ++i) {
@@ -127,11 +127,11 @@ TEST_F(Alpha, MapsLieOverOneAnother) {
   for (const bool painted : {false, true}) {
     PartSurface surface, turned;
     if (painted) {
-      surface = {&letters, 1, nullptr, decal, {last}}, turned = {&film, 1, nullptr, spot, {over}};
+      surface = {{over, last}}, turned = {{last, over}};
     } else {
       scene.paints = {{}};
-      surface = {&ground, 1, nullptr, facets[0].laying, {facets[1], facets[2], over, last}};
-      turned = {&ground, 1, nullptr, facets[0].laying, {facets[1], facets[2], last, over}};
+      surface = {{facets[0], facets[1], facets[2], over, last}};
+      turned = {{facets[0], facets[1], facets[2], last, over}};
     }
     wear(turned);
     view.samples = 1;
@@ -163,7 +163,7 @@ TEST_F(Alpha, MapsLieOverOneAnother) {
 // filter are the truth, one without it the control.
 TEST_F(Alpha, MinifiedMapsCoverTheirMean) {
   const brdf::SbrdfTexture letters = covering([](int column) { return column % 2; });
-  wear({&letters, 40, nullptr, {Projection::kPlanar, {0, 0, 1}, {}, 2}});
+  wear({{{&letters, 40, {Projection::kPlanar, {0, 0, 1}, {}, 2}}}});
   view.camera = Camera::orbit(mesh, 0, 0, 1, 30, 1);
   view.width = view.height = 48;
   const auto with_filter = [&](bool filter, int samples) {

@@ -50,7 +50,7 @@ class TiledFloor : public TexturedScene {
     scene.lights = {{normalized({0.2, 0.5, -1}), {1, 0.8, 0.6}}};
   }
   void lay(double times) {
-    layer = std::make_unique<SurfaceLayer>(scene, std::vector<PartSurface>{{&texture, times, nullptr}},
+    layer = std::make_unique<SurfaceLayer>(scene, std::vector<PartSurface>{{{{&texture, times}}}},
                                            brdf::CriticalAngle::kSlide);
     scene.layer = layer.get();
   }
