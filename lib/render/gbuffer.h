@@ -72,6 +72,14 @@ void for_pixels(int width, int height, const Visit& visit) {
   });
 }
 
+// Calls visit(x, y, part) for each pixel that shows the mesh, row by row.
+template <class Visit>
+void for_seen(const Gbuffer& g, const Visit& visit) {
+  for (int y = 0; y < g.height; ++y)
+    for (int x = 0; x < g.width; ++x)
+      if (const int part = g.part(x, y); part >= 0) visit(x, y, part);
+}
+
 // A point of a mesh, in the mesh's own coordinates.
 struct MeshPoint {
   std::uint32_t triangle = kNoTriangle;

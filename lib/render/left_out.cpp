@@ -31,12 +31,9 @@ Result<void> draw_fastest(Renderer& renderer, const View& view, Frame& frame, do
 
 void compare(const Frame& planned, const Frame& full, double white, LeftOut& result) {
   std::vector<double> de00;
-  for (int y = 0; y < full.picture.height; ++y) {
-    for (int x = 0; x < full.picture.width; ++x) {
-      if (full.gbuffer->part(x, y) < 0) continue;
-      de00.push_back(seen_difference(vec3(planned.picture.pixel(x, y)), vec3(full.picture.pixel(x, y)), white));
-    }
-  }
+  for_seen(*full.gbuffer, [&](int x, int y, int) {
+    de00.push_back(seen_difference(vec3(planned.picture.pixel(x, y)), vec3(full.picture.pixel(x, y)), white));
+  });
   if (de00.empty()) return;
   result.de00_mean = math::mean(de00), result.de00_max = std::ranges::max(de00);
   result.de00_p95 = percentile_95(std::move(de00));

@@ -22,14 +22,11 @@ struct Rectangle {
 // The pixels that show a pane through which enough is seen. `passed` is empty for the front.
 Rectangle around_panes(const Scene& scene, const Gbuffer& g, const std::vector<float>& passed) {
   Rectangle box{g.width, g.height, -1, -1};
-  for (int y = 0; y < g.height; ++y) {
-    for (int x = 0; x < g.width; ++x) {
-      const int part = g.part(x, y);
-      if (part < 0 || !is_pane(scene, static_cast<std::size_t>(part))) continue;
-      if (!passed.empty() && passed[g.index(x, y)] < kLeastPassed) continue;
-      box = {std::min(box.left, x), std::min(box.top, y), std::max(box.right, x), std::max(box.bottom, y)};
-    }
-  }
+  for_seen(g, [&](int x, int y, int part) {
+    if (!is_pane(scene, static_cast<std::size_t>(part))) return;
+    if (!passed.empty() && passed[g.index(x, y)] < kLeastPassed) return;
+    box = {std::min(box.left, x), std::min(box.top, y), std::max(box.right, x), std::max(box.bottom, y)};
+  });
   return box;
 }
 

@@ -33,12 +33,9 @@ std::vector<std::size_t> drawn(std::size_t n, std::size_t count, std::uint64_t s
 
 PixelSample sampled_pixels(const Gbuffer& g, const Scene& scene, int count, std::uint64_t seed) {
   std::vector<std::array<int, 2>> visible;
-  for (int y = 0; y < g.height; ++y) {
-    for (int x = 0; x < g.width; ++x) {
-      const int part = g.part(x, y);
-      if (part >= 0 && !is_pane(scene, static_cast<std::size_t>(part))) visible.push_back({x, y});
-    }
-  }
+  for_seen(g, [&](int x, int y, int part) {
+    if (!is_pane(scene, static_cast<std::size_t>(part))) visible.push_back({x, y});
+  });
   std::vector<TexturePlace> places;
   if (scene.layer != nullptr) places = scene.layer->filtered_places(g);
   PixelSample sample{{}, {}, visible.size()};

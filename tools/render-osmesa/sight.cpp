@@ -86,13 +86,10 @@ Exposure begin_sight(const render::Renderer& renderer, const render::Gbuffer& se
 double white_by_gray(const render::Frame& frame) {
   double sum = 0;
   std::size_t count = 0;
-  for (int y = 0; y < frame.gbuffer->height; ++y) {
-    for (int x = 0; x < frame.gbuffer->width; ++x) {
-      if (frame.gbuffer->part(x, y) < 0) continue;
-      sum += color::luminance(vec3(frame.picture.pixel(x, y))) / color::luminance({1, 1, 1});
-      ++count;
-    }
-  }
+  for_seen(*frame.gbuffer, [&](int x, int y, int) {
+    sum += color::luminance(vec3(frame.picture.pixel(x, y))) / color::luminance({1, 1, 1});
+    ++count;
+  });
   constexpr double kMiddleGray = 0.18;
   return count > 0 ? sum / static_cast<double>(count) / kMiddleGray : 0;
 }

@@ -27,9 +27,9 @@ struct OpenBySums {
 std::vector<render::VisiblePoint> seen_points(const render::Gbuffer& seen, const render::WornPaints& worn) {
   constexpr std::size_t kMost = 256;
   std::vector<render::VisiblePoint> all, few;
-  for (int y = 0; y < seen.height; ++y)
-    for (int x = 0; x < seen.width; ++x)
-      if (seen.part(x, y) >= 0 && !worn.is_projected(seen.part(x, y))) all.push_back(seen.point(x, y));
+  for_seen(seen, [&](int x, int y, int part) {
+    if (!worn.is_projected(part)) all.push_back(seen.point(x, y));
+  });
   const std::size_t count = std::min(all.size(), kMost);
   for (std::size_t i = 0; i < count; ++i) few.push_back(all[(2 * i + 1) * all.size() / (2 * count)]);
   return few;

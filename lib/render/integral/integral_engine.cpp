@@ -60,14 +60,11 @@ Result<void> IntegralEngine::shade(Sight& sight, int sample, float gain, bool ad
     }
     points.clear(), pixels.clear();
   };
-  for (int y = 0; y < seen->height; ++y) {
-    for (int x = 0; x < seen->width; ++x) {
-      if (seen->part(x, y) < 0) continue;
-      points.push_back(seen->point(x, y, places));
-      pixels.push_back(rgba.pixel(x, y));
-      if (points.size() == kTogether) flush();
-    }
-  }
+  for_seen(*seen, [&](int x, int y, int) {
+    points.push_back(seen->point(x, y, places));
+    pixels.push_back(rgba.pixel(x, y));
+    if (points.size() == kTogether) flush();
+  });
   flush();
   return {};
 }

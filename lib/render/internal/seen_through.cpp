@@ -8,13 +8,9 @@ namespace {
 
 template <class Visit>
 void visit_pixels(const BehindPanes& behind, const Visit& visit) {
-  const Gbuffer& g = behind.gbuffer;
-  for (int y = 0; y < g.height; ++y) {
-    for (int x = 0; x < g.width; ++x) {
-      const float passed = behind.passed[g.index(x, y)];
-      if (passed > 0) visit(x, y, passed);
-    }
-  }
+  for_pixels(behind.gbuffer.width, behind.gbuffer.height, [&](int x, int y) {
+    if (const float passed = behind.passed[behind.gbuffer.index(x, y)]; passed > 0) visit(x, y, passed);
+  });
 }
 
 }  // namespace
