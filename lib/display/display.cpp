@@ -266,9 +266,8 @@ Result<void> Display::show(const image::Image& picture, double stops, image::Byt
 
 Result<image::Image> Display::image(const image::Image& picture, double stops) const {
   GONIO_TRY(check_shown(picture));
-  image::Image shown{picture.width, picture.height, 3, {}, {"R", "G", "B"}};
-  const std::size_t pixels = static_cast<std::size_t>(picture.width) * picture.height;
-  shown.data.resize(3 * pixels);
+  image::Image shown = image::even_image(picture.width, picture.height, 3, {"R", "G", "B"});
+  const std::size_t pixels = shown.data.size() / 3;
   const double gain = std::exp2(stops);
   try {
     parallel_for(pixels, 1 << 14, [&](std::size_t begin, std::size_t end) {

@@ -65,8 +65,7 @@ struct Placement {
   bool flip_columns = false, flip_rows = false;
 };
 image::Image strip_of(const image::Image& image, int n, const std::array<Placement, 6>& faces) {
-  image::Image strip = {n, 6 * n, 3, {}, {}};
-  strip.data.resize(static_cast<std::size_t>(n) * n * 18);
+  image::Image strip = image::even_image(n, 6 * n, 3);
   for (int f = 0; f < 6; ++f)
     for (int row = 0; row < n; ++row)
       for (int column = 0; column < n; ++column) {

@@ -191,7 +191,7 @@ Result<image::Image> unrolled_ball(const image::Image& rgb, const BallDisc& disc
         name, disc.x - disc.radius, disc.y - disc.radius, disc.x + disc.radius, disc.y + disc.radius, rgb.width,
         rgb.height);
   const int height = std::max(2, static_cast<int>(std::lround(kPi * disc.radius / 2)));
-  image::Image map = {2 * height, height, 3, std::vector<float>(static_cast<std::size_t>(height) * height * 6), {}};
+  image::Image map = image::even_image(2 * height, height, 3);
   const BallTexels ball(rgb, disc);
   parallel_for(static_cast<std::size_t>(height), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row)

@@ -125,8 +125,7 @@ Result<ExrLayer> color_layer(const std::vector<ExrPartNames>& parts, const std::
 
 Image shown_in(const ExrWindow& display, const ExrWindow& data, Image image) {
   const auto channels = static_cast<std::size_t>(image.channels);
-  Image shown{display.width, display.height, image.channels, {}, std::move(image.channel_names)};
-  shown.data.resize(static_cast<std::size_t>(display.width) * static_cast<std::size_t>(display.height) * channels);
+  Image shown = even_image(display.width, display.height, image.channels, std::move(image.channel_names));
   const int left = std::max(display.x, data.x), right = std::min(display.x + display.width, data.x + data.width);
   const int top = std::max(display.y, data.y), bottom = std::min(display.y + display.height, data.y + data.height);
   for (int y = top; y < bottom && left < right; ++y)

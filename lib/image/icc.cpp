@@ -135,8 +135,7 @@ struct AdditiveLight {
 template <class Row>
 Image rows_converted(const Image& from, const Row& row) {
   const auto width = static_cast<std::size_t>(from.width), channels = static_cast<std::size_t>(from.channels);
-  Image to = {from.width, from.height, 3, {}, {}};
-  to.data.resize(width * from.height * 3);
+  Image to = even_image(from.width, from.height, 3);
   parallel_for(static_cast<std::size_t>(from.height), kConvertedRows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) row(&from.data[y * width * channels], &to.data[y * width * 3]);
   });

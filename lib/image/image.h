@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -22,6 +23,13 @@ struct Image {
   float* pixel(int x, int y) { return &data[(static_cast<std::size_t>(y) * width + x) * channels]; }
   const float* pixel(int x, int y) const { return &data[(static_cast<std::size_t>(y) * width + x) * channels]; }
 };
+
+// A picture with this value everywhere.
+inline Image even_image(int width, int height, int channels, std::vector<std::string> channel_names = {},
+                        float value = 0) {
+  return {width, height, channels, std::vector<float>(static_cast<std::size_t>(width) * height * channels, value),
+          std::move(channel_names)};
+}
 
 // A vector is `chromaticities`: x y of red, green, blue and white.
 using AttributeValue = std::variant<std::string, float, int, std::vector<float>>;

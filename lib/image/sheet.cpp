@@ -49,8 +49,7 @@ void ContactSheet::put(int cell, const ByteImage* picture, const std::string& la
   for (int y = 0; picture != nullptr && y < std::min(height_, picture->height); ++y)
     std::copy_n(picture->pixel(0, y), 3 * static_cast<std::size_t>(std::min(width_, picture->width)),
                 picture_.pixel(left, top + y));
-  Image strip{width_, strip_, 3, {}, {}};
-  strip.data.assign(3 * static_cast<std::size_t>(width_) * static_cast<std::size_t>(strip_), kStrip);
+  Image strip = even_image(width_, strip_, 3, {}, kStrip);
   const std::string text = fitted_label(label, scale_, width_ - 4 * scale_);
   draw_label(strip, 2 * scale_, 2 * scale_, text, scale_, {kLetters, kLetters, kLetters});
   const ByteImage bytes = byte_image(strip);

@@ -43,7 +43,7 @@ envmap::Environment squared(const envmap::Environment& from, double level) {
     sums[static_cast<std::size_t>(cell_of[i])] += weight * square(from.radiance(column, row));
     weights[static_cast<std::size_t>(cell_of[i])] += weight;
   }
-  image::Image image{columns, rows, 3, std::vector<float>(3 * cells), {"R", "G", "B"}};
+  image::Image image = image::even_image(columns, rows, 3, {"R", "G", "B"});
   for (std::size_t i = 0; i < cells; ++i) {
     const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
     const Vec3 mean = weights[i] > 0 ? (1 / weights[i]) * sums[i] : square(from.lookup(grid.direction(column, row)));

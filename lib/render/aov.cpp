@@ -56,9 +56,8 @@ const std::vector<Aov>& aovs() {
 template <class Put>
 void add_channels(image::Image& picture, const std::vector<std::string>& names, const Put& put) {
   const int channels = picture.channels + static_cast<int>(names.size());
-  image::Image wider{picture.width, picture.height, channels, {}, picture.channel_names};
+  image::Image wider = image::even_image(picture.width, picture.height, channels, picture.channel_names);
   wider.channel_names.insert(wider.channel_names.end(), names.begin(), names.end());
-  wider.data.resize(static_cast<std::size_t>(wider.width) * wider.height * channels);
   const float* from = picture.data.data();
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x, from += picture.channels)

@@ -84,8 +84,7 @@ image::Image on_gray(const image::AovFile& file) {
   const image::Image& from = file.image;
   const auto alpha = file.channel("A");
   const auto gray = static_cast<float>(kGray * std::exp2(file.exposure_stops - file.automatic_stops));
-  image::Image to{from.width, from.height, 3, {}, {}};
-  to.data.resize(static_cast<std::size_t>(from.width) * from.height * 3);
+  image::Image to = image::even_image(from.width, from.height, 3);
   for (int y = 0; y < from.height; ++y)
     for (int x = 0; x < from.width; ++x) {
       const float behind = alpha.ok() ? gray * (1 - std::clamp(from.pixel(x, y)[*alpha], 0.0F, 1.0F)) : 0;
@@ -343,8 +342,7 @@ Result<Registration> registration_of(const image::AovFile& buffers, const Pictur
 
 Picture registered(const Picture& scan, const Registration& registration, int width, int height) {
   Picture result;
-  result.rgb = {width, height, 3, {}, {}};
-  result.rgb.data.assign(static_cast<std::size_t>(width) * height * 3, 0);
+  result.rgb = image::even_image(width, height, 3);
   result.state.assign(static_cast<std::size_t>(width) * height, Picture::kGood);
   result.scene_linear = scan.scene_linear, result.space = scan.space, result.warnings = scan.warnings;
   const Placer placer(registration, scan.rgb.width, scan.rgb.height, width, height);
@@ -372,8 +370,7 @@ Picture registered(const Picture& scan, const Registration& registration, int wi
 }
 
 image::Image registered(const image::Image& mask, const Registration& registration, int width, int height) {
-  image::Image result{width, height, 1, {}, {}};
-  result.data.assign(static_cast<std::size_t>(width) * height, 0);
+  image::Image result = image::even_image(width, height, 1);
   const Placer placer(registration, mask.width, mask.height, width, height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)

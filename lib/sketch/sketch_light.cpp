@@ -276,8 +276,7 @@ image::Image SketchTransport::worn_picture() const {
     paints.push_back({{0}, {t.worn.weights[static_cast<std::size_t>(group)]}});
   render::BounceScale unscaled;
   unscaled.of_class.assign(t.worn.groups.classes(), {1, 1, 1});
-  image::Image picture{t.width, t.height, 4, {}, {"R", "G", "B", "A"}};
-  picture.data.assign(4 * static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height), 0);
+  image::Image picture = image::even_image(t.width, t.height, 4, {"R", "G", "B", "A"});
   render::TransportShader(t, {}).shade(paints, reflection_ ? &*reflection_ : nullptr, unscaled, 1, picture);
   return picture;
 }

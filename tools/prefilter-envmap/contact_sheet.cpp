@@ -67,8 +67,8 @@ image::Image contact_sheet(const envmap::PrefilteredEnvironment& env) {
   const int count = static_cast<int>(maps.size()), columns = std::min(count, kColumns);
   const int rows = (count + columns - 1) / columns;
   const int line = image::label_height(kLetters) + kGap, cell = kHeight + line + kGap;
-  image::Image sheet{columns * (kWidth + kGap) + kGap, rows * cell + kGap, 3, {}, {"R", "G", "B"}};
-  sheet.data.assign(static_cast<std::size_t>(sheet.width) * sheet.height * 3, 0.13F);
+  image::Image sheet =
+      image::even_image(columns * (kWidth + kGap) + kGap, rows * cell + kGap, 3, {"R", "G", "B"}, 0.13F);
   const double mean = mean_luminance(maps.front()->map), gain = mean > 0 ? kMiddleGray / mean : 1;
   constexpr std::array<float, 3> kWords = {0.85F, 0.85F, 0.85F};
   for (int i = 0; i < count; ++i) {

@@ -230,8 +230,7 @@ Result<ShadedPaint> ViewShader::shade(const DressedMesh& dress, image::Image& pi
   result.scaled = scale.changed, result.bounced_de00_p95 = scale.error_p95_de00;
   const std::size_t floats = 4 * static_cast<std::size_t>(light_.width) * static_cast<std::size_t>(light_.height);
   if (picture.data.size() != floats) {  // else it has the background, and shading changes all other pixels
-    picture = {light_.width, light_.height, 4, {}, {"R", "G", "B", "A"}};
-    picture.data.assign(floats, 0);
+    picture = image::even_image(light_.width, light_.height, 4, {"R", "G", "B", "A"});
     int top = 0;
     for (const render::Gbuffer* sample : samples_)
       put_background(*sample, scene_, std::exchange(top, top + sample->height), picture);

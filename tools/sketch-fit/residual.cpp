@@ -46,8 +46,7 @@ Result<void> write_residual(const std::string& path, const image::AovFile& buffe
                             const sketch::SketchFit& fit) {
   const int width = buffers.image.width, height = buffers.image.height;
   const auto pane = [&](const auto& color_of) {
-    image::Image image{width, height, 3, {}, {}};
-    image.data.resize(pixels.use.size() * 3);
+    image::Image image = image::even_image(width, height, 3);
     const auto put = [&](std::size_t place, const Color& color) {
       std::copy_n(color.data(), 3, &image.data[3 * place]);
     };

@@ -390,11 +390,8 @@ Result<UnpackedView> unpacked_view(std::string_view bytes) {
 PackingError packing_error(const LobeTransport& t, const std::vector<float>& view_deg, const UnpackedView& view,
                            const std::vector<ShownPaints>& paints, const color::ReflectionOperator* reflection) {
   const TransportShader exact(t, view_deg), packed(view.light, view.view_deg);
-  image::Image pictures[2];
-  for (image::Image& picture : pictures) {
-    picture = {t.width, t.height, 4, {}, {}};
-    picture.data.resize(4 * static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height));
-  }
+  const image::Image black = image::even_image(t.width, t.height, 4);
+  image::Image pictures[] = {black, black};
   const auto gain = static_cast<float>(1 / (t.unit * t.white_luminance));
   PackingError error;
   for (const ShownPaints& paint : paints) {

@@ -145,15 +145,14 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   if (!(request.white_luminance > 0)) request.white_luminance = 1;
   request.pixel_samples = samples;
   const PathPicture picture = path_picture(*transport_, g, nullptr, request);
-  rgba = {g.width, g.height, 4, {}, {}};
-  rgba.data.assign(static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height) * 4, 0.0F);
+  rgba = image::even_image(g.width, g.height, 4);
   const bool with_panes = has_panes(scene_);
   if (effects_.background != Background::kNone || with_panes) draw_background(g.rays, samples, rgba);
   Noise noise{picture.noise_p95_de00,  picture.noise_mean_de00,
               picture.samples_mean,    picture.time_s,
               picture.reached,         transport_->bright_places() != nullptr ? transport_->bright_places()->gain() : 1,
               request.white_luminance, {}};
-  noise.de00 = {g.width, g.height, 1, std::vector<float>(rgba.data.size() / 4, 0.0F), {"error"}};
+  noise.de00 = image::even_image(g.width, g.height, 1, {"error"});
   for (const PathPoint& point : picture.points) {
     float* pixel = rgba.pixel(point.x, point.y);
     for (int c = 0; c < 3; ++c) pixel[c] += static_cast<float>(point.radiance[c]);

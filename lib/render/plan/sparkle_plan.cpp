@@ -82,8 +82,7 @@ double sparkle_truth(const Scene& scene, const Effects& effects, const std::vect
     const Gbuffer& seen = *pixel.gbuffer;
     const int left = std::max(0, pixel.x - kAround), right = std::min(seen.width - 1, pixel.x + kAround),
               top = std::max(0, pixel.y - kAround), bottom = std::min(seen.height - 1, pixel.y + kAround);
-    image::Image picture{seen.width, seen.height, 4, {}, {"R", "G", "B", "A"}};
-    picture.data.resize(4 * static_cast<std::size_t>(seen.width) * static_cast<std::size_t>(seen.height));
+    image::Image picture = image::even_image(seen.width, seen.height, 4, {"R", "G", "B", "A"});
     const auto visit = [&](const auto& at) {
       for (int y = top; y <= bottom; ++y)
         for (int x = left; x <= right; ++x)

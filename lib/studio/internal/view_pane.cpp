@@ -16,14 +16,8 @@ constexpr int kTileWidth = 208;
 // The default of render-osmesa: beyond it, bounced light should be traced again.
 constexpr double kTolerance_de00 = 0.5;
 
-image::Image blank(int width, int height) {
-  image::Image picture{width, height, 4, {}, {}};
-  picture.data.assign(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0F);
-  return picture;
-}
-
 image::Image thinned_picture(const image::Image& picture, int n) {
-  image::Image thin = blank(picture.width / n, picture.height / n);
+  image::Image thin = image::even_image(picture.width / n, picture.height / n, 4);
   for (int y = 0; y < thin.height; ++y)
     for (int x = 0; x < thin.width; ++x) std::copy_n(picture.pixel(n * x + n / 2, n * y + n / 2), 4, thin.pixel(x, y));
   return thin;
@@ -52,7 +46,8 @@ Result<ViewPane> ViewPane::make(std::string_view bytes, JsonReader& request) {
   if (pane.parts_.size() != light.worn.brushed.size())
     return input_error("the view has {} parts, and the mesh {}", light.worn.brushed.size(), pane.parts_.size());
   pane.scaler_.emplace(light, render::operator_or_null(pane.reflection_));
-  pane.full_->picture = view.beside.data.empty() ? blank(light.width, light.height) : std::move(view.beside);
+  pane.full_->picture =
+      view.beside.data.empty() ? image::even_image(light.width, light.height, 4) : std::move(view.beside);
   const int step = std::max(1, static_cast<int>(std::lround(static_cast<double>(light.width) / kTileWidth)));
   render::Thinned few = render::thinned(light, step);
   std::vector<float> few_angles;
