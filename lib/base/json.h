@@ -4,9 +4,12 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+
+#include "base/vec3.h"
 
 namespace goniochrome {
 
@@ -15,6 +18,14 @@ using Json = nlohmann::ordered_json;
 // `value` as JSON; null if it is not finite, because JSON has no NaN. Put a `status` beside it.
 inline Json json_number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+// A vector or a color is an array of three numbers.
+inline void to_json(Json& json, const Vec3& v) {
+  json = Json::array({v.x, v.y, v.z});
+}
+inline void from_json(const Json& json, Vec3& v) {
+  for (int c = 0; c < 3; ++c) json.at(static_cast<std::size_t>(c)).get_to(v[c]);
 }
 
 // The value of a text; is_discarded() where the text is no JSON.

@@ -7,13 +7,8 @@
 #include <vector>
 
 #include "base/json.h"
-#include "base/vec3.h"
 
 namespace goniochrome::studio {
-
-inline Json vector_json(const Vec3& v) {
-  return Json::array({v.x, v.y, v.z});
-}
 
 class PackedNumbers {
  public:

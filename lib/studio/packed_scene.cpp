@@ -54,9 +54,8 @@ Json programs_json(const render::PageShading& programs) {
 Json brightest_json(const envmap::PrefilteredEnvironment& env) {
   const auto luminance = [](const envmap::Spot& spot) { return color::luminance(spot.white); };
   const auto spot = std::ranges::max_element(env.spots, {}, luminance);
-  if (spot == env.spots.end())
-    return {{"direction", vector_json(render::diffuse_white(&env, {}).direction)}, {"extent", 0}};
-  return {{"direction", vector_json(spot->direction)}, {"extent", 2 * spot->radius_rad / kDegree}};
+  if (spot == env.spots.end()) return {{"direction", render::diffuse_white(&env, {}).direction}, {"extent", 0}};
+  return {{"direction", spot->direction}, {"extent", 2 * spot->radius_rad / kDegree}};
 }
 
 }  // namespace
@@ -84,21 +83,20 @@ Json packed_mesh(const mesh::Mesh& mesh, PackedNumbers& numbers) {
   const render::Ground ground = render::ground_below(mesh);
   const render::Camera camera = render::Camera::orbit(mesh, kAzimuth_deg, kElevation_deg, 1, kFov_deg, 16.0 / 9);
   const Vec3 origin = mesh::float_origin(box);  // the page computes in floats
-  return {
-      {"low", vector_json(box.low - origin)},
-      {"high", vector_json(box.high - origin)},
-      {"positions", numbers.add(positions)},
-      {"normals", numbers.add(normals)},
-      {"corners", numbers.add(corners)},
-      {"parts", std::move(parts)},
-      {"unit_m", mesh::length_unit(mesh).meters},
-      {"ground", {{"seen_from", vector_json(ground.probe_eye - origin)}, {"drop", ground.probe_eye.y - ground.height}}},
-      {"view",
-       {{"azimuth", kAzimuth_deg},
-        {"elevation", kElevation_deg},
-        {"fov", kFov_deg},
-        {"target", vector_json(camera.target - origin)},
-        {"distance", length(camera.eye - camera.target)}}}};
+  return {{"low", box.low - origin},
+          {"high", box.high - origin},
+          {"positions", numbers.add(positions)},
+          {"normals", numbers.add(normals)},
+          {"corners", numbers.add(corners)},
+          {"parts", std::move(parts)},
+          {"unit_m", mesh::length_unit(mesh).meters},
+          {"ground", {{"seen_from", ground.probe_eye - origin}, {"drop", ground.probe_eye.y - ground.height}}},
+          {"view",
+           {{"azimuth", kAzimuth_deg},
+            {"elevation", kElevation_deg},
+            {"fov", kFov_deg},
+            {"target", camera.target - origin},
+            {"distance", length(camera.eye - camera.target)}}}};
 }
 
 Result<Json> packed_environment(const std::string& name, const envmap::PrefilteredEnvironment& env,
@@ -116,9 +114,7 @@ Result<Json> packed_environment(const std::string& name, const envmap::Prefilter
                {"lamps", Json::array()}};
   for (const render::PageCube& cube : light.cubes) json["cubes"].push_back(cube_json(cube, numbers));
   for (const render::PageLamp& spot : light.lamps)
-    json["lamps"].push_back({{"direction", vector_json(spot.direction)},
-                             {"white", vector_json(spot.white)},
-                             {"disc", vector_json(spot.disc)}});
+    json["lamps"].push_back({{"direction", spot.direction}, {"white", spot.white}, {"disc", spot.disc}});
   if (!light.discs.empty()) json["discs"] = {{"texels", numbers.add(light.discs)}};
   return Result(std::move(json));
 }
@@ -128,7 +124,7 @@ Json packed_lamp(const formats::Basis& basis, PackedNumbers& numbers) {
   const render::PageMovableLamp lamp = render::page_movable_lamp(effects, page_operator(), kLampRadius_rad);
   const std::size_t rows = basis.exponents.size() + 1;
   return {{"extent", 2 * kLampRadius_rad / kDegree},
-          {"disc", vector_json(lamp.disc)},
+          {"disc", lamp.disc},
           {"columns", lamp.discs.size() / (4 * rows)},
           {"discs", numbers.add(lamp.discs)}};
 }

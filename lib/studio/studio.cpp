@@ -91,16 +91,12 @@ double gloss_angle_deg(const paint::Paint& paint) {
   return paint.gloss.empty() ? brdf::kGlossIncidence_deg : paint.gloss.front().angle_deg;
 }
 
-Json rgb_json(const color::Rgb& rgb) {
-  return Json::array({rgb.x, rgb.y, rgb.z});
-}
-
 Json lobes_json(const paint::LobeFit& fit) {
-  Json json = {{"coat", fit.coat_index}, {"diffuse", rgb_json(fit.diffuse)}, {"lobes", Json::array()}};
+  Json json = {{"coat", fit.coat_index}, {"diffuse", fit.diffuse}, {"lobes", Json::array()}};
   for (const paint::Lobe& lobe : fit.lobes) {
     json["lobes"].push_back({{"exponent", lobe.is_mirror() ? Json("mirror") : Json(lobe.exponent)},
-                             {"flake", rgb_json(lobe.directional_diffuse)},
-                             {"gloss", rgb_json(lobe.gloss)}});
+                             {"flake", lobe.directional_diffuse},
+                             {"gloss", lobe.gloss}});
   }
   return json;
 }
@@ -282,7 +278,7 @@ Result<Json> Studio::State::write(JsonReader& request) const {
 Result<Json> Studio::State::color(JsonReader& request) const {
   const color::Lab lab = request.lab("lab");
   GONIO_TRY(request.status());
-  return Json{{"css", css_color(lab, {})}, {"rgb", rgb_json(color::rgb_from_lab(lab, screen_white({})))}};
+  return Json{{"css", css_color(lab, {})}, {"rgb", color::rgb_from_lab(lab, screen_white({}))}};
 }
 
 // The color of the curve at an aspecular angle.

@@ -145,22 +145,18 @@ Result<PackedTracedView> packed_traced_view(const std::string& path, const std::
   const std::vector<std::uint8_t> bytes(packed->begin(), packed->end());
   PackedTracedView view;
   view.error_de00 = error.p95_de00;
-  view.json = {{"name", name},
-               {"width", light.width},
-               {"height", light.height},
-               {"white", std::exp2(-file.automatic_stops)},
-               {"camera",
-                {{"eye", studio::vector_json(*file.eye)},
-                 {"target", studio::vector_json(*file.eye + middle)},
-                 {"fov", fov_deg}}},
-               {"brightest",
-                {{"direction", studio::vector_json(file.light)},
-                 {"extent", file.lights.empty() ? 0 : file.lights.front().extent_deg}}},
-               {"floor", light.worn.has_floor},
-               {"mirrors", with_mirrors},
-               {"operator", std::move(reflection)},
-               {"parts", std::move(parts)},
-               {"light", numbers.add(bytes)}};
+  view.json = {
+      {"name", name},
+      {"width", light.width},
+      {"height", light.height},
+      {"white", std::exp2(-file.automatic_stops)},
+      {"camera", {{"eye", *file.eye}, {"target", *file.eye + middle}, {"fov", fov_deg}}},
+      {"brightest", {{"direction", file.light}, {"extent", file.lights.empty() ? 0 : file.lights.front().extent_deg}}},
+      {"floor", light.worn.has_floor},
+      {"mirrors", with_mirrors},
+      {"operator", std::move(reflection)},
+      {"parts", std::move(parts)},
+      {"light", numbers.add(bytes)}};
   view.figures = {{"name", name},
                   {"points", light.places.size()},
                   {"columns", light.columns.count()},

@@ -56,10 +56,6 @@ double half_error(const LobeTransport& t, std::size_t column, const std::vector<
   return percentile_95(std::move(errors));
 }
 
-Json rgb_json(const color::Rgb& c) {
-  return Json::array({c.x, c.y, c.z});
-}
-
 std::string header_of(const LobeTransport& t) {
   Json header = {{"version", kVersion},
                  {"exponents", t.columns.exponents},
@@ -68,16 +64,11 @@ std::string header_of(const LobeTransport& t) {
                  {"white_luminance", t.white_luminance},
                  {"group_of_part", t.worn.groups.of_part},
                  {"probed", t.probed},
-                 {"weights", Json::array()},
-                 {"probes", Json::array()}};
-  for (const auto& group : t.worn.weights) {
-    header["weights"].push_back(Json::array());
-    for (const color::Rgb& weight : group) header["weights"].back().push_back(rgb_json(weight));
-  }
-  header["floor"] = t.worn.has_floor;
-  header["emission"] = Json::array();
-  for (const color::Rgb& radiance : t.worn.emission) header["emission"].push_back(rgb_json(radiance));
-  header["brushed"] = Json::array();
+                 {"weights", t.worn.weights},
+                 {"probes", Json::array()},
+                 {"floor", t.worn.has_floor},
+                 {"emission", t.worn.emission},
+                 {"brushed", Json::array()}};
   for (const paint::Anisotropy& alpha : t.worn.brushed) header["brushed"].push_back({alpha.alpha_x, alpha.alpha_y});
   header["coats"] = t.worn.coats;
   for (const BounceProbe& probe : t.probes) header["probes"].push_back(t.places[probe.point]);
@@ -209,25 +200,18 @@ class Reading {
       if (version != kVersion)
         return input_error("{}: its transport is of version {}, and this program reads {}: {}", file_.path, version,
                            kVersion, kRemedy);
-      t_.columns.exponents = header.at("exponents").get<std::vector<double>>();
-      t_.bounces = header.at("bounces").get<int>();
-      t_.samples = header.at("samples").get<int>();
-      t_.unit = header.at("white_luminance").get<double>();
-      t_.probed = header.at("probed").get<int>();
-      t_.worn.groups.of_part = header.at("group_of_part").get<std::vector<int>>();
-      for (const Json& group : header.at("weights")) {
-        t_.worn.weights.emplace_back();
-        for (const Json& weight : group)
-          t_.worn.weights.back().push_back(
-              {weight.at(0).get<double>(), weight.at(1).get<double>(), weight.at(2).get<double>()});
-      }
-      t_.worn.has_floor = header.at("floor").get<bool>();
-      for (const Json& radiance : header.at("emission"))
-        t_.worn.emission.push_back(
-            {radiance.at(0).get<double>(), radiance.at(1).get<double>(), radiance.at(2).get<double>()});
+      header.at("exponents").get_to(t_.columns.exponents);
+      header.at("bounces").get_to(t_.bounces);
+      header.at("samples").get_to(t_.samples);
+      header.at("white_luminance").get_to(t_.unit);
+      header.at("probed").get_to(t_.probed);
+      header.at("group_of_part").get_to(t_.worn.groups.of_part);
+      header.at("weights").get_to(t_.worn.weights);
+      header.at("floor").get_to(t_.worn.has_floor);
+      header.at("emission").get_to(t_.worn.emission);
       for (const Json& alpha : header.at("brushed"))
         t_.worn.brushed.push_back({alpha.at(0).get<double>(), alpha.at(1).get<double>()});
-      t_.worn.coats = header.at("coats").get<std::vector<double>>();
+      header.at("coats").get_to(t_.worn.coats);
       for (const Json& place : header.at("probes")) t_.probes.push_back({place.get<std::uint32_t>(), {}, {}});
     } catch (const std::exception& e) {
       return wrong(fmt::format("the attribute {}: {}", kTransportAttribute, e.what()));
