@@ -1,6 +1,7 @@
 // Three numbers, which are a direction, a point or a color in linear RGB, and the operations on them.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 namespace goniochrome {
@@ -17,6 +18,9 @@ struct Vec3 {
   friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
 };
 
+constexpr std::array<float, 3> floats(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
 // Three floats that lie one behind the other.
 constexpr Vec3 vec3(const float* v) {
   return {v[0], v[1], v[2]};

@@ -45,9 +45,7 @@ std::vector<Beam> beams_of(const CubeMap& map) {
   std::vector<Beam> beams;
   for (std::size_t i = 0; i < flux.size(); ++i) {
     if (!(length(moment[i]) > 0)) continue;
-    const Vec3& f = flux[i];
-    beams.push_back(
-        {normalized(moment[i]), {static_cast<float>(f.x), static_cast<float>(f.y), static_cast<float>(f.z)}});
+    beams.push_back({normalized(moment[i]), floats(flux[i])});
   }
   return beams;
 }

@@ -19,7 +19,7 @@ namespace goniochrome::render {
 // Where a point lies on its texture.
 struct TexturePlace {
   float u = 0, v = 0;
-  float tangent[3] = {0, 0, 0};  // world, along growing u; of about unit length, or 0 where it is not known
+  std::array<float, 3> tangent = {};  // world, along growing u; of about unit length, or 0 where it is not known
   // The footprint: how far u and v go from one pixel to the next, to the right and downward; 0 where it is not known.
   float across[2] = {0, 0}, down[2] = {0, 0};
   bool mirrored = false;  // whether v grows against n x tangent, n being the normal to the viewer

@@ -227,9 +227,8 @@ std::vector<TexturePlace> SurfaceLayer::placed(const VisiblePoint& point, std::s
       const double at = share * static_cast<double>(number);
       return static_cast<float>((at - std::floor(at)) / laid[k].repeat);
     };
-    const Vec3 level = cross({0, 1, 0}, point.normal);
     place.u = step(0.61803398875), place.v = step(0.7548776662);
-    for (int c = 0; c < 3; ++c) place.tangent[c] = static_cast<float>(level[c]);
+    place.tangent = floats(cross({0, 1, 0}, point.normal));
   }
   return places;
 }
@@ -242,7 +241,7 @@ double add_seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at
                        std::vector<SurfaceLayer::Piece>& pieces) {
   FilterProbes all;
   if (filtered && !is_between_texels(at, 1, texture.width, texture.height)) all.across = all.down = 16;
-  const Vec3 tangent = {at.tangent[0], at.tangent[1], at.tangent[2]};
+  const Vec3 tangent = vec3(at.tangent.data());
   const auto wide = static_cast<std::size_t>(texture.width);
   double covered = 0;
   SeenTexels seen;
@@ -391,9 +390,9 @@ void SurfaceLayer::shade(const Gbuffer& gbuffer, const SeenBand::Bin& bin, const
     const std::uint32_t at = point.place < pixels ? point.place : point.place % pixels;
     if (at - row * wide >= wide) row = at / wide;
     const auto x = static_cast<int>(at - row * wide), y = static_cast<int>(row);
-    const Vec3 back = gbuffer.to_viewer(x, y);
-    const float toward[3] = {static_cast<float>(back.x), static_cast<float>(back.y), static_cast<float>(back.z)};
-    const auto position = from_origin(placed ? mesh_point(*scene_.mesh, gbuffer, x, y).position : Vec3{}, light.origin);
+    const std::array<float, 3> toward = floats(gbuffer.to_viewer(x, y)),
+                               position = floats((placed ? mesh_point(*scene_.mesh, gbuffer, x, y).position : Vec3{}) -
+                                                 light.origin);
     each_shape(batch.texture(), std::span(bin.texels).subspan(first, point.end - first),
                [&](std::span<const TexelShare> lobed, std::span<const TexelShare> diffuse) {
                  pixel[batch.count()] = rgba.pixel(x, y);

@@ -105,10 +105,7 @@ class Seen {
 
   SketchSample at(std::uint32_t place) const {
     const float* pixel = &image_.data[static_cast<std::size_t>(place) * image_.channels];
-    const color::Rgb light = scale_ * edited_light(input_, place);
-    return {pixel[aspecular_],
-            pixel[lambert_] * coat_share(place, pixel),
-            {static_cast<float>(light.x), static_cast<float>(light.y), static_cast<float>(light.z)},
+    return {pixel[aspecular_], pixel[lambert_] * coat_share(place, pixel), floats(scale_ * edited_light(input_, place)),
             views_.are_known() ? static_cast<float>(views_.at(place)) : 0};
   }
 

@@ -39,7 +39,7 @@ class Batch {
   std::size_t index(int i) const { return index_[i]; }
   const float* rgba(int i) const { return rgba_ + 4 * i; }
 
-  void add(std::size_t index, const float* normal, const float* to_viewer, int part,
+  void add(std::size_t index, const float* normal, const std::array<float, 3>& to_viewer, int part,
            const std::array<float, 3>& position = {}) {
     PointArrays& p = points_;
     p.nx[count_] = normal[0], p.ny[count_] = normal[1], p.nz[count_] = normal[2];
@@ -265,7 +265,7 @@ void CpuEngine::set_tilts(const Scene& scene, const Effects& effects) {
 
 std::array<float, 3> CpuEngine::position(const Gbuffer& gbuffer, int x, int y) const {
   if (mesh_ == nullptr) return {};
-  return from_origin(mesh_point(*mesh_, gbuffer, x, y).position, origin_);
+  return floats(mesh_point(*mesh_, gbuffer, x, y).position - origin_);
 }
 
 void CpuEngine::shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, float* rgba) const {
@@ -302,12 +302,9 @@ void CpuEngine::shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, f
       put(static_cast<std::size_t>(x), nothing, 1);
       continue;
     }
-    const double across = x + 0.5;
-    const float to_viewer[3] = {static_cast<float>(-(first.x + across * rays.right.x)),
-                                static_cast<float>(-(first.y + across * rays.right.y)),
-                                static_cast<float>(-(first.z + across * rays.right.z))};
     Batch& batch = point[3] == 0 ? missed : seen;
-    batch.add(static_cast<std::size_t>(x), point, to_viewer, std::max(0, static_cast<int>(std::abs(point[3])) - 1),
+    batch.add(static_cast<std::size_t>(x), point, floats(-(first + (x + 0.5) * rays.right)),
+              std::max(0, static_cast<int>(std::abs(point[3])) - 1),
               point[3] == 0 ? std::array<float, 3>{} : position(gbuffer, x, y));
     if (batch.full()) flush(batch);
   }
@@ -334,12 +331,7 @@ std::vector<color::Rgb> CpuEngine::colors(const std::vector<VisiblePoint>& point
     Batch batch(shading_, tilt_shading_);
     for (std::size_t i = begin; i < end; ++i) {
       const VisiblePoint& point = points[i];
-      float normal[3], to_viewer[3];
-      for (int c = 0; c < 3; ++c) {
-        normal[c] = static_cast<float>(point.normal[c]);
-        to_viewer[c] = static_cast<float>(point.to_viewer[c]);
-      }
-      batch.add(i, normal, to_viewer, point.part, from_origin(point.position, origin_));
+      batch.add(i, floats(point.normal).data(), floats(point.to_viewer), point.part, floats(point.position - origin_));
     }
     batch.shade();
     for (int i = 0; i < batch.count(); ++i) colors[batch.index(i)] = vec3(batch.rgba(i));

@@ -88,8 +88,8 @@ void GlContext::float_target(int columns, int rows, GLuint& texture, GLuint& fra
 }
 
 void GlContext::set(GLuint program, const std::string& name, const Vec3& value) const {
-  Uniform3f(GetUniformLocation(program, name.c_str()), static_cast<float>(value.x), static_cast<float>(value.y),
-            static_cast<float>(value.z));
+  const auto [x, y, z] = floats(value);
+  Uniform3f(GetUniformLocation(program, name.c_str()), x, y, z);
 }
 
 void GlContext::set_rays(GLuint program, const Rays& rays) const {

@@ -11,7 +11,7 @@ namespace goniochrome::render {
 
 // Data of a lamp for light_at(), in single precision. Lengths are in units of the mesh.
 struct PlacedLamp {
-  float position[3] = {0, 0, 0};  // from origin_of() the mesh
+  std::array<float, 3> position = {};  // from origin_of() the mesh
   float reach2 = 0;   // the square of the distance at which its light is that of the scene; 0: it is far away
   float least2 = 0;   // the square of the distance within which its light grows no more
   float radius2 = 0;  // of the sphere, squared
@@ -22,6 +22,5 @@ std::vector<PlacedLamp> placed_lamps(const std::vector<Light>& lights, const Vec
 
 // Points and lamps are told from the middle of the mesh, so that single precision serves meshes far from 0.
 Vec3 origin_of(const mesh::Mesh& mesh);
-std::array<float, 3> from_origin(const Vec3& position, const Vec3& origin);
 
 }  // namespace goniochrome::render

@@ -59,10 +59,6 @@ std::vector<float> every(const std::vector<float>& all, std::size_t step) {
   return some;
 }
 
-Float3 floats(const color::Rgb& c) {
-  return rays::float3(c);
-}
-
 // Between four values, of which the second pair is the lower one.
 Float3 between_four(const Float3* upper, const Float3* lower, float right, float down) {
   return (1 - down) * ((1 - right) * upper[0] + right * upper[1]) + down * ((1 - right) * lower[0] + right * lower[1]);
@@ -144,7 +140,7 @@ ShadedGround::Directions ShadedGround::directions(const std::vector<ProjectedGro
       const Float3 direction = rays::float3(ray.direction);
       fan.x[i] = direction.x, fan.y[i] = direction.y, fan.z[i] = direction.z;
       if (real) fan.wanted |= 1U << i;
-      all.shares.push_back(real ? floats(ray.share) : Float3{});
+      all.shares.push_back(real ? rays::float3(ray.share) : Float3{});
     }
     all.fans.push_back(fan);
   }
@@ -386,8 +382,8 @@ void ShadedGround::gather(const std::vector<float>& x, const std::vector<float>&
         sum += part * light, above += (1 - part) * light;
       }
     }
-    rare.values[node] = floats((1.0 / count) * above);
-    return floats((1.0 / count) * sum);
+    rare.values[node] = rays::float3((1.0 / count) * above);
+    return rays::float3((1.0 / count) * sum);
   });
   for (std::size_t row = 0; row < z.size(); ++row)
     for (std::size_t column = 0; column < x.size(); ++column) {

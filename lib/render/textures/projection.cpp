@@ -17,9 +17,7 @@ TextureAxes texture_axes(const Vec3& axis, double turn_rad) {
 namespace {
 
 TexturePlace place_of(double u, double v, const Vec3& tangent) {
-  return {static_cast<float>(u),
-          static_cast<float>(v),
-          {static_cast<float>(tangent.x), static_cast<float>(tangent.y), static_cast<float>(tangent.z)}};
+  return {static_cast<float>(u), static_cast<float>(v), floats(tangent)};
 }
 
 // Seen from the other side, u grows the other way, so that lettering can be read from both.

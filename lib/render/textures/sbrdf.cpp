@@ -340,24 +340,23 @@ SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const 
   if (!placed_.empty()) shading_.placed = placed_.data();
   product_ = product_columns(light.reflection);
   shading_.product = product_.data();
-  constexpr float kUp[3] = {0, 0, 1};
-  while (!full()) put(kUp, kUp, {}, {}, {}, {});
+  constexpr std::array<float, 3> kUp = {0, 0, 1};
+  while (!full()) put(kUp.data(), kUp, {}, {}, {}, {});
   count_ = 0;
 }
 
-void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
-                             const TexturePlace& place, std::span<const TexelShare> lobed,
-                             std::span<const TexelShare> diffuse) {
+void SbrdfShader::Batch::put(const float* normal, const std::array<float, 3>& to_viewer,
+                             const std::array<float, 3>& position, const TexturePlace& place,
+                             std::span<const TexelShare> lobed, std::span<const TexelShare> diffuse) {
   SbrdfPoints& p = points_;
   const std::uint32_t texel = lobed.empty() ? 0 : lobed.front().texel;
-  const float* tangent = place.tangent;
-  float turned[3];
+  const std::array<float, 3>& tangent = place.tangent;
+  std::array<float, 3> turned;
   if (!packed_.normals.empty()) {
     const float* own = &packed_.normals[std::size_t{3} * packed_.shape[texel]];
-    const Vec3 n = brdf::texel_normal({own[0], place.mirrored ? -own[1] : own[1], own[2]}, vec3(normal), vec3(tangent),
-                                      normalized(vec3(to_viewer)));
-    for (int c = 0; c < 3; ++c) turned[c] = static_cast<float>(n[c]);
-    normal = turned;
+    turned = floats(brdf::texel_normal({own[0], place.mirrored ? -own[1] : own[1], own[2]}, vec3(normal),
+                                       vec3(tangent.data()), normalized(vec3(to_viewer.data()))));
+    normal = turned.data();
   }
   p.nx[count_] = normal[0], p.ny[count_] = normal[1], p.nz[count_] = normal[2];
   p.vx[count_] = to_viewer[0], p.vy[count_] = to_viewer[1], p.vz[count_] = to_viewer[2];
@@ -392,13 +391,10 @@ std::vector<color::Rgb> SbrdfShader::shade(std::size_t texture, const SbrdfLight
       return TexelShare{static_cast<std::uint32_t>(texel_number(batch.texture(), tap)), static_cast<float>(tap.weight)};
     });
     sort_by_shape(batch.texture(), texels[i]);
-    float normal[3], to_viewer[3];
-    for (int c = 0; c < 3; ++c) {
-      normal[c] = static_cast<float>(point.normal[c]), to_viewer[c] = static_cast<float>(point.to_viewer[c]);
-    }
+    const std::array<float, 3> normal = floats(point.normal), to_viewer = floats(point.to_viewer);
     each_shape(batch.texture(), texels[i], [&](std::span<const TexelShare> lobed, std::span<const TexelShare> diffuse) {
       number[batch.count()] = i;
-      batch.put(normal, to_viewer, from_origin(point.position, light.origin), point.place, lobed, diffuse);
+      batch.put(normal.data(), to_viewer, floats(point.position - light.origin), point.place, lobed, diffuse);
       if (batch.full()) flush();
     });
   }

@@ -111,7 +111,7 @@ class SbrdfShader {
     // `normal` and `to_viewer` on the same side, the first unit; the position from SbrdfLight::origin. The point shows
     // the lobes of some texels of one shape, and the diffuse parts of others or the same. They must be there until the
     // batch is shaded. Of the place the tangent is read.
-    void put(const float* normal, const float* to_viewer, const std::array<float, 3>& position,
+    void put(const float* normal, const std::array<float, 3>& to_viewer, const std::array<float, 3>& position,
              const TexturePlace& place, std::span<const TexelShare> lobed, std::span<const TexelShare> diffuse);
     int count() const { return count_; }
     bool full() const { return count_ == kPointsAtOnce; }

@@ -96,7 +96,7 @@ TexturePlace TextureLayout::place(const MeshPoint& point, const Corners& corners
   }
   TexturePlace place;
   place.u = static_cast<float>(u), place.v = static_cast<float>(v), place.mirrored = mirrored;
-  for (int c = 0; c < 3; ++c) place.tangent[c] = static_cast<float>(t[c]);
+  place.tangent = floats(t);
   return place;
 }
 
