@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cli/tool.h"
-#include "sink.h"
+#include "judgement.h"
 #include "tool.h"
 
 namespace goniochrome::tool {

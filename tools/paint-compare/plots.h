@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "judgement.h"
 #include "report/plot.h"
-#include "sink.h"
 
 namespace goniochrome::tool {
 

@@ -5,12 +5,14 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "chart.h"
 #include "formats/imported.h"
 #include "formulas.h"
 #include "illuminants.h"
+#include "judgement.h"
+#include "paint_sink.h"
 #include "quality/limit_maker.h"
-#include "sink.h"
 
 namespace goniochrome::tool {
 
@@ -27,11 +29,8 @@ class Run {
 
   Result<cli::Verdict> operator()() {
     GONIO_ASSIGN(formats::PaintBatches batches, formats::PaintBatches::open(options_.inputs));
-    Prolog prolog;
-    prolog.take(batches);
-    GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
-    GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_.format, options_.output), compare_, std::move(file),
-                                        std::move(prolog), session_));
+    GONIO_ASSIGN(PaintSink sink,
+                 PaintSink::begin(options_.format, options_.output, table_head(compare_), batches, session_));
     sink_.emplace(std::move(sink));
     session_.begin_list("judgements");
     GONIO_TRY(for_each_batch(
@@ -65,7 +64,7 @@ class Run {
     Made result{{standard, {}, {}}, ""};
     GONIO_ASSIGN(result.judgement.comparison, quality::compare(standard->subject, subject, compare_));
     result.judgement.judged = quality::judged(result.judgement.comparison, compare_, standard->limits);
-    result.text = sink_->text(result.judgement);
+    result.text = text_of(result.judgement, compare_, sink_->format());
     return Result(std::move(result));
   }
 
@@ -100,7 +99,8 @@ class Run {
                                        judgement.comparison.standard, joined(judgement.words(kWordsShown), "; ")));
     if (!options_.make_limits.empty()) maker_.add(judgement.comparison, compare_);
     session_.add("judgements", [&] { return judgement_json(judgement, compare_); });
-    GONIO_TRY(sink_->write(judgement, made.text, sample));
+    GONIO_TRY(sink_->format() == Format::kPaints ? sink_->write(with_verdict(sample, judgement))
+                                                 : sink_->write(made.text));
     if (!options_.chart.empty()) charted_.push_back({std::move(judgement), sample});
     return {};
   }
@@ -156,7 +156,7 @@ class Run {
   cli::Session& session_;
   const Standards& standards_;
   const quality::CompareOptions& compare_;
-  std::optional<Sink> sink_;
+  std::optional<PaintSink> sink_;
   quality::LimitMaker maker_;
   formats::Remarks remarks_;
   std::vector<ChartedSample> charted_;

@@ -11,7 +11,7 @@
 #include "other_light.h"
 #include "paint/inferred_class.h"
 #include "paint/metrics.h"
-#include "paint_stream.h"
+#include "paint_sink.h"
 #include "score.h"
 #include "table_output.h"
 
@@ -78,43 +78,6 @@ std::string table_line(const paint::Paint& paint, const Figures& figures) {
          figures.elsewhere.columns + (figures.inferred ? std::string("\t") + class_source(paint, figures) : "") + "\n";
 }
 
-// Where matching paints go, in one of the three formats.
-class Sink {
- public:
-  static Result<Sink> begin(Format format, OutputFile file, Prolog prolog, const OtherLight& light, bool classify,
-                            const cli::Session& session) {
-    Sink sink;
-    sink.format_ = format;
-    if (format == Format::kPaints) {
-      GONIO_ASSIGN(formats::PaintWriter writer, begin_paints(std::move(file), std::move(prolog), session));
-      sink.writer_.emplace(std::move(writer));
-      return sink;
-    }
-    sink.file_.emplace(std::move(file));
-    if (format == Format::kTable) GONIO_TRY(sink.file_->write(table_head(light, classify)));
-    return sink;
-  }
-
-  Result<void> write(const paint::Paint& paint, const Figures& figures) {
-    switch (format_) {
-      case Format::kPaints:
-        return writer_->write(paint);
-      case Format::kJson:
-        return file_->write(json_text(as_json(paint, figures)) + "\n");
-      case Format::kTable:
-        break;
-    }
-    return file_->write(table_line(paint, figures));
-  }
-  Result<void> flush() { return file_ ? file_->flush() : Result<void>(); }
-  Result<void> finish() { return writer_ ? writer_->finish() : file_->commit(); }
-
- private:
-  Format format_ = Format::kTable;
-  std::optional<OutputFile> file_;
-  std::optional<formats::PaintWriter> writer_;
-};
-
 // One run, which turns a stream of paints into figures or picks paints of it.
 class Run {
  public:
@@ -127,11 +90,8 @@ class Run {
     }
     GONIO_ASSIGN(light_, OtherLight::create(options_, session_));
     GONIO_ASSIGN(formats::PaintBatches batches, formats::PaintBatches::open(options_.inputs));
-    Prolog prolog;
-    prolog.take(batches);
-    GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
-    GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_.format, options_.output), std::move(file), std::move(prolog),
-                                        *light_, options_.classify, session_));
+    GONIO_ASSIGN(PaintSink sink, PaintSink::begin(options_.format, options_.output,
+                                                  table_head(*light_, options_.classify), batches, session_));
     sink_.emplace(std::move(sink));
     session_.begin_list("paints");
     GONIO_TRY(for_each_batch(
@@ -187,7 +147,15 @@ class Run {
     if (filter_ && !filter_->matches(paint, figures.numbers)) return {};
     ++matched_;
     session_.add("paints", [&] { return as_json(paint, figures); });
-    return sink_->write(paint, figures);
+    switch (sink_->format()) {
+      case Format::kPaints:
+        return sink_->write(paint);
+      case Format::kJson:
+        return sink_->write(json_text(as_json(paint, figures)) + "\n");
+      case Format::kTable:
+        break;
+    }
+    return sink_->write(table_line(paint, figures));
   }
 
   cli::Verdict finish() {
@@ -212,7 +180,7 @@ class Run {
   cli::Session& session_;
   std::optional<paint::PaintFilter> filter_;
   std::optional<OtherLight> light_;
-  std::optional<Sink> sink_;
+  std::optional<PaintSink> sink_;
   std::size_t read_ = 0, matched_ = 0, left_out_ = 0, inferred_ = 0, undecided_ = 0;
   double measuring_s_ = 0;
 };

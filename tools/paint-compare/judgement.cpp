@@ -1,4 +1,4 @@
-#include "sink.h"
+#include "judgement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,6 @@
 namespace goniochrome::tool {
 
 namespace {
-
-std::string table_head(const quality::CompareOptions& compare) {
-  std::string text = "sample\tminus_standard\tgeometry\tdL\tda\tdb\tdC\tdH";
-  for (const color::DifferenceFormula& formula : compare.formulas) text += "\t" + quality::quantity_of(formula);
-  return text + "\tother\tverdict\n";
-}
 
 // The other quantities at a place.
 std::string others_at(const quality::Comparison& comparison, const std::string& at, int decimals) {
@@ -87,16 +81,6 @@ Json angle_json(const quality::AngleDifference& angle, const quality::CompareOpt
   return json;
 }
 
-// The sample with this verdict in the place of the one that it had.
-paint::Paint with_verdict(paint::Paint sample, const Judgement& judgement) {
-  std::erase_if(sample.foreign,
-                [](const std::string& element) { return quality::is_quality_element(element, "verdict"); });
-  sample.foreign.push_back(fmt::format("<verdict xmlns=\"{}\" standard=\"{}\" result=\"{}\">{}</verdict>",
-                                       quality::kQualityNamespace, xml_escaped(judgement.comparison.standard),
-                                       judgement.verdict(), xml_escaped(joined(judgement.words(), "; "), "")));
-  return sample;
-}
-
 }  // namespace
 
 std::vector<std::string> Judgement::words(std::size_t most) const {
@@ -153,28 +137,25 @@ Json judgement_json(const Judgement& judgement, const quality::CompareOptions& c
   return json;
 }
 
-Result<Sink> Sink::begin(Format format, const quality::CompareOptions& compare, OutputFile file, Prolog prolog,
-                         const cli::Session& session) {
-  Sink sink;
-  sink.format_ = format, sink.compare_ = compare;
-  if (format == Format::kPaints) {
-    GONIO_ASSIGN(formats::PaintWriter writer, begin_paints(std::move(file), std::move(prolog), session));
-    sink.writer_.emplace(std::move(writer));
-    return Result(std::move(sink));
-  }
-  sink.file_.emplace(std::move(file));
-  if (format == Format::kTable) GONIO_TRY(sink.file_->write(table_head(compare)));
-  return Result(std::move(sink));
+std::string table_head(const quality::CompareOptions& compare) {
+  std::string text = "sample\tminus_standard\tgeometry\tdL\tda\tdb\tdC\tdH";
+  for (const color::DifferenceFormula& formula : compare.formulas) text += "\t" + quality::quantity_of(formula);
+  return text + "\tother\tverdict\n";
 }
 
-std::string Sink::text(const Judgement& judgement) const {
-  if (format_ == Format::kTable) return table_lines(judgement, compare_);
-  if (format_ == Format::kPaints) return "";
-  return json_text(judgement_json(judgement, compare_)) + "\n";
+std::string text_of(const Judgement& judgement, const quality::CompareOptions& compare, Format format) {
+  if (format == Format::kTable) return table_lines(judgement, compare);
+  if (format == Format::kPaints) return "";
+  return json_text(judgement_json(judgement, compare)) + "\n";
 }
 
-Result<void> Sink::write(const Judgement& judgement, const std::string& text, const paint::Paint& sample) {
-  return writer_ ? writer_->write(with_verdict(sample, judgement)) : file_->write(text);
+paint::Paint with_verdict(paint::Paint sample, const Judgement& judgement) {
+  std::erase_if(sample.foreign,
+                [](const std::string& element) { return quality::is_quality_element(element, "verdict"); });
+  sample.foreign.push_back(fmt::format("<verdict xmlns=\"{}\" standard=\"{}\" result=\"{}\">{}</verdict>",
+                                       quality::kQualityNamespace, xml_escaped(judgement.comparison.standard),
+                                       judgement.verdict(), xml_escaped(joined(judgement.words(), "; "), "")));
+  return sample;
 }
 
 }  // namespace goniochrome::tool

@@ -1,14 +1,10 @@
-// Sinks of judgements: a table, JSON lines, or the samples with their verdicts.
+// Judgements as they are written: lines of a table, JSON, or the samples with their verdicts.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "base/file.h"
 #include "base/json.h"
-#include "cli/tool.h"
-#include "paint_stream.h"
 #include "quality/limits.h"
 #include "standards.h"
 #include "table_output.h"
@@ -39,22 +35,10 @@ struct VerdictCount {
 
 Json judgement_json(const Judgement& judgement, const quality::CompareOptions& compare);
 
-class Sink {
- public:
-  static Result<Sink> begin(Format format, const quality::CompareOptions& compare, OutputFile file, Prolog prolog,
-                            const cli::Session& session);
-
-  // The text of a judgement, which several threads may make at once; "" where paints are written.
-  std::string text(const Judgement& judgement) const;
-  Result<void> write(const Judgement& judgement, const std::string& text, const paint::Paint& sample);
-  Result<void> flush() { return file_ ? file_->flush() : Result<void>(); }
-  Result<void> finish() { return writer_ ? writer_->finish() : file_->commit(); }
-
- private:
-  Format format_ = Format::kTable;
-  quality::CompareOptions compare_;
-  std::optional<OutputFile> file_;
-  std::optional<formats::PaintWriter> writer_;
-};
+// The text of a judgement, which several threads may make at once; "" where paints are written.
+std::string text_of(const Judgement& judgement, const quality::CompareOptions& compare, Format format);
+std::string table_head(const quality::CompareOptions& compare);
+// The sample with this verdict in the place of the one that it had.
+paint::Paint with_verdict(paint::Paint sample, const Judgement& judgement);
 
 }  // namespace goniochrome::tool
