@@ -85,9 +85,10 @@ class PaintShelf {
     if (!files_.contains(file)) {
       if (!name && is_like_glass(file))
         return usage_error("there is no file \"{}\": for glass that is seen through write PART={}", file, kGlass);
-      GONIO_ASSIGN(files_[file], read(file));
+      GONIO_ASSIGN(files_[file], formats::read_paints(file, &remarks_));
     }
     const std::vector<paint::Paint>& paints = files_[file];
+    if (paints.empty()) return input_error("{}: holds no paint", file);
     std::vector<std::string> names;
     for (const paint::Paint& paint : paints) names.push_back(paint.name);
     if (!name) {
@@ -120,20 +121,6 @@ class PaintShelf {
   }
 
  private:
-  Result<std::vector<paint::Paint>> read(const std::string& file) {
-    GONIO_ASSIGN(const formats::PaintSourcePointer source, formats::open_paints(file));
-    std::vector<paint::Paint> paints;
-    for (;;) {
-      GONIO_ASSIGN(std::optional<paint::Paint> paint, source->next());
-      if (!paint) break;
-      paints.push_back(*std::move(paint));
-    }
-    for (const auto& lines : {source->warnings(), source->closing_warnings()})
-      remarks_.insert(remarks_.end(), lines.begin(), lines.end());
-    if (paints.empty()) return input_error("{}: holds no paint", file);
-    return paints;
-  }
-
   // Each paint is fitted once, however many parts wear it.
   Result<paint::Paint> fitted(const paint::Paint& paint, const std::string& file) {
     if (paint.lobes) return paint;
