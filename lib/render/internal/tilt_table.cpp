@@ -29,18 +29,11 @@ Node node_at(const paint::TiltedLobes& set, double cos_o) {
 TiltLookup lookup_of(std::size_t map, const Node& low, const Node& high, std::size_t lobe, double side, double share) {
   const auto axis = [&](const Node& node) {
     const brdf::AxisSum& sum = node.axes[lobe];
-    return std::array<double, 3>{sum.a, sum.s, side * sum.c};
+    return Vec3{sum.a, sum.s, side * sum.c};
   };
-  TiltLookup lookup;
-  lookup.map = map;
-  const std::array<double, 3> from = axis(low), to = axis(high);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double w0 = share * low.view.weights[lobe][static_cast<int>(c)],
-                 w1 = share * high.view.weights[lobe][static_cast<int>(c)];
-    lookup.axis[c] = static_cast<float>(from[c]), lookup.axis_step[c] = static_cast<float>(to[c] - from[c]);
-    lookup.weight[c] = static_cast<float>(w0), lookup.weight_step[c] = static_cast<float>(w1 - w0);
-  }
-  return lookup;
+  const Vec3 from = axis(low), to = axis(high);
+  const color::Rgb weight = share * low.view.weights[lobe], last = share * high.view.weights[lobe];
+  return {map, floats(from), floats(to - from), floats(weight), floats(last - weight)};
 }
 
 std::vector<TiltLookup> row_of(const paint::TiltedLobes& set, const std::vector<double>& exponents, const Node& low,
@@ -96,12 +89,12 @@ TiltTable tilt_table(const Scene& scene, const Effects& effects, const std::vect
     const auto stretch = drawn_stretch(scene, effects, part);
     const paint::TiltedLobes* set = stretch ? stretch.get() : drawn_tilts(scene.paints[part], effects);
     if (set == nullptr) {
-      table.rows.resize(table.rows.size() + static_cast<std::size_t>(table.segments));
+      table.rows.resize(table.rows.size() + std::size_t{kViewSegments});
       continue;
     }
     Node low = node_at(*set, 0);
-    for (int segment = 0; segment < table.segments; ++segment) {
-      const double x = (segment + 1.0) / table.segments;
+    for (int segment = 0; segment < kViewSegments; ++segment) {
+      const double x = (segment + 1.0) / kViewSegments;
       Node high = node_at(*set, x * x);
       table.rows.push_back(row_of(*set, exponents, low, high));
       low = std::move(high);

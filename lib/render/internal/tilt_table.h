@@ -19,9 +19,8 @@ struct TiltLookup {
 };
 
 struct TiltTable {
-  int segments = kViewSegments;
   std::vector<int> group_of_part;  // parts that wear the same are one group
-  // (group * segments + segment), each in the order of the maps.
+  // (group * kViewSegments + segment), each in the order of the maps.
   std::vector<std::vector<TiltLookup>> rows;
 };
 
