@@ -30,7 +30,7 @@ bool has_exponent(const std::vector<double>& exponents, double exponent) {
 
 // Tells by exponent whether one picture of these paints looks up a map of the environment; null if it may use all.
 std::function<bool(double)> looked_up_maps(const Options& options, const Request& request, const Stage& stage) {
-  const bool sums = request.engine != nullptr && (request.engine->needs_texels || request.engine->traces_rays);
+  const bool sums = request.traces() || (request.engine != nullptr && request.engine->needs_texels);
   if (is_stream(options) || !options.textures.empty() || options.check > 0 || request.transport || sums) return {};
   std::vector<paint::LobeFit> paints;
   for (const DressedMesh& dress : stage.dresses) paints.insert(paints.end(), dress.paints.begin(), dress.paints.end());
@@ -88,7 +88,7 @@ void add_texture_exponents(const Options& options, const Stage& stage, std::vect
 // The exponents that an image is filtered by. Those of the whole basis serve the next paint as well; paints of another
 // basis have theirs.
 Result<std::vector<double>> wanted_exponents(const Options& options, const Request& request, const Stage& stage) {
-  if (request.engine != nullptr && request.engine->traces_rays) return std::vector<double>();
+  if (request.traces()) return std::vector<double>();
   GONIO_ASSIGN(const formats::Basis basis, formats::basis_or_default(options.basis));
   GONIO_ASSIGN(std::vector<double> exponents, worn_exponents(options, stage));
   if (std::ranges::all_of(exponents, [&](double exponent) { return has_exponent(basis.exponents, exponent); }))

@@ -75,11 +75,10 @@ Result<Request> request_of(const Options& options) {
     GONIO_ASSIGN(request.engine, render::engine_named(engine));
     request.plan.engine = engine;
   }
-  const bool traces = request.engine != nullptr && request.engine->traces_rays;
   GONIO_ASSIGN(request.floor,
-               parse_floor(options.floor, options.background == "env" && (traces || !options.env.empty())));
+               parse_floor(options.floor, options.background == "env" && (request.traces() || !options.env.empty())));
   request.floor_named = has_floor;
-  if (wants_rays && !traces)
+  if (wants_rays && !request.traces())
     return usage_error("--engine {} draws neither parts that shine nor {}: leave out --{}, or take --engine path",
                        options.engine,
                        named.kind == FloorRequest::Kind::kPaint ? "floors that wear a paint"
@@ -96,7 +95,8 @@ Result<Request> request_of(const Options& options) {
   image::Image unused{0, 0, 0, {}, {}};
   for (const std::string& aov : request.aovs) {
     if (aov != "error") GONIO_TRY(render::add_aov(unused, {}, aov, {}));
-    if (aov == "error" && !traces) return usage_error("--aov error is of pictures by samples: take --engine path");
+    if (aov == "error" && !request.traces())
+      return usage_error("--aov error is of pictures by samples: take --engine path");
   }
   return request;
 }

@@ -31,6 +31,7 @@ struct Request {
   render::PlanRequest plan;
   bool quick = false;  // nobody asked how accurate the picture is to be, nor how long it may take
   const render::EngineInfo* engine = nullptr;  // null: the plan chooses
+  bool traces() const { return engine != nullptr && engine->traces_rays; }
   FloorRequest floor;
   bool floor_named = false;  // whether it is asked for by name
   std::vector<Emission> emissions;

@@ -282,7 +282,7 @@ void Shooting::tell_rays() {
 bool Shooting::is_quick() const {
   const cli::CommonOptions& common = session_.common();
   return !common.tolerance_given && !(common.time_limit_s > 0) && options_.check == 0 && !request_.transport &&
-         (request_.engine == nullptr || !request_.engine->traces_rays);
+         !request_.traces();
 }
 
 void Shooting::tell_noise() {

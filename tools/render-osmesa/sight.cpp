@@ -53,8 +53,7 @@ Result<render::Renderer> make_renderer(const Options& options, const Request& re
     return Result<render::Renderer>(std::move(renderer));
   };
   if (stage.gbuffer) return ready(render::Renderer::shading(stage.gbuffer));
-  if (request.engine != nullptr && request.engine->traces_rays)
-    return ready(render::Renderer::tracing(stage.scene.ground));
+  if (request.traces()) return ready(render::Renderer::tracing(stage.scene.ground));
   if (request.engine == nullptr || !request.engine->needs_opengl) return ready(render::Renderer::tracing());
   GONIO_ASSIGN(render::Renderer renderer,
                render::Renderer::create(options.gpu ? render::OpenGlBy::kGpu : render::OpenGlBy::kSoftware));

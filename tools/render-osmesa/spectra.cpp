@@ -185,11 +185,10 @@ color::Rgb color_of(const color::Bands& light) {
 }
 
 Result<void> set_spectra(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
-  const bool traces = request.engine != nullptr && request.engine->traces_rays;
   const bool named = std::ranges::any_of(request.light_bands, [](const auto& bands) { return bands.has_value(); }) ||
                      std::ranges::any_of(request.emissions, [](const Emission& e) { return e.bands.has_value(); });
   if (options.spectral == "off" || (options.spectral == "auto" && !named)) return {};
-  if (!traces) {
+  if (!request.traces()) {
     session.say("light has three channels, which --engine path --spectral on would follow in bands");
     return {};
   }

@@ -156,8 +156,7 @@ Result<void> set_projected_floor(const Request& request, const Stage& stage, ren
 
 // Surfaces below a floor are hidden by rays alone.
 Result<void> take_path_below(const mesh::Mesh& mesh, Request& request) {
-  const bool traces = request.engine != nullptr && request.engine->traces_rays;
-  if (traces || request.floor.kind == FloorRequest::Kind::kNone || !request.floor.height) return {};
+  if (request.traces() || request.floor.kind == FloorRequest::Kind::kNone || !request.floor.height) return {};
   const mesh::Box box = mesh::bounding_box(mesh);
   if (*request.floor.height <= box.low.y + 1e-6 * box.longest_side()) return {};
   if (request.engine != nullptr)
@@ -172,7 +171,7 @@ Result<void> take_path_below(const mesh::Mesh& mesh, Request& request) {
 // The light that rays meet, and that is summed. Prefiltered environments hold it in their mirror part, unless that was
 // left out.
 Result<void> set_rays(const Options& options, const Request& request, Stage& stage) {
-  if (request.engine != nullptr && request.engine->traces_rays) return {};
+  if (request.traces()) return {};
   render::RaySetup& rays = stage.rays.emplace();
   const bool mirrored = !options.env.empty() && stage.env.mirror.map.size > 0;
   if (options.effects.leave_out_rays()) {
@@ -257,8 +256,7 @@ Result<void> set_stage(const Options& options, Request& request, Stage& stage, c
     GONIO_ASSIGN(stage.source, source_of(options, scene, session));
   }
   if (summed && stage.source.environment) scene.texels = &stage.texels.emplace(*stage.source.environment);
-  if (request.engine != nullptr && request.engine->traces_rays)
-    GONIO_TRY(set_ground(request.floor, stage.floor_paint, scene));
+  if (request.traces()) GONIO_TRY(set_ground(request.floor, stage.floor_paint, scene));
   GONIO_ASSIGN(scene.emission, emission_of(stage.mesh, request.emissions));
   for (std::size_t part = 0; part < scene.emission.size(); ++part)
     if (render::is_pane(scene, part) && !(scene.emission[part] == color::Rgb{}))
