@@ -199,11 +199,8 @@ class Tracing {
         const LobePoint::Pairs pairs =
             point.pairs(kProbeSequences, kProbeDirections, mixed(request_.seed, 0xB0BEU + i));
         probes[i].point = static_cast<std::uint32_t>(number);
-        const auto keep = [](const std::vector<color::Rgb>& from, std::vector<float>& to) {
-          for (const color::Rgb& light : from)
-            for (int c = 0; c < 3; ++c) to.push_back(static_cast<float>(light[c]));
-        };
-        keep(pairs.once, probes[i].once), keep(pairs.deeper, probes[i].deeper);
+        probes[i].once.resize(3 * pairs.once.size()), probes[i].deeper.resize(3 * pairs.deeper.size());
+        put(pairs.once, probes[i].once.data()), put(pairs.deeper, probes[i].deeper.data());
       }
     });
     t.probed = static_cast<int>(count);
