@@ -190,8 +190,7 @@ class ScatteredBrdf final : public MeasuredBrdf {
     auto shares = delaunay_shares(ring.offsets, at);
     if (shares.empty()) {
       const auto nearest =
-          std::min_element(ring.offsets.begin(), ring.offsets.end(),
-                           [&](const auto& a, const auto& b) { return distance(a, at) < distance(b, at); });
+          std::ranges::min_element(ring.offsets, {}, [&](const auto& offset) { return distance(offset, at); });
       result.outside_deg = std::max(result.outside_deg, distance(*nearest, at));
       shares.push_back({static_cast<std::size_t>(nearest - ring.offsets.begin()), 1.0});
     }

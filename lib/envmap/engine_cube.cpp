@@ -39,8 +39,8 @@ struct Storage {
 };
 
 Storage storage_of(const std::vector<PrefilteredLobe>& levels) {
-  return {std::any_of(levels.begin(), levels.end(),
-                      [](const PrefilteredLobe& level) { return storage_type(level) == image::PixelType::kFloat; })};
+  return {
+      std::ranges::any_of(levels, [](const auto& level) { return storage_type(level) == image::PixelType::kFloat; })};
 }
 
 // Appends one face of a level.

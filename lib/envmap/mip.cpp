@@ -58,9 +58,8 @@ std::vector<float> level_values(const std::vector<PrefilteredLobe>& levels, std:
 }
 
 std::string encoded(const std::vector<PrefilteredLobe>& levels, const std::string& source, const std::string& command) {
-  const bool as_float = std::any_of(levels.begin(), levels.end(), [](const PrefilteredLobe& level) {
-    return storage_type(level) == image::PixelType::kFloat;
-  });
+  const bool as_float = std::ranges::any_of(
+      levels, [](const PrefilteredLobe& level) { return storage_type(level) == image::PixelType::kFloat; });
   const Imf::PixelType type = as_float ? Imf::FLOAT : Imf::HALF;
   Imf::StdOSStream stream;
   {

@@ -64,8 +64,7 @@ std::vector<Point> lit_hull(const image::Image& rgb) {
     ends.push_back({first + 0.5, y + 0.5});
     ends.push_back({last + 0.5, y + 0.5});
   }
-  std::sort(ends.begin(), ends.end(),
-            [](const Point& a, const Point& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  std::ranges::sort(ends, {}, [](const Point& p) { return std::pair(p.x, p.y); });
   std::vector<Point> hull;
   const auto walk = [&](auto begin, auto end) {
     const std::size_t start = hull.size();
@@ -112,10 +111,9 @@ Result<BallDisc> circle_about(std::vector<Point> hull, const image::Image& rgb, 
     disc = circle_through(hull);
     const double most = 1 + 0.005 * disc.radius;
     const std::size_t before = hull.size();
-    const auto worst = std::max_element(hull.begin(), hull.end(), [&](const Point& p, const Point& q) {
-      return std::fabs(distance(disc, p)) < std::fabs(distance(disc, q));
-    });
-    const double limit = std::max(most, 0.7 * std::fabs(distance(disc, *worst)));
+    double worst = 0;
+    for (const Point& p : hull) worst = std::max(worst, std::fabs(distance(disc, p)));
+    const double limit = std::max(most, 0.7 * worst);
     std::erase_if(hull, [&](const Point& p) { return std::fabs(distance(disc, p)) > limit; });
     if (hull.size() == before) break;
   }

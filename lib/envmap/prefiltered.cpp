@@ -290,8 +290,7 @@ Result<PrefilteredEnvironment> env_of_content(const std::string& content, const 
   if (env.diffuse.map.size == 0)
     return input_error("{}: has no part `diffuse`: it is not a prefiltered environment; make one with prefilter-envmap",
                        path);
-  std::sort(env.lobes.begin(), env.lobes.end(),
-            [](const PrefilteredLobe& a, const PrefilteredLobe& b) { return a.exponent < b.exponent; });
+  std::ranges::sort(env.lobes, {}, &PrefilteredLobe::exponent);
   GONIO_TRY(join(others, names, path, env));
   return env;
 }

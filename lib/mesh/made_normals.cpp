@@ -221,8 +221,7 @@ class PlaceNormals {
 void make_normals(std::vector<CornerTriangle>& triangles, const std::vector<Vec3>& positions,
                   std::vector<Vec3>& normals) {
   const auto lacks = [](const Polygons::Corner& corner) { return corner.normal == kNoNormal; };
-  if (std::none_of(triangles.begin(), triangles.end(),
-                   [&](const CornerTriangle& t) { return std::any_of(t.corners.begin(), t.corners.end(), lacks); }))
+  if (std::ranges::none_of(triangles, [&](const CornerTriangle& t) { return std::ranges::any_of(t.corners, lacks); }))
     return;
   const Incidence incidence = incidence_of(triangles, places_of(positions));
   constexpr std::size_t kPlaces = 1 << 14;

@@ -48,7 +48,7 @@ Result<LeftOut> left_out(Renderer& renderer, const Scene& scene, const Plan& pla
   Effects drawn = plan.effects, all = effects_of(scene);
   drawn.rays = all.rays = {}, drawn.sums = false;
   const auto& by_rays = ray_effect_names();
-  const bool whole = std::none_of(plan.items.begin(), plan.items.end(), [&](const PlanItem& item) {
+  const bool whole = std::ranges::none_of(plan.items, [&](const PlanItem& item) {
     return item.needed && !item.on && item.effect != kSumsName &&
            std::ranges::find(by_rays, item.effect) == by_rays.end();
   });

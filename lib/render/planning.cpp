@@ -59,8 +59,7 @@ Compact compacted(const Scene& scene, const std::vector<VisiblePoint>& points) {
   std::vector<std::size_t> first;
   std::vector<int> place(scene.paints.size());
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
-    const auto same =
-        std::find_if(first.begin(), first.end(), [&](std::size_t f) { return same_wear(scene, f, part); });
+    const auto same = std::ranges::find_if(first, [&](std::size_t f) { return same_wear(scene, f, part); });
     place[part] = static_cast<int>(same - first.begin());
     if (same != first.end()) continue;
     first.push_back(part);
@@ -164,8 +163,7 @@ void drop_unseen(Prober& prober, const std::vector<EffectSwitch>& switches, cons
     if (switches[i].left_to_tilts && tilted(switches, choice.on)) continue;
     if (choice.on[i] && !choice.forced[i] && items[i].de00_p95 <= tolerance) order.push_back(i);
   }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return items[a].de00_p95 < items[b].de00_p95; });
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return items[i].de00_p95; });
   // The finest set of tilted lobes comes first: what stands for it is then judged with the rest.
   const auto is_tilts = [&](std::size_t i) { return switches[i].group == "tilts"; };
   const auto rest = std::stable_partition(order.begin(), order.end(), is_tilts);

@@ -119,8 +119,7 @@ bool has_mirror(const std::vector<paint::LobeFit>& paints) {
 }
 
 const paint::Lobe* find_lobe(const paint::LobeFit& paint, double exponent) {
-  const auto at = std::find_if(paint.lobes.begin(), paint.lobes.end(),
-                               [&](const paint::Lobe& lobe) { return lobe.exponent == exponent; });
+  const auto at = std::ranges::find(paint.lobes, exponent, &paint::Lobe::exponent);
   return at == paint.lobes.end() ? nullptr : &*at;
 }
 

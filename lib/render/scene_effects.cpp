@@ -198,16 +198,14 @@ Effects effects_of(const Scene& scene) {
   effects.fresnel = gloss;
   effects.extent = effects.mirror && discs;
   for (const Light& light : scene.lights) effects.extent |= is_seen_as_disc(light, effects);
-  effects.coat = std::any_of(scene.paints.begin(), scene.paints.end(),
-                             [](const paint::LobeFit& paint) { return paint.coat_index != paint::kNoCoat; });
+  effects.coat =
+      std::ranges::any_of(scene.paints, [](const paint::LobeFit& paint) { return paint.coat_index != paint::kNoCoat; });
   effects.horizon = effects.environment && !effects.lobes.empty();
-  effects.views = std::any_of(scene.paints.begin(), scene.paints.end(),
-                              [](const paint::LobeFit& paint) { return !paint.views.empty(); });
+  effects.views = std::ranges::any_of(scene.paints, [](const paint::LobeFit& paint) { return !paint.views.empty(); });
   for (std::size_t part = 0; part < scene.paints.size(); ++part)
     effects.satin = effects.satin || wears_rough_coat(scene, part);
   effects.stretch = effects.satin && effects.environment && effects.lights == 0;
-  effects.anisotropy =
-      !effects.lobes.empty() && std::any_of(scene.anisotropy.begin(), scene.anisotropy.end(), is_anisotropic);
+  effects.anisotropy = !effects.lobes.empty() && std::ranges::any_of(scene.anisotropy, is_anisotropic);
   effects.tilt_tolerance = scene.tilt_error, effects.most_tilts = scene.most_tilts;
   if (effects.environment) {
     for (std::size_t part = 0; part < scene.paints.size(); ++part) {
@@ -238,8 +236,7 @@ paint::LobeFit with_effects(const paint::LobeFit& paint, const Effects& effects)
     if (!effects.diffuse) diffuse = {};
     std::erase_if(lobes, [&](paint::Lobe& lobe) {
       if (lobe.is_mirror()) return !effects.mirror;
-      const auto use = std::find_if(effects.lobes.begin(), effects.lobes.end(),
-                                    [&](const Effects::LobeUse& u) { return u.exponent == lobe.exponent; });
+      const auto use = std::ranges::find(effects.lobes, lobe.exponent, &Effects::LobeUse::exponent);
       if (use == effects.lobes.end()) return true;
       if (!use->directional_diffuse) lobe.directional_diffuse = {};
       if (!use->gloss) lobe.gloss = {};

@@ -199,8 +199,7 @@ class BoardReader {
   }
 
   bool find_image(const std::string& name) const {
-    return std::any_of(board_.images.begin(), board_.images.end(),
-                       [&](const auto& image) { return image.name == name; });
+    return std::ranges::any_of(board_.images, [&](const auto& image) { return image.name == name; });
   }
 
   std::string path_;
@@ -311,8 +310,7 @@ Result<std::vector<PalettePair>> palette(const image::ImagePart& image, const st
     for (const Pixel& pixel : pixels)
       if (pixel.group == static_cast<int>(k)) members.push_back(&pixel);
     if (members.empty()) continue;
-    std::stable_sort(members.begin(), members.end(),
-                     [](const Pixel* a, const Pixel* b) { return a->lab.L < b->lab.L; });
+    std::ranges::stable_sort(members, {}, [](const Pixel* pixel) { return pixel->lab.L; });
     pairs.push_back({mean_between(members, 1 - kEnd - kGlint, 1 - kGlint), mean_between(members, 0, kEnd),
                      static_cast<double>(members.size()) / static_cast<double>(pixels.size())});
   }

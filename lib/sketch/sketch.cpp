@@ -225,8 +225,8 @@ SearchSamples search_samples(const std::vector<SketchCell>& cells, const formats
 }
 
 bool is_seen(const std::vector<SketchCell>& cells, double angle_deg) {
-  return std::any_of(cells.begin(), cells.end(),
-                     [&](const SketchCell& cell) { return std::abs(cell.aspecular_deg - angle_deg) <= kReach_deg; });
+  return std::ranges::any_of(
+      cells, [&](const SketchCell& cell) { return std::abs(cell.aspecular_deg - angle_deg) <= kReach_deg; });
 }
 
 // Rows, face, flop and travel of a curve.

@@ -34,9 +34,7 @@ std::string listed(const std::vector<std::string>& names, std::size_t most = 12)
 // `did you mean "X"? `, or nothing.
 std::string nearest_of(const std::string& wanted, const std::vector<std::string>& names) {
   const auto distance = [&](const std::string& name) { return edit_distance(lower(wanted), lower(name)); };
-  const auto nearest = std::min_element(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
-    return distance(a) < distance(b);
-  });
+  const auto nearest = std::ranges::min_element(names, {}, distance);
   if (nearest == names.end() || distance(*nearest) > std::max<std::size_t>(2, wanted.size() / 3)) return "";
   return fmt::format("did you mean \"{}\"? ", *nearest);
 }

@@ -121,8 +121,7 @@ Gatherer::Gatherer(const SurfacePoint& point, double texel_rad, double most_spre
   for (const paint::Lobe& lobe : paint_.lobes) {
     if (!lobe.is_mirror()) lobes_.push_back(lobe);
   }
-  std::sort(lobes_.begin(), lobes_.end(),
-            [](const paint::Lobe& a, const paint::Lobe& b) { return a.exponent < b.exponent; });
+  std::ranges::sort(lobes_, {}, &paint::Lobe::exponent);
   if (model_.fresnel) {
     const double share = 1 / brdf::fresnel_dielectric(std::cos(model_.gloss_deg * kDegree), brdf::kCoatIndex);
     for (paint::Lobe& lobe : lobes_) lobe.gloss = share * lobe.gloss;

@@ -36,7 +36,7 @@ void remove_weight(Effects& effects, double exponent, bool gloss) {
 }
 
 int wearing(const Scene& scene, double exponent, bool gloss) {
-  return static_cast<int>(std::count_if(scene.paints.begin(), scene.paints.end(), [&](const paint::LobeFit& paint) {
+  return static_cast<int>(std::ranges::count_if(scene.paints, [&](const paint::LobeFit& paint) {
     return wears_lobe(paint, exponent, gloss ? LobeWeight::kGloss : LobeWeight::kDirectionalDiffuse);
   }));
 }
@@ -196,8 +196,8 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
   const auto add = [&](const char* name, bool needed, const std::string& reason, std::function<void(Effects&)> off) {
     list.push_back({name, name, needed, reason, std::move(off)});
   };
-  const bool diffuse = std::any_of(scene.paints.begin(), scene.paints.end(),
-                                   [](const paint::LobeFit& p) { return p.diffuse != color::Rgb{}; });
+  const bool diffuse =
+      std::ranges::any_of(scene.paints, [](const paint::LobeFit& p) { return p.diffuse != color::Rgb{}; });
   add("diffuse", diffuse, diffuse ? "paints have a constant part" : "no visible paint has a constant part",
       [](Effects& e) { e.diffuse = false; });
   add_lobes(scene, all, false, list);
