@@ -1,7 +1,9 @@
 #include "render/page_ground.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/angles.h"
 #include "base/parallel.h"
@@ -14,6 +16,7 @@ namespace {
 
 constexpr int kSize = 512, kTurns = 8;
 constexpr int kBouncedDirections = 64;
+constexpr double kEvenSteps = 8;  // deviation of texels from the mean of four, below which that stands for them
 
 // In even light a lobe a cos^E reflects about a 2 pi/(E + 1) c to a view of cosine c, and 2/3 of that on average.
 paint::LobeFit white_metallic() {
@@ -33,6 +36,25 @@ mesh::Mesh turned(mesh::Mesh mesh, const Vec3& middle, double angle) {
   for (Vec3& p : mesh.positions) p = middle + turn(p - middle);
   for (Vec3& n : mesh.normals) n = turn(n);
   return mesh;
+}
+
+// Texels of half as many a side, unless edges of shadows are too sharp for them.
+void halve_if_even(PageGroundLight& light) {
+  PageGroundLight half{light.size / 2, light.turns, light.reach, {}};
+  const std::size_t width = 4UL * light.size;
+  double squares = 0;
+  for (std::size_t row = 0; row < light.texels.size(); row += 2 * width) {
+    for (std::size_t i = row; i < row + width; i += 8) {
+      for (std::size_t c = i; c < i + 4; ++c) {
+        const std::array<int, 4> four{light.texels[c], light.texels[c + 4], light.texels[c + width],
+                                      light.texels[c + width + 4]};
+        const int mean = (four[0] + four[1] + four[2] + four[3] + 2) / 4;
+        for (const int one : four) squares += (one - mean) * (one - mean);
+        half.texels.push_back(static_cast<std::uint16_t>(mean));
+      }
+    }
+  }
+  if (squares < kEvenSteps * kEvenSteps * static_cast<double>(light.texels.size())) light = std::move(half);
 }
 
 }  // namespace
@@ -79,6 +101,7 @@ Result<PageGroundLight> page_ground_light(const mesh::Mesh& mesh, const envmap::
       }
     });
   }
+  halve_if_even(light);
   return Result(std::move(light));
 }
 

@@ -50,6 +50,7 @@ TEST(PageGround, HasTheShadowAndTheLightOfTheMeshForEachTurn) {
     if (part.name == "left") part.name = "tire";
   const auto light = page_ground_light(mesh, sunny);
   ASSERT_TRUE(light.ok()) << light.error().message;
+  ASSERT_EQ(light->size, 512);
   ASSERT_EQ(light->texels.size(), 4UL * light->size * light->size * light->turns);
   // Turn 2 of 8: a direction d of the environment comes from (d.z, d.y, -d.x).
   for (const auto& [turn, x, z] : {std::tuple(0, 1.0, 0.0), {2, 0.0, -1.0}, {4, -1.0, 0.0}, {6, 0.0, 1.0}}) {
@@ -67,6 +68,21 @@ TEST(PageGround, HasTheShadowAndTheLightOfTheMeshForEachTurn) {
     EXPECT_EQ(far.left, 255) << turn;
     EXPECT_EQ(far.sent, 0) << turn;
   }
+}
+
+// Even light throws no sharp shadow, but where a mesh stands on its ground: this one has a foot.
+TEST(PageGround, TakesFewerTexelsWhereShadowsAreSoft) {
+  const envmap::Environment even = environment_of(64, 32, [](int, int) { return color::Rgb{1, 1, 1}; });
+  mesh::Mesh mesh = slab();
+  const double low = mesh::bounding_box(mesh).low.y;
+  for (Vec3& p : mesh.positions)
+    if (p.y == low) p = {0.05 * p.x, p.y, 0.05 * p.z};
+  const auto light = page_ground_light(mesh, even);
+  ASSERT_TRUE(light.ok()) << light.error().message;
+  EXPECT_EQ(light->size, 256);
+  EXPECT_EQ(light->texels.size(), 4UL * 256 * 256 * light->turns);
+  EXPECT_LT(at(*light, 0, 0, 0).left, 20);
+  EXPECT_EQ(at(*light, 0, 40, 0).left, 255);
 }
 
 }  // namespace
