@@ -111,17 +111,17 @@ async function main() {
     gathered.drop();
     return result;
   })()`);
-  // Samples of the pixels that differ from those beside them, and of all pixels; the control has none. No value counts more than is shown. Of a stride of two the first
+  // Samples of the pixels that differ from those beside them, and of all pixels; the control has none. No value counts more than in those. Of a stride of two the first
   // of four pixels is as it is in the whole picture.
   const smooth = await browser.evaluate(`(() => {
-    const app = studio, { stage } = app, camera = cameraOf(app.data.mesh.view), width = ${width / 2}, height = ${height / 2}, count = 16;
+    const app = studio, { stage } = app, camera = cameraOf(app.data.mesh.view), width = ${width / 2}, height = ${height / 2}, count = mostSamples;
     app.engine.ask({ do: "fit", paint: app.library.paint([...Array(app.library.count).keys()].find((i) => app.library.paint(i).name === ${JSON.stringify(paints[0])})) });
     const weights = stage.weights(app.engine), gbuffer = (name, shift) => stage.gbuffer(name, camera, width, height, shift, 0);
-    const most = mostShown * stage.environment(0).white, held = (value) => Math.min(value, most);
+    const most = mostCounted * stage.environment(0).white, held = (value) => Math.min(value, most);
     const sum = stage.shade("check", gbuffer("check", [0, 0]), weights, 0), plain = stage.valuesOf(sum).map(held), mean = new Float32Array(plain.length);
     for (const _ of stage.smooth("check", sum, camera, weights, 0, 0, count));
     const ours = stage.valuesOf(sum).map(held);
-    for (const shift of sampleShifts(count)) stage.valuesOf(stage.shade("other", gbuffer("other", shift), weights, 0)).forEach((value, i) => { mean[i] += held(value) / count; });
+    for (const shift of sampleShifts) stage.valuesOf(stage.shade("other", gbuffer("other", shift), weights, 0)).forEach((value, i) => { mean[i] += held(value) / count; });
     const off = (values) => values.reduce((all, value, i) => all + Math.abs(value - mean[i]), 0) / values.length / stage.environment(0).white;
     const whole = stage.gatheredRadiance(camera, width, height, weights, 0), half = stage.valuesOf(stage.gathered.shade("half", gbuffer("radiance", [0, 0]), weights, 0, 2));
     stage.gathered.drop();

@@ -67,10 +67,8 @@ function projected(camera, width, height, box, shift) {
   return { corner, right: scaled(right, pixel), down: scaled(down, pixel), clip: new Float32Array(clip), reach: 1 / far };
 }
 
-// Where the samples of a pixel lie: the first in its middle, and all of them evenly in a disk of its area.
-function sampleShifts(samples) {
-  return Array.from({ length: samples }, (_, k) => {
-    const radius = Math.sqrt(k / samples / Math.PI), angle = Math.PI * (3 - Math.sqrt(5)) * k;
-    return [radius * Math.cos(angle), radius * Math.sin(angle)];
-  });
-}
+// Where the samples of a pixel lie: the first in its middle, and all of them, and the first four, evenly in a disk of its area.
+const mostSamples = 16, sampleShifts = Array.from({ length: mostSamples }, (_, i) => {
+  const k = (7 * i) % mostSamples, radius = Math.sqrt(k / mostSamples / Math.PI), angle = Math.PI * (3 - Math.sqrt(5)) * k;
+  return [radius * Math.cos(angle), radius * Math.sin(angle)];
+});

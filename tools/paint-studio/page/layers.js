@@ -199,6 +199,6 @@ class GatheredLight {
       else gl.drawArrays(gl.TRIANGLES, 0, 3);
     }
     gl.activeTexture(gl.TEXTURE0);
-    return Object.assign(target, { stride, smooth: false });
+    return Object.assign(target, { stride, samples: 1 });
   }
 }

@@ -25,7 +25,7 @@ void main() {
 }
 `;
 const startOfMesh = "  vec3 n = point.xyz;\n";  // in all programs, after what is seen beside the mesh
-const mostShown = 1.5;          // of white, that a sample of an edge counts, so that single bright samples do not sparkle
+const mostCounted = 4;          // of white, of a sample of an edge, so that single glints of lamps are no dots
 const sampleFragment = `#version 300 es
 precision highp float;
 precision highp sampler2D;
@@ -356,7 +356,7 @@ class Stage {
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
     gl.disable(gl.BLEND);
     this.cast(gbuffer, weights, environment, begin, end);
-    return Object.assign(target, { stride: 1, smooth: false });
+    return Object.assign(target, { stride: 1, samples: 1 });
   }
   // Draws what shade() does into the framebuffer that is bound: the whole picture, or the tiles that have edges.
   cast(gbuffer, weights, environment, begin, end, edges = null) {
@@ -386,22 +386,23 @@ class Stage {
   }
 
   // The steps by which pixels of a sum become the mean of many samples, where they differ from those beside them. Each step is one draw.
+  // Samples that the sum has stay in it.
   *smooth(name, sum, camera, weights, environment, stops, samples) {
-    if (sum.smooth) return;
-    const gl = this.gl, { width, height } = sum, shifts = sampleShifts(samples), kept = samples * 28 * width * height <= mostSampleBytes;
-    const gbufferOf = (k) => this.gbuffer(kept ? `${name} ${k}` : `${name} sample`, camera, width, height, shifts[k], environment);
+    if (sum.samples >= samples) return;
+    const gl = this.gl, { width, height } = sum, kept = samples * 28 * width * height <= mostSampleBytes;
+    const gbufferOf = (k) => this.gbuffer(kept ? `${name} ${k}` : `${name} sample`, camera, width, height, sampleShifts[k], environment);
     const gain = 2 ** stops / (this.environment(environment).white || 1), edges = this.markEdges(this.gbuffer(name, camera, width, height, [0, 0], environment), sum, gain);
     const [sample, mean] = ["edge sample", "edge mean"].map((one) => this.target(one, width, height, this.sumKind, false));
-    this.addSample(mean, sum, edges, mostShown / gain, 1 / samples, false);
-    for (let k = 1; k < samples; ++k) {
+    this.addSample(mean, sum, edges, mostCounted / gain, sum.samples / samples, false);
+    for (let k = sum.samples; k < samples; ++k) {
       const gbuffer = gbufferOf(k);
       gl.bindFramebuffer(gl.FRAMEBUFFER, sample.framebuffer);
       this.cast(gbuffer, weights, environment, 0, height, edges);
-      this.addSample(mean, sample, edges, mostShown / gain, 1 / samples, true);
+      this.addSample(mean, sample, edges, mostCounted / gain, 1 / samples, true);
       yield;
     }
     this.addSample(sum, mean, edges, 1e30, 1, false);
-    sum.smooth = true;
+    sum.samples = samples;
   }
   // Puts a share of a picture, of which no value counts more than `most`, into the tiles of another one that have edges, or adds it.
   addSample(target, picture, edges, most, share, add) {

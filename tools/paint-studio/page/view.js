@@ -441,9 +441,9 @@ class StageView {
   // The camera, size, paint and light of a picture of so many pixels, as Stage takes them.
   picture(scale) { return [this.camera, ...this.size(scale), this.weights, this.environment, this.stops]; }
 
-  // The steps from a picture of those pixels to one of all and of many samples: 16 where the pixels took little time, else 4.
+  // The steps from a picture of those pixels to one of all and of many samples, or of four where the pixels took long.
   *sharpening(scale, stride = 1) {
-    const { stage } = this, samples = this.full_ms < slowPicture_ms ? 16 : 4;
+    const { stage } = this;
     if (stride > 1) {
       yield* this.gathering(false);
       stage.drawGathered(scale < 1 ? "gathered" : "centers", ...this.picture(scale), this.overlay);
@@ -453,15 +453,16 @@ class StageView {
       const took_ms = yield* stage.drawSteps("centers", ...this.picture(1), stepBudget_ms, this.overlay);
       this.full_ms = this.full_ms === 0 ? took_ms : 0.5 * (this.full_ms + took_ms);
     }
-    yield* stage.smoothSteps("centers", this.camera, this.weights, this.environment, this.stops, samples, this.overlay, this.sparkles, stepBudget_ms);
+    yield* this.smoothing(this.full_ms < slowPicture_ms ? mostSamples : 4);
   }
+  smoothing(samples) { return this.stage.smoothSteps("centers", this.camera, this.weights, this.environment, this.stops, samples, this.overlay, this.sparkles, stepBudget_ms); }
   // The steps that gather the light of the view: what the paint needs, or all that there is room for.
   *gathering(others) {
     const scale = this.gatheredScale, [camera, width, height, weights, environment] = this.picture(scale);
     for (let rows = Math.ceil(height / 8); this.stage.gather(scale < 1 ? "gathered" : "centers", camera, width, height, weights, environment, others, rows);)
       rows = clamped(Math.floor((rows * stepBudget_ms) / (yield)), 8, 4 * rows);
   }
-  // Those steps, and then the small pictures and, where pictures take long, the light of the view.
+  // Those steps, and then the small pictures and, where pictures take long, the light of the view and the samples that are left.
   *finishing(steps) {
     const { since } = this;
     yield* steps;
@@ -469,7 +470,9 @@ class StageView {
     this.sharp = true;
     this.times.sharp_ms = performance.now() - since;
     this.app.tiles.go();
-    if (this.full_ms >= slowPicture_ms && this.cars === 1 && !this.stage.occlusion.busy) yield* this.gathering(true);
+    if (this.full_ms < slowPicture_ms || this.cars > 1 || this.stage.occlusion.busy) return;
+    yield* this.gathering(true);
+    yield* this.smoothing(mostSamples);
   }
 
   // Runs steps, in the place of those that ran before. Each waits until the one before is drawn and is told how long that took, so that the
