@@ -49,13 +49,13 @@ cli::ToolSpec tool_spec(Options& o) {
       "click on a part, it wears the paint, a second paint, glass, rubber or chrome, or is hidden. The ground of the "
       "environment lies below the mesh, with the shadow that the mesh throws on it for eight turns of the light, "
       "between which the page interpolates. The page finds the shadow of the mesh on itself, and the shadows of meshes "
-      "and lights that are opened in it, while nothing else is to be done, from 128 directions. The ground gets light "
-      "from painted parts, and they mirror it. Parts send no light to each other, but in the traced views of "
-      "--transport. Color maps are not shown, and a warning tells how many paints have them. "
+      "and lights that are opened in it, while nothing else is to be done, from 128 directions. Painted "
+      "parts send light to the ground and roughly to each other, and mirror it; the traced views of "
+      "--transport follow it. Color maps are not shown, and a warning tells how many paints have them. "
       "Brushed paints take longer to draw. Flakes that the paint states sparkle in lamps and bright spots, where an "
       "eye sees single ones; slow computers draw them at rest. They draw moving pictures with fewer pixels, and keep "
       "the light of a view in up to 96 MB of the graphics' memory. At rest, pixels that differ from their neighbors "
-      "get 4 or 16 samples.",
+      "get 4 samples, then 16.",
       "The compiled library lies in ../lib/goniochrome beside the program, as the files studio.wasm and "
       "studio.html, or in $GONIOCHROME_MODULE_PATH. Where the compiler for WebAssembly was missing when the tools "
       "were built, paint-studio says which packages it takes, and the exit status is 3.",

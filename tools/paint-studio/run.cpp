@@ -94,15 +94,15 @@ std::string plan_text(const Options& options) {
       "mesh {}: positions and normals in 16 bits an axis\n"
       "environments: {}, each lobe of the basis as half floats\n"
       "traced views: {}\n"
-      "left out: {}color maps\n",
+      "roughly: light from one part to another{}\n"
+      "left out: color maps\n",
       options.mesh.empty() ? "of the page itself" : options.mesh,
       options.environments.empty() ? "of the page itself" : joined(options.environments, ", "),
       options.transports.empty() ? "none"
                                  : joined(options.transports, ", ") +
                                        ", the light of each lobe at every point in as few bits as change a paint by no "
                                        "more than 0.02 dE00",
-      options.transports.empty() ? "light from one part to another, and "
-                                 : "light from one part to another beside the traced views, and ");
+      options.transports.empty() ? "" : ", beside the traced views");
 }
 
 }  // namespace

@@ -8,17 +8,17 @@ namespace goniochrome::render {
 
 namespace {
 
-// The light of a slot from the maps in a mirror direction.
+// The light of a slot from the maps in a mirror direction, and that which a white mesh would send.
 std::string map_light_function(const Effects& effects, bool shaded) {
-  std::string text = "\nvec4 map_light(vec3 r, int slot, vec3 n) {\n  vec3 light = vec3(0.0);\n";
+  std::string text = "\nvec4 map_light(vec3 r, int slot, vec3 n) {\n  vec4 light = vec4(0.0);\n";
   for (const LightLayer& layer : light_layers(effects)) {
     if (layer.of_lamps) continue;
     std::string toward = layer.exponent == kDiffusePart ? "n" : "r";
     if (layer.shift_slot >= 0) toward += fmt::format(" + W({}).{} * n", layer.shift_slot, "rgba"[layer.shift_channel]);
-    text += fmt::format("  if (slot == {}) light = {};\n", layer.slot,
-                        lobe_light(shaded, layer.exponent, layer.sampler, toward));
+    text += fmt::format("  if (slot == {}) light = vec4({}, {});\n", layer.slot,
+                        lobe_light(shaded, layer.exponent, layer.sampler, toward), shaded ? "occluded.a" : "0.0");
   }
-  return text + "  return vec4(light, 0.0);\n}\n";
+  return text + "  return light;\n}\n";
 }
 
 // The light of a disc by the flakes or the gloss of a lobe: the sums of the shading program, without weights.
@@ -155,7 +155,8 @@ layout(location = 0) out vec4 color;
       "    if (count > 0) color.rgb += mesh_color * scales[0] * texelFetch(layers, ivec3(at, used[0].y), 0).rgb;\n");
   return text + fmt::format(R"(  {0} products = {0}(0.0);
   for (int o = 0; o < count; ++o) {{
-    vec3 light = scales[o] * texelFetch(layers, ivec3(at, used[o].y), 0).rgb;
+    vec4 layer = scales[o] * texelFetch(layers, ivec3(at, used[o].y), 0);
+    vec3 light = layer.rgb + layer.a * mesh_color;
     products += {1};
   }}
   color = vec4({2}, 1.0);

@@ -187,7 +187,7 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
       background_colors(effects, projected_ground) +
           (projected_ground ? "    color = shown + vec4(mesh_color * sent, 0.0);\n" : "    color = shown;\n"));
   text += fmt::format("  {0} products = {0}(0.0);\n", sum_type(effects));
-  if (shaded) text += occlusion_start(effects);
+  if (shaded) text += occlusion_start(effects) + "  sent = mesh_color * occluded.a;\n";
   // 3. The sum of what the environment and the lights show.
   text += tilt_frame(effects);
   if (effects.environment) text += environment_terms(effects, shaded);

@@ -65,25 +65,29 @@ inline constexpr const char* kMeshColor = "uniform vec3 mesh_color;  // reflecta
 // has half of its height. The maps show the ground as the eye of the environment saw it: seen from nearer by, a lobe
 // covers less of it, as a sharper lobe did there.
 inline constexpr const char* kOcclusion = R"(uniform sampler2D occlusion;
-vec4 occluded;
+vec4 occluded;  // its last number is the light that a white mesh sends here
+vec3 sent = vec3(0.0);  // that of the mesh
 float tilted;  // 5/8 P_2(c), the band 2 of the cosine; its mean is 1/2
 float depth = 0.0;  // of the point; 0 where no light is lost
 float share = 1.0;  // of light that sharp lobes keep beside the ground
 vec3 from;  // the point, as the eye of the environment has it
 uniform int own_lamps;  // the first, which no shadow dims
 float lit = 1.0;  // of the light of other lamps
-vec3 left(vec3 light, float lost) { return light * clamp(1.0 - lost / max(dot(luminance, light), 1e-6), 0.0, 4.0); }
+vec3 left(vec3 light, float lost) {
+  return sent + clamp(1.0 - lost / max(dot(luminance, light), 1e-6), 0.0, 4.0) * light;
+}
 vec3 sharp(samplerCube map, vec3 axis, float deviation) {
   float below = 1.0 / (1.0 + exp(min(1.7 * axis.y / deviation, 80.0)));  // its part that looks down
   vec3 up = vec3(axis.x, max(axis.y, 0.7 * deviation), axis.z);
   vec3 down = normalize(vec3(axis.x, min(axis.y, -0.7 * deviation), axis.z));
-  if (depth == 0.0 || below < 0.01 || !meets_ground(from, down)) return share * textureLod(map, axis, 0.0).rgb;
+  if (depth == 0.0 || below < 0.01 || !meets_ground(from, down))
+    return sent + share * textureLod(map, axis, 0.0).rgb;
   vec3 met = on_ground(from, down);
   // Solid angles of the ground are as cos/distance^2, where cos is height/distance.
   float away = distance(met, from), part = away / length(met);
   float exponent = (from.y + ground_drop) / (deviation * deviation * part * part * part * ground_drop);
   vec3 ground = kept_light(met, 2.4 * deviation * away * inversesqrt(-down.y)).rgb * ground_map(met, exponent);
-  return below > 0.99 ? ground : mix(share * textureLod(map, up, 0.0).rgb, ground, below);
+  return sent + (below > 0.99 ? ground : mix(share * textureLod(map, up, 0.0).rgb, ground, below));
 }
 vec3 left(vec3 light, vec2 bands) {
   return left(light, (occluded.x + dot(bands, occluded.yz)) / (0.5 + bands.y * tilted));

@@ -38,37 +38,44 @@ uniform vec3 toward;
 void main() { gl_Position = vec4(2.0 * in_tile(position, toward) - 1.0, 1.0); }
 `;
 const depthFragment = `#version 300 es
-void main() {}
+precision highp float;
+uniform float painted;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(painted); }
 `;
 const inTiles = `
-uniform sampler2D depths;
+uniform sampler2D depths, paints;  // paints: 1 where the part is painted
+vec2 place;
 bool is_hidden(vec3 p, vec3 d, int i) {
   vec3 at = in_tile(p, d);
-  vec2 place = (clamp(at.xy, 0.001, 0.999) + vec2(i % ${tilesAcross}, i / ${tilesAcross})) / vec2(${tilesAcross}, ${tilesDown});
+  place = (clamp(at.xy, 0.001, 0.999) + vec2(i % ${tilesAcross}, i / ${tilesAcross})) / vec2(${tilesAcross}, ${tilesDown});
   return textureLod(depths, place, 0.0).x < min(at.z, 0.999);
 }
 `;
 const bitsVertex = `${occlusionHead}${inTiles}
 uniform vec3 toward[${atOnce}];
-flat out uint bits;
+flat out uint bits, painted;
 void main() {
-  bits = 0u;
+  bits = painted = 0u;
   for (int i = 0; i < ${atOnce}; ++i) {
     vec3 p = position + (dot(toward[i], normal) < 0.0 ? -4.0 : 4.0) / (${tile}.0 * ball.w) * normal;
-    if (is_hidden(p, toward[i], i)) bits |= 1u << i;
+    if (!is_hidden(p, toward[i], i)) continue;
+    bits |= 1u << i;
+    if (textureLod(paints, place, 0.0).x > 0.5) painted |= 1u << i;
   }
 ${inTexel}}
 `;
 const bitsFragment = `#version 300 es
 precision highp float;
-flat in uint bits;
-layout(location = 0) out uvec4 seen;
-void main() { seen = uvec4(bits); }
+flat in uint bits, painted;
+layout(location = 0) out uvec4 hidden;
+layout(location = 1) out uvec4 by_paint;
+void main() { hidden = uvec4(bits), by_paint = uvec4(painted); }
 `;
 const ofLight = `
 const vec3 luminance = vec3(0.2627, 0.678, 0.0593);  // of Rec.2020
 uniform vec3 around[${aroundCount}];
-uniform usampler2D seen;
+uniform usampler2D seen, by_paint;
 uniform samplerCube light, fine;  // of lobes of lightExponent and fineExponent
 uniform vec2 turn;
 vec3 of_map(samplerCube map, vec3 d) {
@@ -79,6 +86,12 @@ vec3 shine(vec3 d) { return of_map(light, d); }
 const ofLamps = `
 uniform int lamps;
 uniform vec3 lamp_toward[${atOnce}], lamp_white[${atOnce}];
+uniform samplerCube diffuse;
+vec3 white(vec3 n) {
+  vec3 sum = of_map(diffuse, n);
+  for (int i = 0; i < lamps; ++i) sum += max(dot(lamp_toward[i], n), 0.0) * lamp_white[i];
+  return sum;
+}
 `;
 const lossVertex = `${occlusionHead}${inTiles}${ofLight}${ofLamps}
 uniform sampler2D ground_light;
@@ -86,23 +99,30 @@ uniform vec3 seen_from;
 uniform float ground_height, ground_scale, fine_part;  // 1 over the logarithm of how much sharper the fine one is
 flat out vec4 first, second;
 flat out vec3 third;
+flat out vec4 sent;
 void main() {
 ${inTexel}
-  first = second = vec4(0.0);
+  first = second = sent = vec4(0.0);
   third = vec3(0.0);
-  uvec4 all = texelFetch(seen, texel, 0);
+  vec4 of_mesh = vec4(0.0);
+  vec2 open = vec2(0.0);
+  uvec4 all = texelFetch(seen, texel, 0), painted = texelFetch(by_paint, texel, 0);
   for (int i = 0; i < ${aroundCount}; ++i) {
     vec3 d = around[i];
-    float cosine = dot(d, normal), lost = 0.0;
-    if ((all[i >> 5] >> (i & 31) & 1u) != 0u) {
+    float cosine = dot(d, normal), lost = 0.0, given = 0.0;
+    bool hidden = (all[i >> 5] >> (i & 31) & 1u) != 0u;
+    if (hidden) {
       lost = dot(luminance, shine(d));
+      if ((painted[i >> 5] >> (i & 31) & 1u) != 0u) given = dot(luminance, white(-d));
     } else if (d.y < 0.0) {
       vec3 met = position - max(position.y - ground_height, 0.0) / d.y * d;
       vec2 p = clamp(ground_scale * (met - seen_from).xz, -1e3, 1e3);
-      vec3 at = met - seen_from, kept = ground_scale > 0.0 ? texture(ground_light, 0.5 + 0.5 * p * inversesqrt(1.0 + p * p)).rgb : vec3(1.0);
+      vec3 at = met - seen_from;
+      vec4 kept = ground_scale > 0.0 ? texture(ground_light, 0.5 + 0.5 * p * inversesqrt(1.0 + p * p)) : vec4(1.0, 1.0, 1.0, 0.0);
       float nearer = length(at) / max(distance(met, position), 1e-5), sharper = nearer * nearer * nearer * (ground_height - position.y) / at.y;
       vec3 shown = mix(shine(at), of_map(fine, at), clamp(log(max(sharper, 1e-9)) * fine_part, 0.0, 1.0));
-      lost = dot(luminance, shine(d) - kept * shown);
+      lost = dot(luminance, shine(d) - kept.rgb * shown);
+      given = kept.a * dot(luminance, shown);
     }
     // On a back the diffuse part stands for all lobes.
     if (cosine <= 0.0) {
@@ -111,10 +131,17 @@ ${inTexel}
     }
     vec3 other = d - 2.0 * cosine * normal;
     lost *= cosine / ${aroundCount}.0;
+    given *= cosine / ${aroundCount}.0;
+    open += cosine * vec2(hidden ? 0.0 : 1.0, 1.0);
+    vec4 given_from = given * vec4(d + other, 2.0);
+    if (hidden) of_mesh += given_from;
+    else sent += given_from;
     first += lost * vec4(d + other, d.x * d.x + other.x * other.x);
     second += lost * vec4(d.yz * d.yz + other.yz * other.yz, d.x * d.y + other.x * other.y, d.y * d.z + other.y * other.z);
     third.x += lost * (d.z * d.x + other.z * other.x);
   }
+  open.x /= max(open.y, 1e-6);
+  sent += open.x * open.x * of_mesh;
   vec3 p = position + 1.5 / (${tile}.0 * ball.w) * normal;
   float whole = 0.0;
   for (int i = 0; i < lamps; ++i) {
@@ -129,21 +156,17 @@ const lossFragment = `#version 300 es
 precision highp float;
 flat in vec4 first, second;
 flat in vec3 third;
+flat in vec4 sent;
 layout(location = 0) out vec4 moments_0;
 layout(location = 1) out vec4 moments_1;
 layout(location = 2) out vec4 moments_2;
-void main() { moments_0 = first, moments_1 = second, moments_2 = vec4(third, 0); }
+layout(location = 3) out vec4 moments_3;
+void main() { moments_0 = first, moments_1 = second, moments_2 = vec4(third, 0), moments_3 = sent; }
 `;
 // The part of its light that a place of the ground keeps, and the light from a white matt mesh, which faces the place and is as open
 // as that. Neighbors smooth the few directions; lamps are looked up by themselves.
 const groundVertex = `${occlusionHead}${inTiles}${ofLight}${ofLamps}
-uniform samplerCube diffuse;
 flat out vec4 kept;
-vec3 white(vec3 n) {
-  vec3 sum = of_map(diffuse, n);
-  for (int i = 0; i < lamps; ++i) sum += max(dot(lamp_toward[i], n), 0.0) * lamp_white[i];
-  return sum;
-}
 void main() {
 ${inTexel}
   vec3 all = vec3(0.0);
@@ -208,7 +231,7 @@ class Occlusion {
   }
   points(columns, positions, normals) {
     const count = positions.length / 3, size = { columns, rows: Math.ceil(count / columns) };
-    return { ...size, count, vertices: this.stage.vertices(positions, normals), bits: this.picture(size, this.stage.gl.RGBA32UI, 1) };
+    return { ...size, count, vertices: this.stage.vertices(positions, normals), bits: this.picture(size, this.stage.gl.RGBA32UI, 2) };
   }
   // Draws points into a picture of them by a program, which reads textures [name, kind, texture]; `set` sets its other uniforms.
   draw(program, { vertices, count, columns, rows }, picture, textures, set) {
@@ -241,7 +264,7 @@ class Occlusion {
     const { stage } = this, { low, high, positions, normals } = stage.mesh, size = added(high, low, -1);
     this.ball = [...scaled(added(low, high), 0.5), 2 / (1.02 * Math.hypot(...size) || 1)];
     this.mesh ??= this.points(vertexColumns, positions, normals);  // not turned with the light
-    const shown = stage.shownParts.map(({ first }) => first).join();
+    const shown = stage.shownParts.map(({ first, row }) => `${first} ${row < 2}`).join();
     if (this.shown !== shown) {
       yield* this.look(this.mesh, around);
       [this.shown, this.columns, this.ground] = [shown, vertexColumns, null];
@@ -272,7 +295,7 @@ class Occlusion {
         if (i % 2 === 1) yield;
       }
       gl.colorMask(...[0, 1, 2, 3].map((channel) => channel === begin / atOnce));
-      this.draw(program, points, points.bits, [["depths", gl.TEXTURE_2D, this.depths.depth]], () => gl.uniform3fv(program.at("toward[0]"), list.flat()));
+      this.draw(program, points, points.bits, [["depths", gl.TEXTURE_2D, this.depths.depth], ["paints", gl.TEXTURE_2D, this.depths.texture]], () => gl.uniform3fv(program.at("toward[0]"), list.flat()));
       gl.colorMask(true, true, true, true);
     }
   }
@@ -280,18 +303,21 @@ class Occlusion {
   drawDepth(toward, number) {
     const { stage, depths } = this, { gl } = stage, program = (this.depthProgram ??= stage.program(depthVertex, depthFragment)), place = [tile * (number % tilesAcross), tile * Math.floor(number / tilesAcross), tile, tile];
     gl.bindFramebuffer(gl.FRAMEBUFFER, depths.framebuffer);
-    gl.drawBuffers([gl.NONE]);
     gl.useProgram(program.program);
     gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.SCISSOR_TEST);
     gl.scissor(...place);
     gl.viewport(...place);
+    gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
     gl.clearBufferfv(gl.DEPTH, 0, [1]);
     gl.disable(gl.SCISSOR_TEST);
     gl.uniform4fv(program.at("ball"), this.ball);
     gl.uniform3fv(program.at("toward"), toward);
     gl.bindVertexArray(stage.meshVertices);
-    for (const { first, count } of stage.shownParts) gl.drawElements(gl.TRIANGLES, 3 * count, gl.UNSIGNED_INT, 12 * first);
+    for (const { first, count, row } of stage.shownParts) {
+      gl.uniform1f(program.at("painted"), row < 2 ? 1 : 0);
+      gl.drawElements(gl.TRIANGLES, 3 * count, gl.UNSIGNED_INT, 12 * first);
+    }
     gl.disable(gl.DEPTH_TEST);
   }
 
@@ -305,7 +331,7 @@ class Occlusion {
     const { stage } = this, { gl } = stage;
     if (this.has(what, environment)) return this.keys[what].join();
     const cubes = [["light", this.sampler], ["fine", this.fine], ["diffuse", "diffuse"]].map(([name, of]) => [name, gl.TEXTURE_CUBE_MAP, stage.environment(environment).cubes.find(({ sampler }) => sampler === of).texture]);
-    this.draw(program, points, picture, [["seen", gl.TEXTURE_2D, points.bits.textures[0]], ...cubes, ...textures], () => {
+    this.draw(program, points, picture, [["seen", gl.TEXTURE_2D, points.bits.textures[0]], ["by_paint", gl.TEXTURE_2D, points.bits.textures[1]], ...cubes, ...textures], () => {
       gl.uniform3fv(program.at("around[0]"), directions.flat());
       gl.uniform2fv(program.at("turn"), stage.turnVector);
       set();
@@ -328,7 +354,7 @@ class Occlusion {
     const { stage } = this, { gl } = stage;
     if (this.columns === 0 || !stage.ground || !stage.data.environments[environment].cubes.some(({ sampler }) => sampler === this.sampler)) return "none";
     const { texture, scale } = stage.groundShade(environment), program = (this.lossProgram ??= stage.program(lossVertex, lossFragment));
-    this.moments ??= this.picture(this.mesh, gl.RGBA16F, 3);
+    this.moments ??= this.picture(this.mesh, gl.RGBA16F, 4);
     const setLamps = this.lamps("mesh", environment, program);
     return this.take("mesh", environment, program, this.mesh, this.moments, around, [["ground_light", gl.TEXTURE_2D, texture ?? this.depths.texture], ["depths", gl.TEXTURE_2D, this.depths.depth]], () => {
       setLamps();

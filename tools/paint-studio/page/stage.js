@@ -328,7 +328,7 @@ class Stage {
     gl.clearBufferfv(gl.DEPTH, 0, [1]);
     gl.useProgram(program.program);
     const { moments, columns } = this.occlusion;
-    for (const unit of [2, 1, 0]) {
+    for (const unit of [3, 2, 1, 0]) {
       gl.activeTexture(gl.TEXTURE0 + unit);
       gl.bindTexture(gl.TEXTURE_2D, moments?.textures[unit] ?? null);
       gl.uniform1i(program.at(`moments_${unit}`), unit);
