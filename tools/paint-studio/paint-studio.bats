@@ -111,7 +111,7 @@ print(base64.b64encode(hashlib.sha256(sys.stdin.buffer.read()).digest()).decode(
   needs_page
   run make_page --explain hostile.paints.xml -o page.html
   [ "$status" -eq 0 ]
-  [[ "$output" =~ "roughly: light from one part to another" ]]
+  [[ "$output" =~ "approximate: light from one part to another" ]]
 }
 
 @test "a traced view of another mesh or basis, a cut one and one without light are refused" {

@@ -94,7 +94,7 @@ std::string plan_text(const Options& options) {
       "mesh {}: positions and normals in 16 bits an axis\n"
       "environments: {}, each lobe of the basis as half floats\n"
       "traced views: {}\n"
-      "roughly: light from one part to another{}\n"
+      "approximate: light from one part to another{}\n"
       "left out: color maps\n",
       options.mesh.empty() ? "of the page itself" : options.mesh,
       options.environments.empty() ? "of the page itself" : joined(options.environments, ", "),
@@ -102,7 +102,7 @@ std::string plan_text(const Options& options) {
                                  : joined(options.transports, ", ") +
                                        ", the light of each lobe at every point in as few bits as change a paint by no "
                                        "more than 0.02 dE00",
-      options.transports.empty() ? "" : ", beside the traced views");
+      options.transports.empty() ? "" : ", but followed by rays in the traced views");
 }
 
 }  // namespace

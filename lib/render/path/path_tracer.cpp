@@ -32,7 +32,7 @@ constexpr double kAlike = 0.2;
 // less noise than what is taken, and none of the error of maps.
 constexpr double kMostlyHidden = 0.5;
 constexpr std::size_t kMostOfPixel = 16;  // samples
-// A few samples do not tell their own variance: what no neighbor tells is sampled as if it needed so many fours.
+// The first samples of a point may all miss a small light: what no neighbor tells counts as if it needed so many fours.
 constexpr double kAlone = 32;
 // Points at which the shares of the first round are compared.
 constexpr std::size_t kCompared = 4096;
