@@ -64,4 +64,11 @@ class Gathered {
   int fours_ = 0, freedom_ = 0;
 };
 
+// A point that gets samples; most points of a large picture get none.
+struct SampledPoint {
+  Gathered sums;
+  color::Rgb floor_light;  // that needs no samples; one point stands for all that lie on one piece
+  Halves kept{};           // of shares that stopped
+};
+
 }  // namespace goniochrome::render

@@ -18,24 +18,11 @@ namespace goniochrome::render {
 
 namespace {
 
-// All specks get such a part of all samples or, where few points have any, as many for each point.
-constexpr double kSpecksShare = 0.5;
-// Most points need no more than a few samples: the first round takes as many fours as tell a variance.
-constexpr int kFirstFours = 2;
-// The samples of a pixel are first looked at, which took about as long as so many fours of a car in two probes.
-constexpr double kFoursOfLook = 2;
 // Rays look at every sample of a pixel at an edge. Where all of them show one piece of surface, rays look at the first
 // and the last, and at so many where these two differ by more than this part of the tolerance without paths.
 constexpr unsigned kOfOnePiece = 4;
 constexpr double kAlike = 0.2;
-// Where the mesh takes more than this part of the light that a point shows without it, the sum of all that is left has
-// less noise than what is taken, and none of the error of maps.
-constexpr double kMostlyHidden = 0.5;
 constexpr std::size_t kMostOfPixel = 16;  // samples
-// The first samples of a point may all miss a small light: what no neighbor tells counts as if it needed so many fours.
-constexpr double kAlone = 32;
-// Points at which the shares of the first round are compared.
-constexpr std::size_t kCompared = 4096;
 
 class Picture {
  public:
@@ -61,13 +48,14 @@ class Picture {
     std::vector<int> more = first_fours();
     Errors errors;
     bool reached = false;
-    int mended = 0;  // times
+    bool mended = false;
     while (true) {
       const double before = drawn();
       pace_.start();
       sample(more, first_round_);
       pace_.end(drawn() - before + (first_round_ ? kFoursOfLook * static_cast<double>(points_.size()) : 0));
       if (first_round_ && is_corrected()) sum_where_hidden();
+      if (!first_round_ && request_.reconstruct) mend_spikes(more);
       if (first_round_ && request_.stop_de00 > 0) stop_shares();
       first_ = {};
       first_round_ = false;  // which no time limit cuts, so that every point is seen
@@ -80,8 +68,8 @@ class Picture {
       if (deadline_.passed()) break;
       bool goes_on = !ended && plan(errors, more);
       if (ended) std::ranges::fill(more, 0);
-      // All specks get more with the second round, or at the end; those that the last round lit once more.
-      if (mended == 0 ? ended || goes_on : mended == 1 && ended) goes_on |= add_worst(more, mended++ > 0);
+      // All specks get more with the second round, or at the end.
+      if (!mended && (ended || goes_on)) mended = true, goes_on |= add_worst(more);
       if (!goes_on || !cut(pace_.left(judging_s_), more)) break;
     }
     PathPicture picture;
@@ -90,12 +78,11 @@ class Picture {
     const double count = std::max<double>(1, static_cast<double>(points_.size()));
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const PathPoint& point = points_[i];
-      picture.noise_mean_de00 += point.noise_de00;
-      picture.samples_mean += point.samples;
+      picture.noise_mean_de00 += point.noise_de00 / count, picture.samples_mean += point.samples / count;
       picture.free_share += states_[i].certain && point.samples == 0 ? 1 : 0;
       picture.dark = picture.dark && point.radiance == color::Rgb{};
     }
-    picture.noise_mean_de00 /= count, picture.samples_mean /= count, picture.free_share /= count;
+    picture.free_share /= count;
     picture.points = std::move(points_), picture.time_s = clock_.elapsed_s();
     return picture;
   }
@@ -156,6 +143,19 @@ class Picture {
     sample(more, true);
   }
 
+  // Samples of this round that err so much, beside those about them, that filters would spread them as a disc get more.
+  void mend_spikes(const std::vector<int>& drawn) {
+    std::vector<double> squares(points_.size(), 0);
+    each_point([&](std::size_t i) { squares[i] = std::pow(own_noise(i), 2); });
+    std::vector<int> more(points_.size(), 0);
+    each_point([&](std::size_t i) {
+      const int fours = sums(i).fours();
+      if (drawn[i] > 0 && squares[i] > std::pow(kBlotch * tolerance(), 2) && is_rare(by_pixel_, points_[i], squares, i))
+        more[i] = std::min(static_cast<int>(kMostOfSpeck) * fours, request_.most_samples / kOfFour - fours);
+    });
+    sample(more, false);
+  }
+
   // Points that were left out and of which no neighbor tells get samples, which they show as they are.
   void fill_gaps() {
     std::vector<int> more(points_.size(), 0);
@@ -165,9 +165,7 @@ class Picture {
     each_point([&](std::size_t i) {
       if (more[i] == 0) return;
       show_own(i);
-      Covariance covariance = sums(i).of_four();
-      for (double& element : covariance) element /= std::max(1, sums(i).fours());
-      points_[i].noise_de00 = noise_of(i, points_[i].radiance, covariance);
+      points_[i].noise_de00 = own_noise(i);
     });
   }
 
@@ -200,7 +198,6 @@ class Picture {
     double needed = 0;         // fours that bring the noise of the neighborhood to the tolerance
     std::uint32_t sampled = kNotSampled;
     bool certain = false;
-    bool spike = false;           // Its own samples err so much that filters would spread it as a disc.
     bool all_shares = false;      // Its first samples differ too much for any share to stop.
     bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
     std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
@@ -208,12 +205,6 @@ class Picture {
     bool looked = false;          // what is seen and known without samples is known
   };
 
-  // A point that gets samples; most points of a large picture get none.
-  struct Sampled {
-    Gathered sums;
-    color::Rgb floor_light;  // that needs no samples; one point stands for all that lie on one piece
-    Halves kept{};           // of shares that stopped
-  };
   const Gathered& sums(std::size_t i) const {
     static const Gathered none;
     return states_[i].sampled == kNotSampled ? none : sampled_[states_[i].sampled].sums;
@@ -254,7 +245,7 @@ class Picture {
 
   void add_round(std::size_t i, const Round& round, const LightShares (&means)[Round::kSequences]) {
     color::Rgb drawn[Round::kSequences];
-    Sampled& sampled = sampled_[states_[i].sampled];
+    SampledPoint& sampled = sampled_[states_[i].sampled];
     const unsigned shares = states_[i].all_shares ? kAllShares : drawn_;
     for (std::size_t k = 0; k < Round::kSequences; ++k) drawn[k] = sum_of(means[k], shares);
     if (sampled.sums.fours() == 0)
@@ -317,7 +308,7 @@ class Picture {
       state.all_shares =
           seen_difference(shown, shown + error, request_.white_luminance) > kSpeck * request_.tolerance_de00;
       if (state.all_shares) return;
-      Sampled& sampled = sampled_[state.sampled];
+      SampledPoint& sampled = sampled_[state.sampled];
       sampled.sums = {};
       sampled.sums.add(round, drawn);
       sampled.kept = kept;
@@ -348,8 +339,9 @@ class Picture {
 
   bool are_alike(std::size_t i, const Look& a, const Look& b) const {
     const color::Rgb base = base_ != nullptr && !states_[i].hidden ? base_at(points_[i]) : color::Rgb{};
-    return seen_difference(base + a.at.deterministic(), base + b.at.deterministic(), request_.white_luminance) <=
-           kAlike * request_.tolerance_de00;
+    const color::Rgb one = a.at.deterministic(), other = b.at.deterministic();
+    return one == other ||
+           seen_difference(base + one, base + other, request_.white_luminance) <= kAlike * request_.tolerance_de00;
   }
 
   // The fans take the uncertain samples of the pixel in turn from one drawn by chance: the mean over all fans has the
@@ -411,8 +403,17 @@ class Picture {
   }
 
   // By its own samples.
+  color::Rgb own_light(std::size_t i) const {
+    return states_[i].deterministic + sums(i).mean() + 0.5 * (kept(i)[0] + kept(i)[1]);
+  }
+  double own_noise(std::size_t i) const {
+    if (sums(i).fours() == 0) return 0;
+    Covariance covariance = sums(i).of_four();
+    for (double& element : covariance) element /= sums(i).fours();
+    return noise_of(i, own_light(i), covariance);
+  }
   void show_own(std::size_t i) {
-    points_[i].radiance = states_[i].deterministic + sums(i).mean() + 0.5 * (kept(i)[0] + kept(i)[1]);
+    points_[i].radiance = own_light(i);
     points_[i].samples = kOfFour * sums(i).fours();
   }
 
@@ -455,7 +456,6 @@ class Picture {
       const bool certain = states_[i].certain && sums(i).fours() == 0;
       points_[i].radiance = states_[i].deterministic + (certain ? halves[i][0] : found.light[i]);
       points_[i].noise_de00 = certain ? 0 : found.error_de00[i];
-      states_[i].spike = found.spike_de00[i] > kBlotch * tolerance();
       const double needed = needed_samples(counted(i), points_[i].noise_de00, found.spike_de00[i], tolerance());
       states_[i].needed = certain ? 0 : std::max(needed, found.shares[i][0] < 1 ? 0 : kAlone);
     });
@@ -537,14 +537,14 @@ class Picture {
 
   // A picture that is within its tolerance at 95 of 100 points may have specks at the others, most of them at edges,
   // which no neighbor tells. They get more in one round, which takes no more than a part of all samples for them.
-  // Returns true if there are any, spikes alone if so asked.
-  bool add_worst(std::vector<int>& more, bool spikes_alone) const {
+  // Returns true if there are any.
+  bool add_worst(std::vector<int>& more) const {
     if (!request_.reconstruct) return false;
     const double limit = request_.most_samples / kOfFour;
     std::vector<int> worst(more.size());
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const double n = counted(i), wanted = std::min(states_[i].needed / (kSpeck * kSpeck), limit) - n;
-      if (states_[i].spike || !spikes_alone) worst[i] = static_cast<int>(std::clamp(wanted, 0.0, kMostOfSpeck * n));
+      worst[i] = static_cast<int>(std::clamp(wanted, 0.0, kMostOfSpeck * n));
     }
     const bool any = std::ranges::any_of(worst, [](int fours) { return fours > 0; });
     if (!any || !cut(kSpecksShare * std::max(drawn(), static_cast<double>(points_.size())), worst)) return false;
@@ -554,7 +554,7 @@ class Picture {
 
   double drawn() const {
     double fours = 0;
-    for (const Sampled& sampled : sampled_) fours += sampled.sums.fours();
+    for (const SampledPoint& sampled : sampled_) fours += sampled.sums.fours();
     return fours;
   }
 
@@ -581,7 +581,7 @@ class Picture {
   PixelPoints by_pixel_;
   std::vector<PathPoint> points_;
   std::vector<State> states_;
-  std::vector<Sampled> sampled_;
+  std::vector<SampledPoint> sampled_;
   unsigned drawn_ = kAllShares;  // the shares that are drawn on
   FoundShares found_;
   std::vector<std::array<LightShares, Round::kSequences>> first_;  // of those sampled first; empty: not kept

@@ -109,11 +109,30 @@ inline double smoothed_variance(double own, double freedom, double around, int n
   return (freedom * own + kNeighborhood * (around + own) / (neighbors + 1)) / (freedom + kNeighborhood);
 }
 
+// All specks get such a part of all samples or, where few points have any, as many for each point.
+constexpr double kSpecksShare = 0.5;
+// Most points need no more than a few samples: the first round takes as many fours as tell a variance.
+constexpr int kFirstFours = 2;
+// The samples of a pixel are first looked at, which took about as long as so many fours of a car in two probes.
+constexpr double kFoursOfLook = 2;
+// The first samples of a point may all miss a small light: what no neighbor tells counts as if it needed so many fours.
+constexpr double kAlone = 32;
+
 // An error of so many tolerances is a speck. Its point gets at most so many times its samples.
 constexpr double kSpeck = 2, kMostOfSpeck = 15;
 // An error of the own samples of a point of so many tolerances is seen once filters spread it: a disc of 25 pixels on a
 // hood went with 10, and a fourth of its light stayed with 30.
 constexpr double kBlotch = 10;
+// True if the squared error of a point is above so many times the mean of those about it; without samples it is 0.
+template <class Point>
+bool is_rare(const PixelPoints& points, const Point& point, const std::vector<double>& squares, std::size_t number) {
+  constexpr double kRare = 8;
+  double sum = 0;
+  int count = 0;
+  points.visit_around(point.x, point.y, [&](std::size_t i) { sum += squares[i], count += squares[i] > 0 ? 1 : 0; });
+  return squares[number] * count > kRare * sum;
+}
+
 // The samples that bring the error of a reconstructed point to the tolerance, of which it has so many.
 inline double needed_samples(double has, double error_de00, double spike_de00, double tolerance_de00) {
   const double excess = kDeviations * error_de00 / tolerance_de00;
