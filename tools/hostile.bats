@@ -165,7 +165,8 @@ closing() {
   chmod 755 "$BATS_TEST_TMPDIR"
   chown 65534 mine
   cp "$TESTDATA/paints.paints.xml" mine/p.xml
-  chmod 644 mine/p.xml
+  cp "$TESTDATA/studio.exr" mine/studio.exr  # the checkout may be closed to others
+  chmod 644 mine/*
   local as_nobody="setpriv --reuid 65534 --clear-groups"
   $as_nobody test -r mine/p.xml || skip "the scratch folder is closed to others"
   refused "forbidden" $as_nobody paint-convert -q forbidden/p.xml --to csv
@@ -173,7 +174,7 @@ closing() {
     refused "forbidden" $as_nobody paint-convert -q mine/p.xml --to csv $option forbidden/x.csv
   done
   refused "forbidden" $as_nobody plot-paint -q mine/p.xml --pages forbidden/deep
-  refused "forbidden" $as_nobody prefilter-envmap -q -e 6 -s 8 "$TESTDATA/studio.exr" -o mine/x.exr --cache forbidden/deep
+  refused "forbidden" $as_nobody prefilter-envmap -q -e 6 -s 8 mine/studio.exr -o mine/x.exr --cache forbidden/deep
   # A file that is protected against writing stays.
   cp mine/p.xml mine/kept.csv
   chmod 444 mine/kept.csv
