@@ -15,12 +15,6 @@ constexpr std::size_t kShareCount = std::size(kShares);
 constexpr unsigned kAllShares = (1U << kShareCount) - 1;
 color::Rgb sum_of(const LightShares& shares, unsigned bits);
 
-// Where the mesh takes more than this part of the light that a point shows without it, the sum of all that is left has
-// less noise than what is taken, and none of the error of maps.
-constexpr double kMostlyHidden = 0.5;
-// Points at which the shares of the first round are compared.
-constexpr std::size_t kCompared = 4096;
-
 // Some point of a picture: what it shows is the sum of both.
 struct SharedPoint {
   LightShares shares;

@@ -64,6 +64,20 @@ class Gathered {
   int fours_ = 0, freedom_ = 0;
 };
 
+// A point of a picture.
+struct PointState {
+  static constexpr std::uint32_t kNotSampled = ~0U;
+  color::Rgb deterministic;             // what is known without samples of the light to be added to the base
+  double needed = 0;                    // fours that bring the noise of the neighborhood to the tolerance
+  std::uint32_t sampled = kNotSampled;  // its number among the SampledPoints
+  bool certain = false;
+  bool all_shares = false;      // Its first samples differ too much for any share to stop.
+  bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
+  std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
+  unsigned step = 1;            // from one sample of the pixel that rays look at to the next
+  bool looked = false;          // what is seen and known without samples is known
+};
+
 // A point that gets samples; most points of a large picture get none.
 struct SampledPoint {
   Gathered sums;

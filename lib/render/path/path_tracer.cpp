@@ -22,7 +22,12 @@ namespace {
 // and the last, and at so many where these two differ by more than this part of the tolerance without paths.
 constexpr unsigned kOfOnePiece = 4;
 constexpr double kAlike = 0.2;
+// Where the mesh takes more than this part of the light that a point shows without it, the sum of all that is left has
+// less noise than what is taken, and none of the error of maps.
+constexpr double kMostlyHidden = 0.5;
 constexpr std::size_t kMostOfPixel = 16;  // samples
+// Points at which the shares of the first round are compared.
+constexpr std::size_t kCompared = 4096;
 
 class Picture {
  public:
@@ -78,11 +83,12 @@ class Picture {
     const double count = std::max<double>(1, static_cast<double>(points_.size()));
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const PathPoint& point = points_[i];
-      picture.noise_mean_de00 += point.noise_de00 / count, picture.samples_mean += point.samples / count;
+      picture.noise_mean_de00 += point.noise_de00;
+      picture.samples_mean += point.samples;
       picture.free_share += states_[i].certain && point.samples == 0 ? 1 : 0;
       picture.dark = picture.dark && point.radiance == color::Rgb{};
     }
-    picture.free_share /= count;
+    picture.noise_mean_de00 /= count, picture.samples_mean /= count, picture.free_share /= count;
     picture.points = std::move(points_), picture.time_s = clock_.elapsed_s();
     return picture;
   }
@@ -133,11 +139,11 @@ class Picture {
     std::vector<int> more(points_.size(), 0);
     each_point([&](std::size_t i) { states_[i].hidden = !states_[i].certain && is_hidden(i); });
     each_point([&](std::size_t i) {
-      State& state = states_[i];
+      PointState& state = states_[i];
       if (!state.hidden) return;
       state.looked = false;
       if (request_.reconstruct) shown_[i] = kNotShown;
-      if (state.sampled == kNotSampled) return;
+      if (state.sampled == PointState::kNotSampled) return;
       sampled_[state.sampled] = {}, more[i] = kFirstFours;
     });
     sample(more, true);
@@ -147,13 +153,14 @@ class Picture {
   void mend_spikes(const std::vector<int>& drawn) {
     std::vector<double> squares(points_.size(), 0);
     each_point([&](std::size_t i) { squares[i] = std::pow(own_noise(i), 2); });
+    const double least = std::pow(kBlotch * tolerance(), 2);
     std::vector<int> more(points_.size(), 0);
     each_point([&](std::size_t i) {
       const int fours = sums(i).fours();
-      if (drawn[i] > 0 && squares[i] > std::pow(kBlotch * tolerance(), 2) && is_rare(by_pixel_, points_[i], squares, i))
-        more[i] = std::min(static_cast<int>(kMostOfSpeck) * fours, request_.most_samples / kOfFour - fours);
+      if (drawn[i] > 0 && squares[i] > least && is_rare(by_pixel_, points_[i].x, points_[i].y, squares, squares[i]))
+        more[i] = std::clamp(request_.most_samples / kOfFour - fours, 0, static_cast<int>(kMostOfSpeck) * fours);
     });
-    sample(more, false);
+    if (cut_specks(more) && cut(pace_.left(judging_s_), more)) sample(more, false);
   }
 
   // Points that were left out and of which no neighbor tells get samples, which they show as they are.
@@ -192,25 +199,13 @@ class Picture {
   }
 
   inline static const ShownPoint kNotShown{0, 0, {-1, {}, {}}};
-  static constexpr std::uint32_t kNotSampled = ~0U;
-  struct State {
-    color::Rgb deterministic;  // what is known without samples of the light to be added to the base
-    double needed = 0;         // fours that bring the noise of the neighborhood to the tolerance
-    std::uint32_t sampled = kNotSampled;
-    bool certain = false;
-    bool all_shares = false;      // Its first samples differ too much for any share to stop.
-    bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
-    std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
-    unsigned step = 1;            // from one sample of the pixel that rays look at to the next
-    bool looked = false;          // what is seen and known without samples is known
-  };
 
   const Gathered& sums(std::size_t i) const {
     static const Gathered none;
-    return states_[i].sampled == kNotSampled ? none : sampled_[states_[i].sampled].sums;
+    return states_[i].sampled == PointState::kNotSampled ? none : sampled_[states_[i].sampled].sums;
   }
   Halves kept(std::size_t i) const {
-    return states_[i].sampled == kNotSampled ? Halves{} : sampled_[states_[i].sampled].kept;
+    return states_[i].sampled == PointState::kNotSampled ? Halves{} : sampled_[states_[i].sampled].kept;
   }
 
   bool is_corrected() const { return base_ != nullptr && request_.options.correction; }
@@ -226,7 +221,7 @@ class Picture {
     std::uint32_t count = static_cast<std::uint32_t>(sampled_.size());
     for (std::size_t i = 0; i < more.size(); ++i) {
       if (more[i] > 0 || !states_[i].looked) wanted.push_back(static_cast<std::uint32_t>(i));
-      if (more[i] > 0 && states_[i].sampled == kNotSampled) states_[i].sampled = count++;
+      if (more[i] > 0 && states_[i].sampled == PointState::kNotSampled) states_[i].sampled = count++;
     }
     sampled_.resize(count);
     if (first_round_ && (is_corrected() || request_.stop_de00 > 0)) first_.resize(count);
@@ -257,7 +252,7 @@ class Picture {
   // The shares of a point in the first round, with the light that is known without samples.
   LightShares first_shares(std::size_t i) const {
     LightShares shares;
-    if (const std::uint32_t n = states_[i].sampled; n != kNotSampled)
+    if (const std::uint32_t n = states_[i].sampled; n != PointState::kNotSampled)
       shares = 0.5 * first_[n][0], shares += 0.5 * first_[n][1];
     shares.direct += states_[i].deterministic;
     return shares;
@@ -297,7 +292,7 @@ class Picture {
     if (!options_.into_lobes && !options_.into_diffuse) options_.bounces = 0;
     const Round round(kFirstFours);
     each_point([&](std::size_t i) {
-      State& state = states_[i];
+      PointState& state = states_[i];
       if (sums(i).fours() == 0) return;
       color::Rgb drawn[Round::kSequences];
       Halves kept;
@@ -347,7 +342,7 @@ class Picture {
   // The fans take the uncertain samples of the pixel in turn from one drawn by chance: the mean over all fans has the
   // right expectation, and the differences between samples count as noise while not all have been seen.
   void sample(std::size_t i, int fours) {
-    State& state = states_[i];
+    PointState& state = states_[i];
     const Round round(fours);
     std::array<std::optional<Look>, kMostOfPixel> looks;
     const auto look = [&](std::size_t sample) -> const Look& {
@@ -471,7 +466,7 @@ class Picture {
 
   void judge(std::size_t i) {
     PathPoint& point = points_[i];
-    State& state = states_[i];
+    PointState& state = states_[i];
     point.covariance = {};
     point.noise_de00 = state.needed = 0;
     const int fours = sums(i).fours();
@@ -535,9 +530,14 @@ class Picture {
         limits, [&](std::size_t i) { return states_[i].needed; }, [&](std::size_t i) { return counted(i); }, more);
   }
 
+  // No more fours for specks than their part of all; whether any.
+  bool cut_specks(std::vector<int>& more) const {
+    return std::ranges::any_of(more, [](int fours) { return fours > 0; }) &&
+           cut(kSpecksShare * std::max(drawn(), static_cast<double>(points_.size())), more);
+  }
+
   // A picture that is within its tolerance at 95 of 100 points may have specks at the others, most of them at edges,
-  // which no neighbor tells. They get more in one round, which takes no more than a part of all samples for them.
-  // Returns true if there are any.
+  // which no neighbor tells. They get more in one round. Returns true if there are any.
   bool add_worst(std::vector<int>& more) const {
     if (!request_.reconstruct) return false;
     const double limit = request_.most_samples / kOfFour;
@@ -546,8 +546,7 @@ class Picture {
       const double n = counted(i), wanted = std::min(states_[i].needed / (kSpeck * kSpeck), limit) - n;
       worst[i] = static_cast<int>(std::clamp(wanted, 0.0, kMostOfSpeck * n));
     }
-    const bool any = std::ranges::any_of(worst, [](int fours) { return fours > 0; });
-    if (!any || !cut(kSpecksShare * std::max(drawn(), static_cast<double>(points_.size())), worst)) return false;
+    if (!cut_specks(worst)) return false;
     std::ranges::transform(more, worst, more.begin(), [](int a, int b) { return std::max(a, b); });
     return true;
   }
@@ -580,7 +579,7 @@ class Picture {
   PixelFlags even_, flat_;  // empty but where surfaces of all samples are given
   PixelPoints by_pixel_;
   std::vector<PathPoint> points_;
-  std::vector<State> states_;
+  std::vector<PointState> states_;
   std::vector<SampledPoint> sampled_;
   unsigned drawn_ = kAllShares;  // the shares that are drawn on
   FoundShares found_;

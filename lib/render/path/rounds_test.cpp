@@ -91,20 +91,17 @@ TEST(PixelPoints, VisitsTheNeighborhoodOfAPixel) {
 // One bright sample among 24 quiet points is rare; as one of many it is not, nor is a point alone among those without
 // samples.
 TEST(PixelPoints, RareErrorsStandAlone) {
-  struct Pixel {
-    int x, y;
-  };
   PixelPoints points(5, 5);
   for (int i = 0; i < 25; ++i) points.add(i % 5, i / 5);
   std::vector<double> squares(25, 1.0);
   squares[12] = 100;
-  EXPECT_TRUE(is_rare(points, Pixel{2, 2}, squares, 12));
-  EXPECT_FALSE(is_rare(points, Pixel{1, 1}, squares, 6));
+  EXPECT_TRUE(is_rare(points, 2, 2, squares, squares[12]));
+  EXPECT_FALSE(is_rare(points, 1, 1, squares, squares[6]));
   std::ranges::fill(squares, 100);
-  EXPECT_FALSE(is_rare(points, Pixel{2, 2}, squares, 12)) << "control: all err so much";
+  EXPECT_FALSE(is_rare(points, 2, 2, squares, 100)) << "control: all err so much";
   std::ranges::fill(squares, 0);
   squares[12] = 100;
-  EXPECT_FALSE(is_rare(points, Pixel{2, 2}, squares, 12)) << "control: nothing is known about it";
+  EXPECT_FALSE(is_rare(points, 2, 2, squares, 100)) << "control: nothing is known about it";
 }
 
 }  // namespace
