@@ -17,7 +17,7 @@ namespace {
 using rays::Float3;
 using rays::Hit;
 
-constexpr float kLightChance = 0.5F;  // that a direction is drawn from the environment, where there is one
+constexpr float kLightChance = 0.3F;  // that a direction is drawn from the environment, where there is one
 constexpr int kMirrorShare = 8;       // one mirror sample to so many directions, where the mirror sees a surface
 
 double brightness(const color::Rgb& c) {
@@ -252,17 +252,10 @@ PointTransport LobePoint::as_floor() const {
 
 // All that a floor shows is light of its one column.
 LobeEstimate LobePoint::known_floor(std::span<const LobePoint> points) {
-  const LobePoint& any = points.front();
-  LobeEstimate result = any.no_light();
-  LightShares shown;
-  for (const LobePoint& point : points) {
-    if (any.transport_.shaded_ != nullptr) {
-      shown += any.transport_.shaded_ground(point.spot_);
-    } else {
-      shown.direct += point.as_floor().deterministic();
-    }
-  }
-  add_floor_light((1.0 / static_cast<double>(points.size())) * shown, result);
+  LobeEstimate result = points.front().no_light();
+  for (const LobePoint& point : points)
+    result.direct[LobeColumns::diffuse()] +=
+        (1.0 / static_cast<double>(points.size())) * point.as_floor().deterministic();
   return result;
 }
 
@@ -299,8 +292,7 @@ LobeEstimate LobePoint::known(std::span<const LobePoint> points, const color::Rg
 bool LobePoint::is_known(std::span<const LobePoint> points, bool with_open_light) {
   const Transport& transport = points.front().transport_;
   if (points.front().on_projected_)
-    return transport.shaded_ != nullptr ||
-           std::ranges::all_of(points, [](const LobePoint& point) { return point.as_floor().certain(); });
+    return std::ranges::all_of(points, [](const LobePoint& point) { return point.as_floor().certain(); });
   return (with_open_light || transport.environment_ == nullptr) && std::ranges::all_of(points, &LobePoint::open);
 }
 

@@ -48,7 +48,7 @@ class LobePoint : PointSampler {
   // Bounced light by every pair of columns: what column k of weight 1 gathers of the light that column l of weight 1
   // sends there from a surface of a group. The direct light of that surface, from lights, environment and emitters, is
   // kept apart from the light that came to it through further surfaces in the paints that they wear. Sums in any
-  // product of colors are products with l's weight first and k's after it. Sampled without regard to any weight.
+  // product of colors are products with l's weight first and k's after it.
   struct Pairs {
     std::size_t columns = 0;
     std::vector<color::Rgb> once, deeper;  // (group, k, l)
@@ -65,8 +65,9 @@ class LobePoint : PointSampler {
   // The mean light of at most kMostPoints points of one part, and at least one, is that which needs no samples and that
   // which samples tell.
   //
-  // Without samples: lamps, and what the mirror sees. `open_mirrors` has what the mirror of each point sees of the
-  // environment without any surface in the way; null: rays tell it. `paint` has a weight for each column, or is null.
+  // Without samples: lamps, what the mirror sees, and lamps on a floor that no grid shades. `open_mirrors` has what the
+  // mirror of each point sees of the environment without any surface in the way; null: rays tell it. `paint` has a
+  // weight for each column, or is null.
   static LobeEstimate known(std::span<const LobePoint> points, const color::Rgb* open_mirrors, const color::Rgb* paint);
   // True if samples tell nothing more than this and the open light.
   static bool is_known(std::span<const LobePoint> points, bool with_open_light);

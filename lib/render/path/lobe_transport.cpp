@@ -105,19 +105,16 @@ class Tracing {
   void look() {
     const std::size_t points = batches_.size();
     draw_round(all_points(), nullptr, [&](std::size_t i) { look(i); });
-    int top = 0, left = 0;
-    for (std::size_t i = 0; i < points; ++i) {
-      if (exact_[i] != 0 && is_projected(i)) continue;
-      const auto [x, y] = pixel(i);
-      if (kept_.empty()) top = y, left = x;
-      left = std::min(left, x);
-      kept_.push_back(static_cast<std::uint32_t>(i));
-    }
-    for (const std::uint32_t i : kept_) {
+    for (std::size_t i = 0; i < points; ++i)
+      if (exact_[i] == 0 || !is_projected(i)) kept_.push_back(static_cast<std::uint32_t>(i));
+    int left = surface_.width;
+    for (const std::uint32_t i : kept_) left = std::min(left, pixel(i)[0]);
+    shown_.resize(kept_.size());
+    each_kept([&](std::size_t n, std::size_t i) {
       const auto [x, y] = pixel(i);
       const rays::Spot spot = spot_at(transport_.rays(), surface_, x, y);
-      shown_.push_back({x - left, y - top, {spot.part, spot.shading, spot.position}});
-    }
+      shown_[n] = {x - left, y - pixel(kept_.front())[1], {spot.part, spot.shading, spot.position}};
+    });
   }
   std::vector<std::uint32_t> all_points() const {
     std::vector<std::uint32_t> all(batches_.size());
@@ -170,20 +167,23 @@ class Tracing {
   };
   Seen seen_at(std::size_t i) const {
     const LobeTransport& t = result_.transport;
-    const std::size_t place = 4 * static_cast<std::size_t>(t.places[i]) + 3;
-    std::vector<const Gbuffer*> shown;
-    for (const Gbuffer& sample : samples_)
-      if (sample.data[place] == surface_.data[place]) shown.push_back(&sample);
-    if (shown.empty()) shown.push_back(&surface_);
     const auto [x, y] = pixel(i);
     Seen seen;
-    for (const Gbuffer* sample : shown) {
-      const rays::Spot spot = spot_at(transport_.rays(), *sample, x, y);
+    for (const Gbuffer* sample : samples_of(i)) {
       const Vec3 to_viewer = sample->to_viewer(x, y);
+      const rays::Spot spot = spot_at(transport_.rays(), *sample, x, y);
       seen.views.push_back({rays::vec3(spot.shading), to_viewer});
       seen.points.emplace_back(transport_, t.columns, t.worn.groups, request_.bounces, spot, rays::float3(to_viewer));
     }
     return seen;
+  }
+  std::vector<const Gbuffer*> samples_of(std::size_t i) const {
+    const std::size_t place = 4 * static_cast<std::size_t>(result_.transport.places[i]) + 3;
+    std::vector<const Gbuffer*> shown;
+    for (const Gbuffer& sample : samples_)
+      if (sample.data[place] == surface_.data[place]) shown.push_back(&sample);
+    if (shown.empty()) shown.push_back(&surface_);
+    return shown;
   }
 
   void probe() {
@@ -226,7 +226,19 @@ class Tracing {
     seen.points.front().add_open_floor(open.data());
   }
 
+  // A floor whose ground is shaded shows light that needs no samples.
+  void look_at_floor(std::size_t i) {
+    const std::vector<const Gbuffer*> samples = samples_of(i);
+    const auto [x, y] = pixel(i);
+    LightShares sum;
+    for (const Gbuffer* sample : samples) sum += transport_.shaded_ground(spot_at(transport_.rays(), *sample, x, y));
+    const LightShares light = (1.0 / static_cast<double>(samples.size())) * sum;
+    add_light(i, LobeColumns::diffuse(), light.direct, light.into_lobes + light.into_diffuse);
+    exact_[i] = 1;
+  }
+
   void look(std::size_t i) {
+    if (is_projected(i) && transport_.shaded() != nullptr) return look_at_floor(i);
     LobeTransport& t = result_.transport;
     const Seen seen = seen_at(i);
     std::vector<color::Rgb> open(t.columns.count()), mirrors;

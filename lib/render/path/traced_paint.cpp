@@ -338,11 +338,16 @@ PaintedPoint PaintedPoint::of_basis(std::span<const double> exponents) const {
   basis.coat_index_ = coat_index_, basis.let_out_ = let_out_;
   basis.diffuse_ = {let_out_, let_out_, let_out_}, basis.mirror_ = {chance, chance, chance};
   basis.axes_ = axes_, basis.axes_total_ = axes_.empty() ? 1 : axes_total_;
-  basis.diffuse_chance_ = basis.total_ = chance;
+  const float even = (1 - kOwnShare) * chance,
+              own = total_ > 0 ? kOwnShare * chance * static_cast<float>(exponents.size() + 1) / total_ : 0;
+  basis.diffuse_chance_ = basis.total_ = even + own * diffuse_chance_;
+  int j = 0;
   for (const double exponent : exponents) {
     const auto e = static_cast<float>(exponent);
-    basis.lobes_[basis.count_] = {e, (e + 1) / (2 * kFloatPi), chance, basis.diffuse_, {1, 1, 1}, basis.count_};
-    ++basis.count_, basis.total_ += chance;
+    float both = even;
+    if (j < count_ && lobes_[j].exponent == e) both += own * lobes_[j++].chance;
+    basis.lobes_[basis.count_] = {e, (e + 1) / (2 * kFloatPi), both, basis.diffuse_, {1, 1, 1}, basis.count_};
+    ++basis.count_, basis.total_ += both;
   }
   return basis;
 }

@@ -113,7 +113,9 @@ class PaintedPoint {
   Shares shares(const rays::Float3& to_light) const;
   // Those integrated over a disc, as toward_disc() is; the density is 0.
   Shares disc_shares(const Light& light, bool tabled = true) const;
-  // A point there that has each of these lobes, the cosine and the mirror with weight 1, and draws them evenly.
+  // A point there that has each of these lobes, ascending, the cosine and the mirror with weight 1. It draws kOwnShare
+  // of its directions as the paint does, and the others evenly.
+  static constexpr float kOwnShare = 0.5F;
   PaintedPoint of_basis(std::span<const double> exponents) const;
   // Between which views of the paint the viewer is, and how far from the first to the second.
   struct Between {
