@@ -84,6 +84,9 @@ Result<OpenLight> OpenLight::create(const Scene& scene, const LobeColumns& colum
 
 void OpenLight::sum(const envmap::BlockTree& tree, double tolerance_de00) {
   summed_.emplace(tree, tolerance_de00, columns_);
+  grid_ = ViewGrid::within(2 * tolerance_de00);
+  for (Surface& surface : surfaces_)
+    if (surface.tilts.size() <= 1) surface.missed = std::make_shared<const NodeValues>(grid_, 3 * summed_->count());
 }
 
 std::size_t OpenLight::surface_of(int part) const {
@@ -134,14 +137,36 @@ std::vector<color::Rgb> OpenLight::mean(const std::vector<OpenView>& views, int 
   return mirrors;
 }
 
-void OpenLight::add_sums(const OpenView& view, int part, color::Rgb* light) const {
-  if (!summed_) return;
+void OpenLight::find_missed(const OpenView& view, int part, color::Rgb* light) const {
   const Surface& surface = surfaces_[surface_of(part)];
   std::vector<color::Rgb> seen(columns_.count());
   mean({view}, part, seen.data());
-  std::vector<color::Rgb> summed = seen;
-  summed_->at(view.normal, view.to_viewer, axes(view, surface), surface.coat_index, summed.data());
-  for (std::size_t k = 0; k < columns_.count(); ++k) light[k] += summed[k] - seen[k];
+  std::ranges::copy(seen, light);
+  summed_->at(view.normal, view.to_viewer, axes(view, surface), surface.coat_index, light);
+  for (std::size_t k = 0; k < seen.size(); ++k) light[k] += -1.0 * seen[k];
+}
+
+void OpenLight::add_sums(const OpenView& view, int part, color::Rgb* light) const {
+  if (!summed_) return;
+  std::vector<color::Rgb> missed(columns_.count());
+  const NodeValues* nodes = surfaces_[surface_of(part)].missed.get();
+  if (nodes == nullptr) {
+    find_missed(view, part, missed.data());
+  } else {
+    std::vector<float> sum(3 * summed_->count());
+    nodes->add(
+        grid_.place(view.normal, view.to_viewer),
+        [&](const ViewGrid::Node& node, float* numbers) {
+          const ViewGrid::Facing at = grid_.facing(node);
+          std::vector<color::Rgb> found(columns_.count());
+          find_missed({at.normal, at.to_viewer}, part, found.data());
+          for (std::size_t k = 0; k < sum.size(); ++k)
+            numbers[k] = static_cast<float>(found[k / 3][static_cast<int>(k % 3)]);
+        },
+        sum.data());
+    for (std::size_t k = 0; k < summed_->count(); ++k) missed[k] = vec3(&sum[3 * k]);
+  }
+  for (std::size_t k = 0; k < missed.size(); ++k) light[k] += missed[k];
 }
 
 // Each column in the gray paint that its noise is judged by.

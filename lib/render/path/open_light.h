@@ -13,6 +13,7 @@
 #include "render/gbuffer.h"
 #include "render/path/lobe_columns.h"
 #include "render/path/summed_light.h"
+#include "render/path/view_grid.h"
 #include "render/scene.h"
 
 namespace goniochrome::render {
@@ -37,7 +38,7 @@ class OpenLight {
                                   const OpenEffects& effects = {});
 
   // From now on the diffuse part and the wide lobes are summed over the environment itself, within a color difference
-  // at 95 of 100 points. The tree must outlive it.
+  // at 95 of 100 points: on brushed parts at every point, else at the nodes of a grid. The tree must outlive it.
   void sum(const envmap::BlockTree& tree, double tolerance_de00);
 
   // Writes the light of each column with weight 1 at a point seen from there; both vectors unit, on one side.
@@ -60,10 +61,13 @@ class OpenLight {
   struct Surface {
     double coat_index = paint::kNoCoat;
     paint::Anisotropy brushed;
-    std::vector<brdf::Tilt> tilts;  // as tilts_of() has them
+    std::vector<brdf::Tilt> tilts;             // as tilts_of() has them
+    std::shared_ptr<const NodeValues> missed;  // by the maps, three for each column that is summed; null: no grid
   };
   OpenLight() = default;
   std::size_t surface_of(int part) const;
+  // Writes what the maps miss of the columns that are summed, and 0 for the others.
+  void find_missed(const OpenView& view, int part, color::Rgb* light) const;
   static std::vector<LobeAxis> axes(const OpenView& view, const Surface& surface);
 
   LobeColumns columns_;
@@ -71,6 +75,7 @@ class OpenLight {
   std::vector<std::size_t> of_parts_;  // the surface of each
   std::shared_ptr<CpuEngine> engine_;  // its parts: for each surface one for each column
   std::optional<SummedLight> summed_;
+  ViewGrid grid_{1, 1};
 };
 
 // How far both are apart at these points: the 95th percentile of the largest color difference over the columns, in the

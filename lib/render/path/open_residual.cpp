@@ -15,19 +15,10 @@ namespace goniochrome::render {
 
 namespace {
 
-// Between nodes the residual is off by the square of their distance: so many cells at a tolerance of kUsual, by the
-// figures of goniochrome-rendering(7), "Sums".
-constexpr double kUsual_de00 = 0.5;
-constexpr int kViews = 13, kNormals = 23;
 // The part of the tolerance that the blocks of a sum take.
 constexpr double kOfSums = 0.2;
 // Beyond so many sums those of other views are forgotten, and beyond so many surfaces those of other paints.
 constexpr std::size_t kMostSums = std::size_t{1} << 19, kMostSurfaces = 64;
-
-int finer(int cells, double tolerance_de00) {
-  const double scale = std::clamp(std::sqrt(kUsual_de00 / tolerance_de00), 0.5, 1.5);
-  return static_cast<int>(std::lround(cells * scale));
-}
 
 bool is_narrow(const paint::Lobe& lobe) {
   return !(lobe.exponent <= kWidestShared);
@@ -56,19 +47,7 @@ paint::LobeFit summed(const Scene& scene, const Effects& effects, std::size_t pa
   return paint;
 }
 
-template <class Value>
-void keep_once(std::vector<Value>& values) {
-  std::ranges::sort(values);
-  values.erase(std::ranges::unique(values).begin(), values.end());
-}
-
 }  // namespace
-
-std::int32_t& OpenResidual::Surface::slot_to_fill(const ViewGrid::Node& node, std::size_t normals) {
-  auto& of_view = slots[node.view];
-  if (of_view == nullptr) of_view = std::make_unique<std::vector<std::int32_t>>(normals, kNone);
-  return (*of_view)[node.normal];
-}
 
 const OpenResidual::Wear* OpenResidual::wear_of(int part) const {
   const std::int32_t wear = part < 0 ? kNone : wear_of_part_[static_cast<std::size_t>(part)];
@@ -78,7 +57,7 @@ const OpenResidual::Wear* OpenResidual::wear_of(int part) const {
 std::size_t OpenResidual::surface_of(double coat_index) {
   const auto found = std::ranges::find(surfaces_, coat_index, &Surface::coat_index);
   if (found != surfaces_.end()) return static_cast<std::size_t>(found - surfaces_.begin());
-  surfaces_.emplace_back(coat_index).slots.resize(grid_.view_count());
+  surfaces_.push_back({coat_index, std::make_unique<NodeValues>(grid_, floats())});
   return surfaces_.size() - 1;
 }
 
@@ -88,7 +67,7 @@ Result<void> OpenResidual::load(const Scene& scene, const Effects& effects) {
     if (lobe.exponent <= kWidestShared) columns.exponents.push_back(lobe.exponent);
   if (effects.tolerance_de00 != tolerance_de00_ || columns != columns_) {
     tolerance_de00_ = effects.tolerance_de00, columns_ = columns;
-    grid_ = ViewGrid(finer(kViews, tolerance_de00_), finer(kNormals, tolerance_de00_));
+    grid_ = ViewGrid::within(tolerance_de00_);
     light_ = std::make_unique<SummedLight>(*tree_, kOfSums * tolerance_de00_, columns_);
     surfaces_.clear();
   }
@@ -125,93 +104,29 @@ Result<void> OpenResidual::set_paints(const Scene& scene) {
     wear_of_part_.back() = static_cast<std::int32_t>(same - wears_.begin());
     if (same != wears_.end()) continue;
     GONIO_ASSIGN(TransportPaint weights, transport_paint(columns_, paint, gloss_deg_of(scene, part)));
-    wears_.push_back({surface_of(paint.coat_index), static_cast<int>(part), std::move(weights), {}});
+    wears_.push_back({surface_of(paint.coat_index), static_cast<int>(part), std::move(weights),
+                      std::make_unique<NodeValues>(grid_, 3)});
   }
   return {};
 }
 
 std::size_t OpenResidual::count() const {
   std::size_t count = 0;
-  for (const Surface& surface : surfaces_) count += surface.nodes.size();
+  for (const Surface& surface : surfaces_) count += surface.sums->found();
   return count;
 }
 
-// Each cell that a pixel lies in, once, in ascending order.
-std::vector<OpenResidual::Cell> OpenResidual::cells_of(const Gbuffer& seen) const {
-  std::vector<std::vector<Cell>> rows(static_cast<std::size_t>(seen.height));
-  parallel_each(rows.size(), 8, [&](std::size_t row) {
-    std::vector<Cell>& cells = rows[row];
-    const int y = static_cast<int>(row);
-    for (int x = 0; x < seen.width; ++x) {
-      const Wear* wear = wear_of(seen.part(x, y));
-      if (wear == nullptr) continue;
-      const Cell cell{static_cast<std::int32_t>(wear->surface),
-                      grid_.place(seen.normal(x, y), seen.to_viewer(x, y)).node};
-      if (cells.empty() || cells.back() != cell) cells.push_back(cell);
-    }
-    keep_once(cells);
-  });
-  std::vector<Cell> all;
-  for (const std::vector<Cell>& cells : rows) all.insert(all.end(), cells.begin(), cells.end());
-  keep_once(all);
-  return all;
+void OpenResidual::forget() {
+  if (count() <= kMostSums) return;
+  for (Surface& surface : surfaces_) surface.sums = std::make_unique<NodeValues>(grid_, floats());
+  for (Wear& wear : wears_) wear.residual = std::make_unique<NodeValues>(grid_, 3);
 }
 
-void OpenResidual::fill(const std::vector<Cell>& cells) {
-  if (count() > kMostSums) {
-    for (Surface& surface : surfaces_) {
-      surface = Surface(surface.coat_index);
-      surface.slots.resize(grid_.view_count());
-    }
-    for (Wear& wear : wears_) wear.residual.clear();
-  }
-  for (const Cell& cell : cells) {
-    Surface& surface = surfaces_[static_cast<std::size_t>(cell.surface)];
-    for (const ViewGrid::Node& node : grid_.corners(cell.node)) {
-      std::int32_t& slot = surface.slot_to_fill(node, grid_.normal_count());
-      if (slot != kNone) continue;
-      slot = static_cast<std::int32_t>(surface.nodes.size());
-      surface.nodes.push_back(node);
-    }
-  }
-  for (Surface& surface : surfaces_) sum(surface);
-  complete();
-}
-
-void OpenResidual::sum(Surface& surface) const {
-  const std::size_t first = surface.sums.size() / floats();
-  surface.sums.resize(surface.nodes.size() * floats());
-  parallel_each(surface.nodes.size() - first, 16, [&](std::size_t i) {
-    const std::size_t slot = first + i;
-    const auto [normal, to_viewer] = grid_.facing(surface.nodes[slot]);
-    const LobeAxis mirrored{2 * dot(normal, to_viewer) * normal - to_viewer, 1};
-    std::vector<color::Rgb> light(columns_.count());
-    light_->at(normal, to_viewer, {mirrored}, surface.coat_index, light.data());
-    float* to = &surface.sums[slot * floats()];
-    for (std::size_t k = 0; k < floats(); ++k) to[k] = static_cast<float>(light[k / 3][static_cast<int>(k % 3)]);
-  });
-}
-
-void OpenResidual::complete() {
-  std::vector<VisiblePoint> points;
-  for (const Wear& wear : wears_) {
-    const Surface& surface = surfaces_[wear.surface];
-    for (std::size_t slot = wear.residual.size() / 3; slot < surface.nodes.size(); ++slot) {
-      const auto [normal, to_viewer] = grid_.facing(surface.nodes[slot]);
-      points.push_back({.normal = normal, .to_viewer = to_viewer, .part = wear.part});
-    }
-  }
-  if (points.empty()) return;
-  const std::vector<color::Rgb> by_maps = engine_.colors(points);
-  std::size_t point = 0;
-  for (Wear& wear : wears_) {
-    const Surface& surface = surfaces_[wear.surface];
-    for (std::size_t slot = wear.residual.size() / 3; slot < surface.nodes.size(); ++slot, ++point) {
-      const double cos_o = dot(points[point].normal, points[point].to_viewer);
-      const color::Rgb residual = shown(wear.paint, &surface.sums[slot * floats()], cos_o) - by_maps[point];
-      for (int c = 0; c < 3; ++c) wear.residual.push_back(static_cast<float>(residual[c]));
-    }
-  }
+void OpenResidual::sum(const Surface& surface, const ViewGrid::Facing& at, float* sums) const {
+  const LobeAxis mirrored{2 * dot(at.normal, at.to_viewer) * at.normal - at.to_viewer, 1};
+  std::vector<color::Rgb> light(columns_.count());
+  light_->at(at.normal, at.to_viewer, {mirrored}, surface.coat_index, light.data());
+  for (std::size_t k = 0; k < floats(); ++k) sums[k] = static_cast<float>(light[k / 3][static_cast<int>(k % 3)]);
 }
 
 // The light of sums, in the weights that the paint has at this view.
@@ -231,38 +146,41 @@ color::Rgb OpenResidual::shown(const TransportPaint& paint, const float* sums, d
   return radiance;
 }
 
-color::Rgb OpenResidual::told(const Wear& wear, const ViewGrid::Place& place) const {
+color::Rgb OpenResidual::told(const Wear& wear, const Vec3& normal, const Vec3& to_viewer) const {
   const Surface& surface = surfaces_[wear.surface];
-  const std::array<ViewGrid::Node, ViewGrid::kCorners> corners = grid_.corners(place.node);
-  const std::array<float, ViewGrid::kCorners> weights = ViewGrid::weights(place);
-  color::Rgb told;
-  for (std::size_t c = 0; c < corners.size(); ++c)
-    told +=
-        static_cast<double>(weights[c]) * vec3(&wear.residual[3 * static_cast<std::size_t>(surface.slot(corners[c]))]);
-  return told;
+  const ViewGrid::Place place = grid_.place(normal, to_viewer);
+  float residual[3] = {};
+  wear.residual->add(
+      place,
+      [&](const ViewGrid::Node& node, float* numbers) {
+        const ViewGrid::Facing at = grid_.facing(node);
+        const float* sums = surface.sums->at(node, [&](const ViewGrid::Node&, float* of) { sum(surface, at, of); });
+        const color::Rgb missed =
+            shown(wear.paint, sums, dot(at.normal, at.to_viewer)) -
+            engine_.colors({{.normal = at.normal, .to_viewer = at.to_viewer, .part = wear.part}})[0];
+        for (int c = 0; c < 3; ++c) numbers[c] = static_cast<float>(missed[c]);
+      },
+      residual);
+  return vec3(residual);
 }
 
 void OpenResidual::add(const Gbuffer& seen, float gain, image::Image& picture) {
-  fill(cells_of(seen));
+  forget();
   for_pixels(seen.width, seen.height, [&](int x, int y) {
     const Wear* wear = wear_of(seen.part(x, y));
     if (wear == nullptr) return;
-    const color::Rgb more = told(*wear, grid_.place(seen.normal(x, y), seen.to_viewer(x, y)));
+    const color::Rgb more = told(*wear, seen.normal(x, y), seen.to_viewer(x, y));
     for (int c = 0; c < 3; ++c) picture.pixel(x, y)[c] += gain * static_cast<float>(more[c]);
   });
 }
 
 std::vector<color::Rgb> OpenResidual::at(const std::vector<VisiblePoint>& points) {
-  std::vector<Cell> cells;
-  for (const VisiblePoint& point : points)
-    if (const Wear* wear = wear_of(point.part); wear != nullptr)
-      cells.push_back({static_cast<std::int32_t>(wear->surface), grid_.place(point.normal, point.to_viewer).node});
-  keep_once(cells);
-  fill(cells);
+  forget();
   std::vector<color::Rgb> residual(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
+  parallel_each(points.size(), 16, [&](std::size_t i) {
     if (const Wear* wear = wear_of(points[i].part); wear != nullptr)
-      residual[i] = told(*wear, grid_.place(points[i].normal, points[i].to_viewer));
+      residual[i] = told(*wear, points[i].normal, points[i].to_viewer);
+  });
   return residual;
 }
 

@@ -40,31 +40,17 @@ class OpenResidual {
 
  private:
   static constexpr std::int32_t kNone = -1;
-  // Sums are the same for all paints under such a coat.
+  // Sums are the same for all paints under such a coat: three for each column.
   struct Surface {
-    explicit Surface(double index) : coat_index(index) {}
-
     double coat_index;
-    std::vector<std::unique_ptr<std::vector<std::int32_t>>> slots;  // of a view's normals; null: none yet
-    std::vector<ViewGrid::Node> nodes;                              // of each slot
-    std::vector<float> sums;                                        // of each slot, three for each column
-
-    std::int32_t slot(const ViewGrid::Node& node) const {
-      return slots[node.view] != nullptr ? (*slots[node.view])[node.normal] : kNone;
-    }
-    std::int32_t& slot_to_fill(const ViewGrid::Node& node, std::size_t normals);
+    std::unique_ptr<NodeValues> sums;
   };
   // The paints of several parts.
   struct Wear {
     std::size_t surface = 0;
     int part = 0;  // one of them
     TransportPaint paint;
-    std::vector<float> residual;  // three for each of the first slots of the surface
-  };
-  struct Cell {
-    std::int32_t surface = 0;
-    ViewGrid::Node node;
-    auto operator<=>(const Cell&) const = default;
+    std::unique_ptr<NodeValues> residual;
   };
 
   Result<void> set_paints(const Scene& scene);
@@ -72,13 +58,11 @@ class OpenResidual {
   // Null where nothing is corrected.
   const Wear* wear_of(int part) const;
   std::size_t floats() const { return 3 * (1 + 2 * columns_.exponents.size()); }
-  std::vector<Cell> cells_of(const Gbuffer& seen) const;
-  // Makes sums and residuals at the corners of these cells.
-  void fill(const std::vector<Cell>& cells);
-  void sum(Surface& surface) const;
-  void complete();
+  // Forgets what was found if it is too much.
+  void forget();
+  void sum(const Surface& surface, const ViewGrid::Facing& at, float* sums) const;
   color::Rgb shown(const TransportPaint& paint, const float* sums, double cos_o) const;
-  color::Rgb told(const Wear& wear, const ViewGrid::Place& place) const;
+  color::Rgb told(const Wear& wear, const Vec3& normal, const Vec3& to_viewer) const;
 
   const envmap::BlockTree* tree_;
   double tolerance_de00_ = 0;

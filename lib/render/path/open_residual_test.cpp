@@ -13,6 +13,7 @@
 #include "render/exact.h"
 #include "render/integral/integral_engine.h"
 #include "render/internal/seen.h"
+#include "render/path/open_light.h"
 #include "render/path/scenes_for_paths_for_test.h"
 #include "render/plan.h"
 #include "render/planning.h"
@@ -146,6 +147,36 @@ TEST(OpenResidual, TellsSurfacesOfEveryKind) {
 }
 
 // Their tilted normals are dear to sum. The control: the same paint that is not brushed.
+// The light of columns, against sums at the points themselves. The control: maps alone.
+TEST(OpenLight, IsSummedWithinTheToleranceBetweenNodes) {
+  const World world(flakes());
+  LobeColumns columns;
+  columns.exponents = kExponents;
+  const OpenLight maps = *OpenLight::create(world.scene, columns, {}, {.mirror = false});
+  OpenLight summed = maps;
+  summed.sum(world.tree, 0.25);
+  const SummedLight exact(world.tree, 0.02, columns);
+  const double white = diffuse_white(&world.sky.maps, {}).luminance;
+  std::vector<double> by_maps, by_nodes;
+  for (const VisiblePoint& point : probe_points(probe_pixels({world.seen()}, 200), {}, 1)) {
+    const Vec3 mirrored = 2 * dot(point.normal, point.to_viewer) * point.normal - point.to_viewer;
+    std::vector<color::Rgb> one(columns.count()), other(columns.count()), truth(columns.count());
+    maps.at(point.normal, point.to_viewer, 0, one.data());
+    summed.at(point.normal, point.to_viewer, 0, other.data());
+    exact.at(point.normal, point.to_viewer, {{mirrored, 1}}, paint::kNoCoat, truth.data());
+    for (std::size_t k = 0; k < exact.count(); ++k) {
+      const double weight = nominal_weight(columns, k);
+      by_maps.push_back(seen_difference(weight * one[k], weight * truth[k], white));
+      by_nodes.push_back(seen_difference(weight * other[k], weight * truth[k], white));
+    }
+    EXPECT_EQ(other[columns.flake(4)], one[columns.flake(4)]) << "a sharp lobe is left to its maps";
+  }
+  const double missed = percentile_95(std::move(by_maps)), left = percentile_95(std::move(by_nodes));
+  std::printf("p95 of maps %.2f, between nodes %.2f\n", missed, left);
+  EXPECT_LT(left, 0.5);
+  EXPECT_GT(missed, 1.5);
+}
+
 TEST(OpenResidual, LeavesBrushedPartsAsMapsHaveThem) {
   World world(flakes());
   const std::vector<VisiblePoint> points = probe_points(probe_pixels({world.seen()}, 50), {}, 1);

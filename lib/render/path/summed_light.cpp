@@ -72,7 +72,7 @@ void SummedLight::at(const Vec3& normal, const Vec3& to_viewer, const std::vecto
   for (const LobeAxis& axis : axes) middles.push_back(axis.direction);
   Grain grain(tree_->environment().largest_texel_rad(), spread_);
   grain.add(std::move(middles), {exponents_.rbegin(), exponents_.rend()});
-  std::fill_n(light, 1 + 2 * exponents_.size(), color::Rgb{});
+  std::fill_n(light, count(), color::Rgb{});
   ColumnGatherer gatherer(normal, to_viewer, axes, exponents_, coat_index, std::move(grain), light);
   gather_blocks(*tree_, gatherer);
 }

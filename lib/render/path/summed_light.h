@@ -21,6 +21,8 @@ class SummedLight {
   // By blocks within a color difference at 95 of 100 points. The tree must outlive it.
   SummedLight(const envmap::BlockTree& tree, double tolerance_de00, const LobeColumns& columns);
 
+  // The columns that are summed: the first ones.
+  std::size_t count() const { return 1 + 2 * exponents_.size(); }
   // Writes the light of the diffuse column and of those of the wide lobes, with weight 1, at a point seen from there
   // under a coat of that index.
   void at(const Vec3& normal, const Vec3& to_viewer, const std::vector<LobeAxis>& axes, double coat_index,

@@ -49,7 +49,17 @@ double coordinate_of(std::size_t node, int cells) {
 // Normals at a right angle to the viewer have nothing to show.
 constexpr double kLeastCosine = 1e-3;
 
+// Between nodes light is off by the square of their distance: so many cells at a tolerance of kUsual, by the figures of
+// goniochrome-rendering(7), "Sums".
+constexpr double kUsual_de00 = 0.5;
+constexpr int kViews = 13, kNormals = 23;
+
 }  // namespace
+
+ViewGrid ViewGrid::within(double tolerance_de00) {
+  const double finer = std::clamp(std::sqrt(kUsual_de00 / tolerance_de00), 0.5, 1.5);
+  return {static_cast<int>(std::lround(kViews * finer)), static_cast<int>(std::lround(kNormals * finer))};
+}
 
 // Equal areas of the sphere about the viewer's direction go to a disc, whose radii are then stretched to the square.
 ViewGrid::Place ViewGrid::place(const Vec3& normal, const Vec3& to_viewer) const {
@@ -106,6 +116,16 @@ ViewGrid::Facing ViewGrid::facing(const Node& node) const {
   if (!(radius > 0)) return {to_viewer, to_viewer};
   const double scale = sine / std::sqrt(s * s + t * t);
   return {cosine * to_viewer + scale * s * frame.x + scale * t * frame.y, to_viewer};
+}
+
+NodeValues::NodeValues(const ViewGrid& grid, std::size_t count)
+    : grid_(grid), count_(count), views_(grid.view_count()) {}
+
+NodeValues::~NodeValues() {
+  for (const std::atomic<View*>& view : views_) {
+    const std::unique_ptr<View[]> normals(view.load());
+    for (std::size_t k = 0; normals != nullptr && k < grid_.normal_count(); ++k) delete[] normals[k].load();
+  }
 }
 
 }  // namespace goniochrome::render

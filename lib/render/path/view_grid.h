@@ -3,8 +3,12 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "base/vec3.h"
 
@@ -14,6 +18,8 @@ class ViewGrid {
  public:
   // Cells across a face of the cube of directions, and across the square of the normals that face one of them.
   ViewGrid(int views, int normals) : views_(views), normals_(normals) {}
+  // Light between its nodes is within such a color difference of its sums.
+  static ViewGrid within(double tolerance_de00);
 
   // A node is a direction to the viewer and one of its normals; both are numbered from 0.
   struct Node {
@@ -47,6 +53,56 @@ class ViewGrid {
   static std::size_t nodes(int cells) { return static_cast<std::size_t>(cells) + 1; }
 
   int views_, normals_;
+};
+
+// Numbers at the nodes of a grid, found when they are first asked for. For any number of threads at once.
+class NodeValues {
+ public:
+  // So many numbers at a node.
+  NodeValues(const ViewGrid& grid, std::size_t count);
+  ~NodeValues();
+  NodeValues(const NodeValues&) = delete;
+  NodeValues& operator=(const NodeValues&) = delete;
+
+  // Those of a node; find(node, numbers) writes them, and always the same at one node.
+  template <class Find>
+  const float* at(const ViewGrid::Node& node, const Find& find) const {
+    std::atomic<View*>& view = views_[node.view];
+    if (view.load() == nullptr) keep(view, std::make_unique<View[]>(grid_.normal_count()));
+    View& slot = view.load()[node.normal];
+    if (const float* known = slot.load()) return known;
+    auto numbers = std::make_unique<float[]>(count_);
+    find(node, numbers.get());
+    if (keep(slot, std::move(numbers))) ++found_;
+    return slot.load();
+  }
+  // Adds those between the nodes to `sum`.
+  template <class Find>
+  void add(const ViewGrid::Place& place, const Find& find, float* sum) const {
+    const auto corners = grid_.corners(place.node);
+    const auto weights = ViewGrid::weights(place);
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const float* numbers = at(corners[c], find);
+      for (std::size_t k = 0; k < count_; ++k) sum[k] += weights[c] * numbers[k];
+    }
+  }
+  std::size_t found() const { return found_; }
+
+ private:
+  using View = std::atomic<float*>;
+  // Returns true if no other thread was first.
+  template <class Value>
+  static bool keep(std::atomic<Value*>& slot, std::unique_ptr<Value[]> made) {
+    Value* none = nullptr;
+    if (!slot.compare_exchange_strong(none, made.get())) return false;
+    made.release();
+    return true;
+  }
+
+  ViewGrid grid_;
+  std::size_t count_;
+  mutable std::vector<std::atomic<View*>> views_;  // the nodes of their normals; null: none yet
+  mutable std::atomic<std::size_t> found_ = 0;
 };
 
 }  // namespace goniochrome::render

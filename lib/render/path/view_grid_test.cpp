@@ -6,8 +6,10 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <set>
 
 #include "base/angles.h"
+#include "base/parallel.h"
 #include "base/random_for_test.h"
 
 namespace goniochrome::render::view_grid_test {
@@ -80,6 +82,35 @@ TEST(ViewGrid, ErrsByTheSquareOfItsSpacing) {
   EXPECT_LT(fine, coarse / 2.5);
   EXPECT_LT(fine, 2 * (0.17 + 0.05));
   EXPECT_GT(largest_error({1, 2}), 1);
+}
+
+TEST(NodeValues, AreFoundOnceAndLinearBetweenNodes) {
+  const ViewGrid grid(3, 4);
+  const NodeValues values(grid, 2);
+  const auto find = [&](const ViewGrid::Node& node, float* numbers) {
+    numbers[0] = static_cast<float>(smooth(grid.facing(node))), numbers[1] = 1;
+  };
+  std::mt19937_64 random(3);
+  std::vector<ViewGrid::Place> places;
+  std::set<ViewGrid::Node> nodes;
+  for (int i = 0; i < 500; ++i) {
+    const ViewGrid::Facing at = drawn(random);
+    places.push_back(grid.place(at.normal, at.to_viewer));
+    for (const ViewGrid::Node& corner : grid.corners(places.back().node)) nodes.insert(corner);
+  }
+  set_threads(7);
+  parallel_each(places.size(), 1, [&](std::size_t i) {
+    float sum[2] = {}, direct = 0;
+    values.add(places[i], find, sum);
+    const auto corners = grid.corners(places[i].node);
+    const auto weights = ViewGrid::weights(places[i]);
+    for (std::size_t c = 0; c < corners.size(); ++c)
+      direct += weights[c] * static_cast<float>(smooth(grid.facing(corners[c])));
+    EXPECT_EQ(sum[0], direct);
+    EXPECT_NEAR(sum[1], 1, 1e-6);
+  });
+  set_threads(0);
+  EXPECT_EQ(values.found(), nodes.size());
 }
 
 }  // namespace
