@@ -114,8 +114,8 @@ class PaintedPoint {
   // Those integrated over a disc, as toward_disc() is; the density is 0.
   Shares disc_shares(const Light& light, bool tabled = true) const;
   // A point there that has each of these lobes, ascending, the cosine and the mirror with weight 1. It draws kOwnShare
-  // of its directions as the paint does, and the others evenly: of none, a quarter, half and three quarters half had
-  // the least error in its time, over three scenes, in the paints worn and in others.
+  // of its directions as the paint does, and the others evenly, for other paints. Squared error times time, the mean of
+  // three scenes, was 1.66, 1.38, 1.24 and 1.18 with none, a quarter, half and three quarters.
   static constexpr float kOwnShare = 0.5F;
   PaintedPoint of_basis(std::span<const double> exponents) const;
   // Between which views of the paint the viewer is, and how far from the first to the second.
