@@ -177,6 +177,7 @@ class Tracing {
     }
     return seen;
   }
+  // The samples of its pixel that show the part of a point from its side.
   std::vector<const Gbuffer*> samples_of(std::size_t i) const {
     const std::size_t place = 4 * static_cast<std::size_t>(result_.transport.places[i]) + 3;
     std::vector<const Gbuffer*> shown;

@@ -84,7 +84,7 @@ Result<OpenLight> OpenLight::create(const Scene& scene, const LobeColumns& colum
 
 void OpenLight::sum(const envmap::BlockTree& tree, double tolerance_de00) {
   summed_.emplace(tree, tolerance_de00, columns_);
-  grid_ = ViewGrid::within(2 * tolerance_de00);
+  grid_ = ViewGrid::within(2 * tolerance_de00);  // Between nodes as much may be added as blocks err by.
   for (Surface& surface : surfaces_)
     if (surface.tilts.size() <= 1) surface.missed = std::make_shared<const NodeValues>(grid_, 3 * summed_->count());
 }

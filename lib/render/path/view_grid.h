@@ -18,7 +18,7 @@ class ViewGrid {
  public:
   // Cells across a face of the cube of directions, and across the square of the normals that face one of them.
   ViewGrid(int views, int normals) : views_(views), normals_(normals) {}
-  // Light between its nodes is within such a color difference of its sums.
+  // The coarsest between whose nodes light, taken as linear, is within a color difference of its sums.
   static ViewGrid within(double tolerance_de00);
 
   // A node is a direction to the viewer and one of its normals; both are numbered from 0.
@@ -58,13 +58,13 @@ class ViewGrid {
 // Numbers at the nodes of a grid, found when they are first asked for. For any number of threads at once.
 class NodeValues {
  public:
-  // So many numbers at a node.
+  // `count` numbers at each node.
   NodeValues(const ViewGrid& grid, std::size_t count);
   ~NodeValues();
   NodeValues(const NodeValues&) = delete;
   NodeValues& operator=(const NodeValues&) = delete;
 
-  // Those of a node; find(node, numbers) writes them, and always the same at one node.
+  // The numbers of a node. find(node, numbers) writes them if nobody asked before, or others ask at the same time.
   template <class Find>
   const float* at(const ViewGrid::Node& node, const Find& find) const {
     std::atomic<View*>& view = views_[node.view];
@@ -76,7 +76,7 @@ class NodeValues {
     if (keep(slot, std::move(numbers))) ++found_;
     return slot.load();
   }
-  // Adds those between the nodes to `sum`.
+  // Adds the numbers at a place, which are linear between those of its nodes, to `sum`.
   template <class Find>
   void add(const ViewGrid::Place& place, const Find& find, float* sum) const {
     const auto corners = grid_.corners(place.node);
@@ -86,11 +86,11 @@ class NodeValues {
       for (std::size_t k = 0; k < count_; ++k) sum[k] += weights[c] * numbers[k];
     }
   }
-  std::size_t found() const { return found_; }
+  std::size_t found() const { return found_; }  // nodes by now
 
  private:
   using View = std::atomic<float*>;
-  // Returns true if no other thread was first.
+  // Keeps what was made unless another thread was first. Returns true if it was kept.
   template <class Value>
   static bool keep(std::atomic<Value*>& slot, std::unique_ptr<Value[]> made) {
     Value* none = nullptr;
