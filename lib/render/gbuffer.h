@@ -41,6 +41,9 @@ struct VisiblePoint {
 // The entry of a G-buffer in the place of a triangle's number where the mesh is not seen.
 constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
 
+// One flag for each pixel.
+using PixelFlags = std::vector<std::uint8_t>;
+
 // The visible points of every pixel at one sample; row 0 is at the top.
 struct Gbuffer {
   int width = 0, height = 0;
@@ -48,9 +51,12 @@ struct Gbuffer {
   Rays rays;                // through the points: their shift within the pixel is in the corner
   // A triangle of the mesh, rays::kFloor or kNoTriangle, pixel by pixel. Empty where the buffer comes from a file.
   std::vector<std::uint32_t> triangles = {};
+  // Pixels that are shaded; empty: all. Engines may shade others as well.
+  PixelFlags wanted = {};
 
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }
   const float* at(int x, int y) const { return &data[index(x, y) * 4]; }
+  bool wants(int x, int y) const { return wanted.empty() || wanted[index(x, y)] != 0; }
   // The part seen, or -1.
   int part(int x, int y) const;
   // True if any pixel shows the mesh from inside.
@@ -72,12 +78,20 @@ void for_pixels(int width, int height, const Visit& visit) {
   });
 }
 
-// Calls visit(x, y, part) for each pixel that shows the mesh, row by row.
+// Normals of at least this cosine lie on one piece of surface, and of this one on so flat a piece that it tells the
+// light between.
+constexpr float kSamePiece = 0.96F, kFlatPiece = 0.998F;
+// True if two entries of G-buffers show one part from one side, with normals of at least this cosine.
+inline bool are_one_piece(const float* a, const float* b, float cosine) {
+  return a[3] != 0 && a[3] == b[3] && a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > cosine;
+}
+
+// Calls visit(x, y, part) for each pixel that shows the mesh and is wanted, row by row.
 template <class Visit>
 void for_seen(const Gbuffer& g, const Visit& visit) {
   for (int y = 0; y < g.height; ++y)
     for (int x = 0; x < g.width; ++x)
-      if (const int part = g.part(x, y); part >= 0) visit(x, y, part);
+      if (const int part = g.part(x, y); part >= 0 && g.wants(x, y)) visit(x, y, part);
 }
 
 // A point of a mesh, in the mesh's own coordinates.

@@ -68,7 +68,7 @@ struct Renderer::State : Sight {
   // A sample of the view drawn last, and its places on textures.
   struct Kept {
     int sample = -1;
-    std::shared_ptr<const Gbuffer> gbuffer;
+    std::shared_ptr<Gbuffer> gbuffer;
     std::vector<TexturePlace> places;  // empty: not yet
     SeenPixels seen;
   };
@@ -78,6 +78,7 @@ struct Renderer::State : Sight {
   std::vector<Kept> kept;        // of that band, sample by sample
   std::uint64_t placed_for = 0;  // the layer
   bool placed_footprints = false;
+  PixelFlags edges;       // of that band, where it has samples beside the centers
   double gbuffer_ms = 0;  // of the last one of this view, which a plan may have made
 
   void begin() const {
@@ -90,6 +91,8 @@ struct Renderer::State : Sight {
   void turn_to(const Band& wanted);
   Result<void> draw_band(Frame& frame);
   Result<void> take(int first, int count, image::Image& picture);
+  Result<void> look_closer(image::Image& picture);
+  void surround(int first, int count, image::Image& picture);
   FoundMaps audit(const std::shared_ptr<const Gbuffer>& seen) const;
   Result<void> meet(const Scene& whole_scene);
   Result<void> add_seen_through(int sample, float gain, image::Image& picture);
@@ -111,6 +114,7 @@ struct Renderer::State : Sight {
   std::shared_ptr<const Gbuffer> gbuffer(int sample) override;
   const std::vector<TexturePlace>& places(int sample) override;
   SeenPixels* seen_pixels(int sample) override;
+  void put(int sample, Gbuffer found);
   Kept& keep(int sample);
   // By which the picture is corrected; null where it is not.
   OpenResidual* summed() const {
@@ -185,19 +189,26 @@ void Renderer::State::turn_to(const Band& wanted) {
   band = wanted;
 }
 
-// A sample, kept or found anew.
-Renderer::State::Kept& Renderer::State::keep(int sample) {
+void Renderer::State::put(int sample, Gbuffer found) {
   const auto place = static_cast<std::size_t>(sample);
   if (kept.size() <= place) kept.resize(place + 1);
-  Kept& one = kept[place];
-  if (one.sample == sample) return one;
-  const Stopwatch clock;
-  const auto [x, y] = shift_of(sample, view->samples);
-  one.sample = sample, one.places.clear(), one.seen.forget();
-  one.gbuffer = std::make_shared<const Gbuffer>(
-      mesh_gbuffer(*traced, rays.shifted(x, y + band.first), view->width, band.height()));
-  gbuffer_ms = 1000 * clock.elapsed_s();
-  return one;
+  kept[place] = {sample, std::make_shared<Gbuffer>(std::move(found)), {}, {}};
+}
+
+// A sample, kept or found anew: the centers, or all others together.
+Renderer::State::Kept& Renderer::State::keep(int sample) {
+  const auto place = static_cast<std::size_t>(sample);
+  if (place < kept.size() && kept[place].sample == sample) return kept[place];
+  if (sample == 0) {
+    const Stopwatch clock;
+    put(0, mesh_gbuffer(*traced, rays.shifted(0, band.first), view->width, band.height()));
+    gbuffer_ms = 1000 * clock.elapsed_s();
+  } else {
+    SampledSurface found = sampled_surface(*traced, *gbuffer(0), sample_shifts(view->samples));
+    for (int i = 1; i <= view->samples; ++i) put(i, std::move(found.samples[static_cast<std::size_t>(i - 1)]));
+    edges = std::move(found.edges);
+  }
+  return kept[place];
 }
 
 std::shared_ptr<const Gbuffer> Renderer::State::gbuffer(int sample) {
@@ -224,6 +235,19 @@ SeenPixels* Renderer::State::seen_pixels(int sample) {
   SeenPixels& seen = keep(sample).seen;
   seen.set_most_bytes(kMostSeen / kept.size());
   return &seen;
+}
+
+// Takes all samples of the pixels of which the picture of the centers does not tell the mean.
+Result<void> Renderer::State::look_closer(image::Image& picture) {
+  keep(1);
+  const PixelFlags wanted = wanted_pixels(edges, picture, white_luminance, tolerance_de00);
+  for (int i = 1; i <= view->samples; ++i) keep(i).gbuffer->wanted = wanted;
+  if (band.count > 1) kept.front() = {};
+  image::Image closer;
+  GONIO_TRY(take(1, view->samples, closer));
+  surround(1, view->samples, closer);
+  put_wanted(wanted, closer, picture);
+  return {};
 }
 
 // Makes the picture the mean of `count` samples from `first` on.
@@ -268,6 +292,14 @@ Result<void> Renderer::State::add_seen_through(int sample, float gain, image::Im
   return {};
 }
 
+// Draws the floor of rays and what is behind it.
+void Renderer::State::surround(int first, int count, image::Image& picture) {
+  if (!effects.rays.floor || !transport) return;
+  std::vector<const Gbuffer*> samples;
+  for (int i = first; i < first + count; ++i) samples.push_back(gbuffer(i).get());
+  add_surroundings(*transport, samples, backdrop(), effects.rays, 1.0F / static_cast<float>(count), picture);
+}
+
 // Each sample of a pixel is corrected as the surface that it shows.
 void Renderer::State::correct(int first, int count, image::Image& picture, CorrectionNoise& noise) {
   if (!effects.rays.any() || !transport) return;
@@ -286,8 +318,6 @@ void Renderer::State::correct(int first, int count, image::Image& picture, Corre
   std::vector<std::shared_ptr<const Gbuffer>> seen;
   std::vector<const Gbuffer*> samples;
   for (int i = first; i < first + count; ++i) samples.push_back(seen.emplace_back(gbuffer(i)).get());
-  if (effects.rays.floor)
-    add_surroundings(*transport, samples, backdrop(), effects.rays, 1.0F / static_cast<float>(count), picture);
   noise.add(add_correction(*transport, samples, request, before, picture));
 }
 
@@ -488,17 +518,28 @@ Result<std::shared_ptr<const Gbuffer>> Renderer::look(const mesh::Mesh& mesh, co
 }
 
 Result<void> Renderer::State::draw_band(Frame& frame) {
-  if (view->with_centers || view->samples == 1) {
-    GONIO_TRY(take(0, 1, frame.picture));
-    frame.open_centers = view->with_centers ? frame.picture : image::Image{};
+  image::Image& picture = frame.picture;
+  const int samples = view->samples;
+  const bool by_paths = engine->info().traces_rays;
+  frame.open_centers = frame.centers = {};
+  if (samples == 1 || view->with_centers || !by_paths) {
+    GONIO_TRY(take(0, 1, picture));
+    if (view->with_centers) frame.open_centers = picture;
+    surround(0, 1, picture);
+  }
+  if (samples == 1) {
+    correct(0, 1, picture, frame.rays);
+    if (view->with_centers) frame.centers = picture;
+    return {};
+  }
+  if (view->with_centers) {
+    frame.centers = picture;
     CorrectionNoise of_centers;
-    correct(0, 1, frame.picture, view->samples > 1 ? of_centers : frame.rays);
-    frame.centers = view->with_centers ? frame.picture : image::Image{};
+    correct(0, 1, frame.centers, of_centers);
   }
-  if (view->samples > 1) {
-    GONIO_TRY(take(1, view->samples, frame.picture));
-    correct(1, view->samples, frame.picture, frame.rays);
-  }
+  if (by_paths) return take(1, samples, picture);
+  GONIO_TRY(look_closer(picture));
+  correct(1, samples, picture, frame.rays);
   return {};
 }
 
@@ -524,6 +565,7 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
     Frame part;
     for (const Band& band : bands) {
       s.turn_to(band);
+      s.put(0, rows_of(*frame.gbuffer, band));
       GONIO_TRY(s.draw_band(part));
       put_band(part.picture, band, view.height, frame.picture);
       put_band(part.centers, band, view.height, frame.centers);

@@ -292,6 +292,7 @@ void CpuEngine::shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, f
                           static_cast<float>(background_color_.z), 0};
   const float nothing[4] = {0, 0, 0, 0};
   for (int x = 0; x < gbuffer.width; ++x) {
+    if (!gbuffer.wants(x, y)) continue;
     const float* point = gbuffer.at(x, y);
     if (point[3] == 0 && background_ != Background::kEnvironment) {
       const bool colored = background_ == Background::kColor;

@@ -36,6 +36,16 @@ std::vector<Band> bands_of(const Gbuffer& picture, int samples, bool rayed) {
   return bands;
 }
 
+Gbuffer rows_of(const Gbuffer& picture, const Band& band) {
+  Gbuffer rows;
+  rows.width = picture.width, rows.height = band.height(), rows.rays = picture.rays.shifted(0, band.first);
+  const auto begin = static_cast<std::ptrdiff_t>(picture.index(0, band.first)),
+             end = static_cast<std::ptrdiff_t>(picture.index(0, band.last));
+  rows.data.assign(picture.data.begin() + 4 * begin, picture.data.begin() + 4 * end);
+  rows.triangles.assign(picture.triangles.begin() + begin, picture.triangles.begin() + end);
+  return rows;
+}
+
 void put_band(const image::Image& drawn, const Band& band, int height, image::Image& picture) {
   if (drawn.data.empty()) return;
   const std::size_t row = static_cast<std::size_t>(drawn.width) * static_cast<std::size_t>(drawn.channels);

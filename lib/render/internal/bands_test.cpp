@@ -4,6 +4,9 @@
 
 #include <numeric>
 
+#include "render/path/visible_surface.h"
+#include "render/scenes_for_test.h"
+
 namespace goniochrome::render::bands_test {
 namespace {
 
@@ -44,6 +47,21 @@ TEST(Bands, AreNarrowWhereTheMeshIsSeen) {
   const std::vector<Band> bands = bands_of(gbuffer(3000, 1500, 0, 500), 4, true);
   ASSERT_GT(bands.size(), 2U);
   EXPECT_LT(2 * bands.front().height(), bands.back().height());
+}
+
+TEST(Bands, RowsAreThoseThatRaysFind) {
+  const mesh::Mesh mesh = sphere_mesh(32);
+  const rays::RayScene scene = *rays::RayScene::create(mesh);
+  const Rays view = *rays(Camera::orbit(mesh, 20, 30, 1, 30, 1), 48, 32);
+  const Gbuffer rows = rows_of(mesh_gbuffer(scene, view, 48, 32), {10, 24, 12, 20, 1, 3});
+  const Gbuffer traced = mesh_gbuffer(scene, view.shifted(0, 10), 48, 14);
+  EXPECT_EQ(rows.height, traced.height);
+  EXPECT_EQ(rows.triangles, traced.triangles);
+  ASSERT_EQ(rows.data.size(), traced.data.size());
+  for (std::size_t i = 0; i < rows.data.size(); ++i) EXPECT_NEAR(rows.data[i], traced.data[i], 1e-5);
+  for (const auto& [x, y] : {std::pair{3, 2}, {40, 13}}) {
+    EXPECT_LT(length(rows.to_viewer(x, y) - traced.to_viewer(x, y)), 1e-12);
+  }
 }
 
 TEST(Bands, MakeOnePicture) {

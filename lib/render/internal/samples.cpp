@@ -1,11 +1,32 @@
 #include "render/internal/samples.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/glints.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
+
+namespace {
+
+// The mean of a pixel may be off its center by this part of its light and of white for each dE00 of the tolerance.
+constexpr double kOfLight = 0.0045, kOfWhite = 0.03 * kOfLight;
+
+// True if the picture bends too much about a pixel. A value that bends by two second differences has a mean over the
+// pixel which is a 24th of their sum off its center.
+bool bends(const image::Image& picture, std::size_t at, double of_light, double of_white) {
+  const auto channels = static_cast<std::size_t>(picture.channels),
+             row = channels * static_cast<std::size_t>(picture.width);
+  for (std::size_t c = 0; c < channels; ++c) {
+    const float* value = &picture.data[channels * at + c];
+    const auto second = [&](std::size_t step) { return std::abs(value[step] + *(value - step) - 2 * *value); };
+    if (!(second(channels) + second(row) <= 24 * (of_light * std::abs(*value) + of_white))) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 // Textures dim what lies beneath them in one sample, before it is added to the others.
 Result<void> take_samples(Sight& sight, Engine& engine, const Scene& scene, const Effects& effects, int first,
@@ -29,16 +50,27 @@ Result<void> take_samples(Sight& sight, Engine& engine, const Scene& scene, cons
   return {};
 }
 
-std::array<double, 2> shift_of(int sample, int samples) {
-  if (sample == 0) return {0, 0};
-  return sample_shifts(samples)[static_cast<std::size_t>(sample - 1)];
+PixelFlags wanted_pixels(const PixelFlags& edges, const image::Image& centers, double white_luminance,
+                         double tolerance_de00) {
+  const double of_light = kOfLight * tolerance_de00, of_white = kOfWhite * tolerance_de00 * white_luminance;
+  PixelFlags wanted(edges.size());
+  parallel_each(edges.size(), 4096,
+                [&](std::size_t at) { wanted[at] = edges[at] != 0 || bends(centers, at, of_light, of_white) ? 1 : 0; });
+  return wanted;
+}
+
+void put_wanted(const PixelFlags& wanted, const image::Image& closer, image::Image& picture) {
+  const auto channels = static_cast<std::size_t>(picture.channels);
+  parallel_each(wanted.size(), 4096, [&](std::size_t at) {
+    if (wanted[at] != 0) std::copy_n(&closer.data[channels * at], channels, &picture.data[channels * at]);
+  });
 }
 
 std::array<double, 2> to_middle_of_part(int sample, int samples) {
-  std::array<double, 2> result = shift_of(sample, samples);
+  if (sample == 0) return {0, 0};
+  std::array<double, 2> result = sample_shifts(samples)[static_cast<std::size_t>(sample - 1)];
   const double squares = std::round(std::sqrt(samples));
-  for (double& shift : result)
-    shift = sample == 0 ? 0 : (std::floor((shift + 0.5) * squares) + 0.5) / squares - 0.5 - shift;
+  for (double& shift : result) shift = (std::floor((shift + 0.5) * squares) + 0.5) / squares - 0.5 - shift;
   return result;
 }
 

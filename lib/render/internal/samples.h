@@ -12,10 +12,16 @@ namespace goniochrome::render {
 Result<void> take_samples(Sight& sight, Engine& engine, const Scene& scene, const Effects& effects, int first,
                           int count, image::Image& picture);
 
-// Where a sample of a pixel lies, from the center of the pixel: 0 is the center itself; then come the samples.
-std::array<double, 2> shift_of(int sample, int samples);
+// Pixels of which the center does not tell the mean over the pixel, within a small part of the tolerance: those at
+// edges, and those where the picture of the centers bends too much.
+PixelFlags wanted_pixels(const PixelFlags& edges, const image::Image& centers, double white_luminance,
+                         double tolerance_de00);
 
-// From a sample to the middle of the part of its pixel that it stands for, one of as many squares as there are samples.
+// Puts the pixels of `closer` that are wanted into the picture.
+void put_wanted(const PixelFlags& wanted, const image::Image& closer, image::Image& picture);
+
+// From a sample, 0 being the center of the pixel, to the middle of the part of its pixel that it stands for, one of as
+// many squares as there are samples.
 std::array<double, 2> to_middle_of_part(int sample, int samples);
 
 }  // namespace goniochrome::render

@@ -168,7 +168,7 @@ void OpenResidual::add(const Gbuffer& seen, float gain, image::Image& picture) {
   forget();
   for_pixels(seen.width, seen.height, [&](int x, int y) {
     const Wear* wear = wear_of(seen.part(x, y));
-    if (wear == nullptr) return;
+    if (wear == nullptr || !seen.wants(x, y)) return;
     const color::Rgb more = told(*wear, seen.normal(x, y), seen.to_viewer(x, y));
     for (int c = 0; c < 3; ++c) picture.pixel(x, y)[c] += gain * static_cast<float>(more[c]);
   });

@@ -39,7 +39,7 @@ class Picture {
         request_(request),
         deadline_(request.time_limit_s),
         count_(samples.size()) {
-    if (count_ > 1) even_ = even_pixels(samples, kSamePiece), flat_ = even_pixels(samples, kToldByCorner);
+    if (count_ > 1) even_ = even_pixels(samples, kSamePiece), flat_ = even_pixels(samples, kFlatPiece);
     if (count_ == 1 && request.pixel_samples > 1) {
       shifts_ = sample_shifts(request.pixel_samples);
       count_ = shifts_.size(), seen_ = {};

@@ -3,15 +3,10 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "render/path/reconstruction.h"
 
 namespace goniochrome::render {
 
 namespace {
-
-bool are_one_piece(const float* a, const float* b, float cosine) {
-  return a[3] != 0 && a[3] == b[3] && a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > cosine;
-}
 
 template <class Flag>
 PixelFlags flags_of(const Gbuffer& gbuffer, const Flag& flag) {
@@ -54,7 +49,7 @@ PixelFlags told_by_corners(const Gbuffer& gbuffer, const PixelFlags& even, int s
   return flags_of(gbuffer, [&](int x, int y) {
     const int left = x - x % spacing, top = y - y % spacing;
     return (left != x || top != y) && even[gbuffer.index(x, y)] != 0 && even[gbuffer.index(left, top)] != 0 &&
-           are_one_piece(gbuffer.at(x, y), gbuffer.at(left, top), kToldByCorner);
+           are_one_piece(gbuffer.at(x, y), gbuffer.at(left, top), kFlatPiece);
   });
 }
 

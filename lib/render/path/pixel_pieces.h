@@ -15,24 +15,18 @@ namespace goniochrome::render {
 // The G-buffers of the samples of all pixels, with triangles: at most 16.
 using PixelSamples = std::span<const Gbuffer* const>;
 
-// One flag for each pixel.
-using PixelFlags = std::vector<std::uint8_t>;
-
 // Which samples meet the scene or its floor.
 Coverage coverage(PixelSamples samples);
 
 // Pixels whose samples all show one part, and normals with at least this cosine to that of the first.
 PixelFlags even_pixels(PixelSamples samples, float cosine);
-// Points whose normals have at least this cosine tell the first round of each other: well within the filters' reach.
-constexpr float kToldByCorner = 0.998F;
-
 // The distance of pixels that are sampled first, a power of two: at least `least` of so many points are left.
 int first_spacing(std::size_t points, std::size_t least);
 // The least number, unless another is asked for.
 constexpr std::size_t kFirstPoints = 25000;
 
 // Even pixels that a first round leaves out, because the pixel at the corner of their square of so many pixels is even
-// too and shows the same piece at nearly the same normal.
+// too and shows the same flat piece.
 PixelFlags told_by_corners(const Gbuffer& gbuffer, const PixelFlags& even, int spacing);
 
 }  // namespace goniochrome::render

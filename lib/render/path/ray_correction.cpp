@@ -66,6 +66,7 @@ void add_surroundings(const Transport& transport, PixelSamples samples, const Ba
   for_pixels(first.width, first.height, [&](int x, int y) {
     float* pixel = &picture.data[first.index(x, y) * static_cast<std::size_t>(picture.channels)];
     for (const Gbuffer* sample : samples) {
+      if (!sample->wants(x, y)) return;
       const std::optional<color::Rgb> light = shown(*sample, x, y);
       if (!light) continue;
       if (picture.channels > 3) pixel[3] += gain;

@@ -12,9 +12,6 @@
 
 namespace goniochrome::render {
 
-// Points whose normals have at least this cosine, and the same part, lie on one piece of surface.
-constexpr float kSamePiece = 0.96F;
-
 // A piece of surface that a pixel shows.
 struct ShownPiece {
   int part = 0;  // Pieces of different parts are never mixed.

@@ -18,6 +18,18 @@ Gbuffer visible_surface(const rays::RayScene& scene, const Rays& rays, int width
 // The visible surface of the mesh alone: the floor is no part of it.
 Gbuffer mesh_gbuffer(const rays::RayScene& scene, const Rays& rays, int width, int height);
 
+// The visible surface at samples of each pixel.
+struct SampledSurface {
+  std::vector<Gbuffer> samples;
+  PixelFlags edges;  // pixels where rays found it
+};
+// The surface of the mesh at samples that are shifted by shifts[i] (pixels) from the centers that are given. Rays find
+// it in pixels about which the centers show more than one flat piece of surface, in those at the border, and wherever
+// the edges go on that are found there. All other pixels have the triangles of the centers, and normals that turn as
+// those of their neighbors do. Bit-identical for any number of threads.
+SampledSurface sampled_surface(const rays::RayScene& scene, const Gbuffer& centers,
+                               const std::vector<std::array<double, 2>>& shifts);
+
 // Which of the samples of each pixel meet the scene, or its floor: bit i stands for the sample that is shifted by
 // shifts[i] (pixels) from the center. At most 16 shifts.
 struct Coverage {
