@@ -92,7 +92,6 @@ struct Renderer::State : Sight {
   Result<void> draw_band(Frame& frame);
   Result<void> take(int first, int count, image::Image& picture);
   Result<void> look_closer(image::Image& picture);
-  void surround(int first, int count, image::Image& picture);
   FoundMaps audit(const std::shared_ptr<const Gbuffer>& seen) const;
   Result<void> meet(const Scene& whole_scene);
   Result<void> add_seen_through(int sample, float gain, image::Image& picture);
@@ -237,26 +236,37 @@ SeenPixels* Renderer::State::seen_pixels(int sample) {
   return &seen;
 }
 
-// Takes all samples of the pixels of which the picture of the centers does not tell the mean.
+// Takes the centers, unless the picture has them, and all samples of the pixels whose mean they do not tell.
 Result<void> Renderer::State::look_closer(image::Image& picture) {
   keep(1);
+  if (!view->with_centers) {
+    Gbuffer& centers = *keep(0).gbuffer;
+    centers.wanted = wanted_centers(edges, centers);
+    GONIO_TRY(take(0, 1, picture));
+    centers.wanted.clear();
+  }
   const PixelFlags wanted = wanted_pixels(edges, picture, white_luminance, tolerance_de00);
   for (int i = 1; i <= view->samples; ++i) keep(i).gbuffer->wanted = wanted;
   if (band.count > 1) kept.front() = {};
   image::Image closer;
   GONIO_TRY(take(1, view->samples, closer));
-  surround(1, view->samples, closer);
   put_wanted(wanted, closer, picture);
   return {};
 }
 
-// Makes the picture the mean of `count` samples from `first` on.
+// Makes the picture the mean of `count` samples from `first` on, with the floor of rays and what is behind it.
 Result<void> Renderer::State::take(int first, int count, image::Image& picture) {
   const float gain = 1.0F / static_cast<float>(count);
   GONIO_TRY(take_samples(*this, *engine, scene, effects, first, count, picture));
-  for (int i = first; summed() != nullptr && i < first + count; ++i) summed()->add(*gbuffer(i), gain, picture);
-  for (int i = first; effects.panes && !engine->info().traces_rays && i < first + count; ++i)
-    GONIO_TRY(add_seen_through(i, gain, picture));
+  if (engine->info().traces_rays) return {};
+  for (int i = first; i < first + count; ++i) {
+    const std::shared_ptr<const Gbuffer> seen = gbuffer(i);
+    const Gbuffer* one = seen.get();
+    if (summed() != nullptr) summed()->add(*one, gain, picture);
+    if (effects.panes) GONIO_TRY(add_seen_through(i, gain, picture));
+    if (effects.rays.floor && transport)
+      add_surroundings(*transport, {&one, 1}, backdrop(), effects.rays, gain, picture);
+  }
   return {};
 }
 
@@ -290,14 +300,6 @@ Result<void> Renderer::State::add_seen_through(int sample, float gain, image::Im
     add_behind(behind, shown, gain, picture);
   }
   return {};
-}
-
-// Draws the floor of rays and what is behind it.
-void Renderer::State::surround(int first, int count, image::Image& picture) {
-  if (!effects.rays.floor || !transport) return;
-  std::vector<const Gbuffer*> samples;
-  for (int i = first; i < first + count; ++i) samples.push_back(gbuffer(i).get());
-  add_surroundings(*transport, samples, backdrop(), effects.rays, 1.0F / static_cast<float>(count), picture);
 }
 
 // Each sample of a pixel is corrected as the surface that it shows.
@@ -520,12 +522,10 @@ Result<std::shared_ptr<const Gbuffer>> Renderer::look(const mesh::Mesh& mesh, co
 Result<void> Renderer::State::draw_band(Frame& frame) {
   image::Image& picture = frame.picture;
   const int samples = view->samples;
-  const bool by_paths = engine->info().traces_rays;
   frame.open_centers = frame.centers = {};
-  if (samples == 1 || view->with_centers || !by_paths) {
+  if (samples == 1 || view->with_centers) {
     GONIO_TRY(take(0, 1, picture));
     if (view->with_centers) frame.open_centers = picture;
-    surround(0, 1, picture);
   }
   if (samples == 1) {
     correct(0, 1, picture, frame.rays);
@@ -537,7 +537,7 @@ Result<void> Renderer::State::draw_band(Frame& frame) {
     CorrectionNoise of_centers;
     correct(0, 1, frame.centers, of_centers);
   }
-  if (by_paths) return take(1, samples, picture);
+  if (engine->info().traces_rays) return take(1, samples, picture);
   GONIO_TRY(look_closer(picture));
   correct(1, samples, picture, frame.rays);
   return {};

@@ -36,7 +36,7 @@ struct Frame {
   double gbuffer_ms = 0;       // to find what one sample shows, perhaps for a plan; 0 where the G-buffer is given
   double frame_ms = 0;         // everything but uploads of the scene
   std::optional<Noise> noise;  // of the picture; none of engines that do not draw by random samples
-  image::Image open_centers;   // of the pixel centers without the effects of rays; empty unless centers are asked for
+  image::Image open_centers;   // of the pixel centers before rays change the mesh; empty unless centers are asked for
   CorrectionNoise rays;        // of the effects of rays in `picture`; 0 where none are drawn
   FoundMaps maps;              // what the maps miss; of engines without maps nothing
 };

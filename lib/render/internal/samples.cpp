@@ -50,6 +50,18 @@ Result<void> take_samples(Sight& sight, Engine& engine, const Scene& scene, cons
   return {};
 }
 
+PixelFlags wanted_centers(const PixelFlags& edges, const Gbuffer& centers) {
+  PixelFlags wanted(edges.size(), 0);
+  for_pixels(centers.width, centers.height, [&](int x, int y) {
+    const auto is_even = [&](int u, int v) {
+      return u >= 0 && v >= 0 && u < centers.width && v < centers.height && edges[centers.index(u, v)] == 0;
+    };
+    if (is_even(x, y) || is_even(x - 1, y) || is_even(x + 1, y) || is_even(x, y - 1) || is_even(x, y + 1))
+      wanted[centers.index(x, y)] = 1;
+  });
+  return wanted;
+}
+
 PixelFlags wanted_pixels(const PixelFlags& edges, const image::Image& centers, double white_luminance,
                          double tolerance_de00) {
   const double of_light = kOfLight * tolerance_de00, of_white = kOfWhite * tolerance_de00 * white_luminance;

@@ -12,6 +12,9 @@ namespace goniochrome::render {
 Result<void> take_samples(Sight& sight, Engine& engine, const Scene& scene, const Effects& effects, int first,
                           int count, image::Image& picture);
 
+// Pixels whose center is asked for: those at no edge, and those beside them.
+PixelFlags wanted_centers(const PixelFlags& edges, const Gbuffer& centers);
+
 // Pixels of which the center does not tell the mean over the pixel, within a small part of the tolerance: those at
 // edges, and those where the picture of the centers bends too much.
 PixelFlags wanted_pixels(const PixelFlags& edges, const image::Image& centers, double white_luminance,
