@@ -268,6 +268,7 @@ TEST(Renderer, SamplesResolveCoverage) {
 
 // Where the center of a pixel tells its mean, the samples are not shaded. Beside the mean over all of them, the picture
 // keeps a tenth of its tolerance at 95 of 100 pixels, and half of it in the worst. The control: centers alone do not.
+// Centers that nobody asked for are left out where no pixel is told by them, whatever was in the picture before.
 TEST(Renderer, CentersStandForSamplesThatTheyTell) {
   constexpr int kSize = 192, kSamples = 4;
   constexpr double kTolerance = 0.5;  // of a renderer that was asked for none
@@ -279,6 +280,10 @@ TEST(Renderer, CentersStandForSamplesThatTheyTell) {
   ASSERT_TRUE(renderer.load(scene, "cpu").ok());
   const auto frame = renderer.draw(camera, kSize, kSize, kSamples, true);
   ASSERT_TRUE(frame.ok());
+  Frame alone;
+  alone.picture.data.assign(frame->picture.data.size(), NAN);
+  ASSERT_TRUE(renderer.draw({camera, kSize, kSize, kSamples, false}, alone).ok());
+  EXPECT_EQ(alone.picture.data, frame->picture.data);
   const rays::RayScene met = *rays::RayScene::create(mesh);
   std::vector<color::Rgb> mean(frame->picture.data.size() / 4);
   for (const auto& [x, y] : sample_shifts(kSamples)) {

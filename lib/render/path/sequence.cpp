@@ -60,13 +60,21 @@ constexpr std::uint32_t scrambled(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
-// The coordinates of an index before they are scrambled: the exclusive or of the columns of its bits.
-std::array<std::uint32_t, 4> coordinates(std::uint32_t index) {
-  std::array<std::uint32_t, 4> x{};
+// The coordinates of an index before they are scrambled: the exclusive or of the columns of its bits, added to `x`.
+using Coordinates = std::array<std::uint32_t, 4>;
+constexpr Coordinates with_columns(std::uint32_t index, Coordinates x) {
   for (; index != 0; index &= index - 1)
     for (std::size_t d = 0; d < 4; ++d) x[d] ^= kMatrixColumns[d][static_cast<std::size_t>(std::countr_zero(index))];
   return x;
 }
+
+// Those of the first indices, which most sequences do not leave.
+constexpr std::uint32_t kKnown = 64;
+constexpr std::array<Coordinates, kKnown> kFirstCoordinates = [] {
+  std::array<Coordinates, kKnown> first{};
+  for (std::uint32_t i = 0; i < kKnown; ++i) first[i] = with_columns(i, {});
+  return first;
+}();
 
 }  // namespace
 
@@ -81,7 +89,7 @@ Sequence::Set::Set(std::uint64_t seed, std::uint32_t set, std::uint32_t mask) : 
 // 2^k points together.
 std::array<double, 4> Sequence::Set::point(std::uint32_t index) const {
   const std::uint32_t shuffled = reversed(scrambled(reversed(index), order_)) & mask_;
-  const std::array<std::uint32_t, 4> x = coordinates(shuffled);
+  const Coordinates x = with_columns(shuffled & ~(kKnown - 1), kFirstCoordinates[shuffled % kKnown]);
   std::array<double, 4> point{};
   for (std::size_t d = 0; d < 4; ++d) point[d] = reversed(scrambled(x[d], seeds_[d])) * 0x1p-32;
   return point;
