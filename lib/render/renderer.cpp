@@ -242,8 +242,9 @@ Result<void> Renderer::State::look_closer(image::Image& picture) {
   if (!view->with_centers) {
     Gbuffer& centers = *keep(0).gbuffer;
     centers.wanted = wanted_centers(edges, centers);
-    GONIO_TRY(take(0, 1, picture));
-    centers.wanted.clear();
+    const Result<void> taken = take(0, 1, picture);
+    centers.wanted.clear();  // as whoever has the view reads all of it
+    if (!taken.ok()) return taken;
   }
   const PixelFlags wanted = wanted_pixels(edges, picture, white_luminance, tolerance_de00);
   for (int i = 1; i <= view->samples; ++i) keep(i).gbuffer->wanted = wanted;
