@@ -78,8 +78,8 @@ void for_pixels(int width, int height, const Visit& visit) {
   });
 }
 
-// Normals of at least this cosine lie on one piece of surface, and of this one on so flat a piece that it tells the
-// light between.
+// Pixels of one part whose normals have at least the first cosine lie on one piece of surface; with the second, it is
+// so flat that one of them tells the light of the other.
 constexpr float kSamePiece = 0.96F, kFlatPiece = 0.998F;
 // True if two entries of G-buffers show one part from one side, with normals of at least this cosine.
 inline bool are_one_piece(const float* a, const float* b, float cosine) {

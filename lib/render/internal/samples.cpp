@@ -10,7 +10,8 @@ namespace goniochrome::render {
 
 namespace {
 
-// The mean of a pixel may be off its center by this part of its light and of white for each dE00 of the tolerance.
+// The mean of a pixel may be off its center by this part of its light and of white for each dE00 of the tolerance: a
+// tenth of it in middle grays. goniochrome-plan(7), "Samples of a pixel".
 constexpr double kOfLight = 0.0045, kOfWhite = 0.03 * kOfLight;
 
 // True if the picture bends too much about a pixel. A value that bends by two second differences has a mean over the
