@@ -261,7 +261,7 @@ TEST_F(TexturedScene, TruthStandsBesideTheEstimate) {
   const PixelSample sample = sampled_pixels(*frame.gbuffer, scene, 60, 3);
   add_truth(plan, scene, sample.points, &source, 1);
   for (const char* name : {"texture", "texture-0", "texture-1"}) {
-    const PlanItem& tried = item(plan, name);
+    const PlanItem tried = item(plan, name);
     ASSERT_TRUE(tried.truth_de00_p95.has_value()) << name;
     EXPECT_NEAR(std::log2(tried.de00_p95 / *tried.truth_de00_p95), 0, 1) << name;
   }
