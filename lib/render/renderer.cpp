@@ -78,8 +78,8 @@ struct Renderer::State : Sight {
   std::vector<Kept> kept;        // of that band, sample by sample
   std::uint64_t placed_for = 0;  // the layer
   bool placed_footprints = false;
-  PixelFlags edges;       // of that band, where it has samples beside the centers
-  double gbuffer_ms = 0;  // of the last one of this view, which a plan may have made
+  PixelFlags edges;       // in that band: the pixels all samples of which were traced
+  double gbuffer_ms = 0;  // to find the centers of the view, perhaps for a plan
 
   void begin() const {
     if (open_gl) open_gl->make_current();
@@ -260,14 +260,13 @@ Result<void> Renderer::State::take(int first, int count, image::Image& picture) 
   const float gain = 1.0F / static_cast<float>(count);
   GONIO_TRY(take_samples(*this, *engine, scene, effects, first, count, picture));
   if (engine->info().traces_rays) return {};
+  std::vector<const Gbuffer*> samples;
   for (int i = first; i < first + count; ++i) {
-    const std::shared_ptr<const Gbuffer> seen = gbuffer(i);
-    const Gbuffer* one = seen.get();
-    if (summed() != nullptr) summed()->add(*one, gain, picture);
+    samples.push_back(gbuffer(i).get());
+    if (summed() != nullptr) summed()->add(*samples.back(), gain, picture);
     if (effects.panes) GONIO_TRY(add_seen_through(i, gain, picture));
-    if (effects.rays.floor && transport)
-      add_surroundings(*transport, {&one, 1}, backdrop(), effects.rays, gain, picture);
   }
+  if (effects.rays.floor && transport) add_surroundings(*transport, samples, backdrop(), effects.rays, gain, picture);
   return {};
 }
 

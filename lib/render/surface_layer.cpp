@@ -346,14 +346,15 @@ void SurfaceLayer::add(const std::vector<VisiblePoint>& points, const Effects& e
 }
 
 void SurfaceLayer::see(const Gbuffer& gbuffer, int first_row, int end_row, const std::vector<TexturePlace>& places,
-                       const Effects& effects, double scale, SeenBand& band) const {
+                       const Effects& effects, double scale, bool all, SeenBand& band) const {
   const std::size_t pixels = static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height);
   band.clear();
   Stack stacked;
   SeenTexels texels;
   for (std::size_t i = gbuffer.index(0, first_row); i < gbuffer.index(0, end_row); ++i) {
     const int part = static_cast<int>(std::abs(gbuffer.data[4 * i + 3])) - 1;
-    const bool worn = part >= 0 && !surfaces_[static_cast<std::size_t>(part)].textures.empty();
+    const bool asked = all || gbuffer.wanted.empty() || gbuffer.wanted[i] != 0;
+    const bool worn = part >= 0 && asked && !surfaces_[static_cast<std::size_t>(part)].textures.empty();
     if (worn) stack(part, &places[i], pixels, effects, scale, stacked);
     if (dims_) band.bare.push_back(worn ? static_cast<float>(stacked.bare) : 1.0F);
     for (std::size_t level = 0; worn && level < stacked.count; ++level) {
@@ -390,16 +391,17 @@ void SurfaceLayer::shade(const Gbuffer& gbuffer, const SeenBand::Bin& bin, const
     const std::uint32_t at = point.place < pixels ? point.place : point.place % pixels;
     if (at - row * wide >= wide) row = at / wide;
     const auto x = static_cast<int>(at - row * wide), y = static_cast<int>(row);
+    const auto texels = std::span(bin.texels).subspan(first, point.end - first);
+    first = point.end;
+    if (!gbuffer.wants(x, y)) continue;
     const std::array<float, 3> toward = floats(gbuffer.to_viewer(x, y)),
                                position = floats((placed ? mesh_point(*scene_.mesh, gbuffer, x, y).position : Vec3{}) -
                                                  light.origin);
-    each_shape(batch.texture(), std::span(bin.texels).subspan(first, point.end - first),
-               [&](std::span<const TexelShare> lobed, std::span<const TexelShare> diffuse) {
-                 pixel[batch.count()] = rgba.pixel(x, y);
-                 batch.put(gbuffer.at(x, y), toward, position, places[point.place], lobed, diffuse);
-                 if (batch.full()) flush();
-               });
-    first = point.end;
+    each_shape(batch.texture(), texels, [&](std::span<const TexelShare> lobed, std::span<const TexelShare> diffuse) {
+      pixel[batch.count()] = rgba.pixel(x, y);
+      batch.put(gbuffer.at(x, y), toward, position, places[point.place], lobed, diffuse);
+      if (batch.full()) flush();
+    });
   }
   if (batch.count() > 0) flush();
 }
@@ -418,8 +420,9 @@ void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& 
     const auto first = static_cast<int>(begin), last = static_cast<int>(end);
     if (mapped_ && effects.maps) add_mapped(gbuffer, first, last, effects, weight, rgba);
     if (!textured_) return;
-    const SeenBand& band = kept->band(
-        begin / kRowsOfBand, [&](SeenBand& unknown) { see(gbuffer, first, last, places, effects, scale, unknown); });
+    const SeenBand& band = kept->band(begin / kRowsOfBand, [&](SeenBand& unknown) {
+      see(gbuffer, first, last, places, effects, scale, kept->keeps(), unknown);
+    });
     float* pixel = rgba.pixel(0, first);
     for (const float bare : band.bare) {
       for (int c = 0; c < 3; ++c) pixel[c] *= bare;
@@ -436,7 +439,8 @@ void SurfaceLayer::add_mapped(const Gbuffer& gbuffer, int first_row, int end_row
   for (int y = first_row; y < end_row; ++y) {
     for (int x = 0; x < gbuffer.width; ++x) {
       const int part = gbuffer.part(x, y);
-      if (part < 0 || surface(part).color_map == nullptr || surface(part).hides_paint()) continue;
+      if (part < 0 || !gbuffer.wants(x, y)) continue;
+      if (surface(part).color_map == nullptr || surface(part).hides_paint()) continue;
       const Vec3 position = effects.placed ? mesh_point(*scene_.mesh, gbuffer, x, y).position : Vec3{};
       const color::Rgb color =
           mapped_difference(part, gbuffer.normal(x, y), gbuffer.to_viewer(x, y), effects.coat, position);

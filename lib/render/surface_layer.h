@@ -144,8 +144,9 @@ class SurfaceLayer {
 
  private:
   static constexpr std::size_t kRowsOfBand = 8;
+  // Finds what a band shows, in all pixels or in those that are wanted.
   void see(const Gbuffer& gbuffer, int first_row, int end_row, const std::vector<TexturePlace>& places,
-           const Effects& effects, double scale, SeenBand& band) const;
+           const Effects& effects, double scale, bool all, SeenBand& band) const;
   void shade(const Gbuffer& gbuffer, const SeenBand::Bin& bin, const std::vector<TexturePlace>& places,
              const SbrdfLight& light, bool placed, float weight, image::Image& rgba) const;
   void add_mapped(const Gbuffer& gbuffer, int first_row, int end_row, const Effects& effects, float weight,

@@ -24,7 +24,7 @@ inline Band whole_band(int height) {
 // reconstructed from neighbors, so that rows on either side are drawn with those that are kept.
 std::vector<Band> bands_of(const Gbuffer& picture, int samples, bool rayed);
 
-// These rows alone.
+// The rows of a band, those beside it among them.
 Gbuffer rows_of(const Gbuffer& picture, const Band& band);
 
 // Puts the kept rows into a picture of that height.

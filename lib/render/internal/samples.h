@@ -12,7 +12,8 @@ namespace goniochrome::render {
 Result<void> take_samples(Sight& sight, Engine& engine, const Scene& scene, const Effects& effects, int first,
                           int count, image::Image& picture);
 
-// Pixels whose center is asked for: those at no edge, and those beside them.
+// Pixels whose center is shaded: those at no edge, which it may stand for, and those beside them, by which it is seen
+// how the picture bends there.
 PixelFlags wanted_centers(const PixelFlags& edges, const Gbuffer& centers);
 
 // Pixels of which the center does not tell the mean over the pixel, within a small part of the tolerance: those at

@@ -49,6 +49,8 @@ class SeenPixels {
   void done(std::size_t number) {
     if (!again_ || bands_[number].bytes() * bands_.size() > most_bytes_) bands_[number] = {}, known_[number] = 0;
   }
+  // True if other pictures of the view may ask for what is seen in this one, with other pixels wanted.
+  bool keeps() const { return again_; }
   void set_most_bytes(std::size_t most) { most_bytes_ = most; }
   // The view is another one.
   void forget() { forgotten_ = true; }

@@ -107,6 +107,26 @@ TEST_F(Alpha, AShareOfThePaintIsSeen) {
   }
 }
 
+// What a view shows of a texture is kept from its second picture on, and each paint asks for samples of other pixels: a
+// kept view draws what a fresh one does.
+TEST_F(Alpha, AKeptViewServesPaintsThatWantOtherPixels) {
+  const brdf::SbrdfTexture sheer = covering([](int) { return 0.3; });
+  wear({{{&sheer, 0.2}}});
+  view.width = view.height = 256, view.samples = 4;
+  Renderer renderer = Renderer::tracing();
+  ASSERT_TRUE(renderer.load(scene, effects_of(scene), "cpu").ok());
+  const paint::LobeFit first = scene.paints[0];
+  for (const double scale : {1.0, 30.0, 0.01, 1.0}) {
+    scene.paints[0] = first;
+    scene.paints[0].diffuse = scale * first.diffuse;
+    for (paint::Lobe& lobe : scene.paints[0].lobes) lobe.gloss = scale * lobe.gloss;
+    renderer.load_paints(scene);
+    Frame kept;
+    ASSERT_TRUE(renderer.draw(view, kept).ok());
+    EXPECT_EQ(kept.picture.data, drawn("cpu", effects_of(scene)).picture.data) << scale;
+  }
+}
+
 // Three facets of a map, letters over them and a second, narrower map over all: they lie over what OpenGL drew as over
 // what the processor drew, and the certificate agrees. The order turned around is the control.
 TEST_F(Alpha, MapsLieOverOneAnother) {
