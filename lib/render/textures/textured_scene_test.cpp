@@ -107,8 +107,8 @@ TEST_F(Alpha, AShareOfThePaintIsSeen) {
   }
 }
 
-// A kept view draws what a fresh one does. It keeps what it shows of a texture from its second picture on, and each paint
-// asks for samples of other pixels.
+// A kept view draws what a fresh one does. It keeps what it shows of a texture from its second picture on, and each
+// paint asks for samples of other pixels.
 TEST_F(Alpha, AKeptViewServesPaintsThatWantOtherPixels) {
   const brdf::SbrdfTexture sheer = covering([](int) { return 0.3; });
   wear({{{&sheer, 0.2}}});
