@@ -64,11 +64,11 @@ class GatheredLight {
     return JSON.stringify([width, height, camera, turn, environment, lamp, ground]);
   }
 
-  // True if layers of this view in this light are kept that show a paint, but for a few that are drawn in its place.
+  // True if all layers of this view in this light are kept that show a paint: to draw others takes longer than a picture of few pixels.
   serves(key, weights, environment, stride = 1) {
     const { held } = this;
     if (this.stage.hasSecond || !held || held.key !== key || held.own !== this.ownOf(weights) || !held.drawn.has(this.layers.beside)) return false;
-    return this.waiting(weights, environment, false, stride).length <= this.layers.at_once;
+    return this.waiting(weights, environment, false, stride).length === 0;
   }
   // Layers that are still to be drawn: those that the paint needs, and then all others for which there is room.
   waiting(weights, environment, others, stride = 1) {
@@ -84,12 +84,12 @@ class GatheredLight {
 
   // Draws so many rows of some of the layers that wait, and returns whether there is more to be drawn. Where the view or the light is another
   // one, those before are dropped.
-  gather(key, gbuffer, weights, environment, others = true, rows = gbuffer.height, stride = 1) {
+  gather(key, gbuffer, weights, environment, others = true, rows = gbuffer.height) {
     if (this.stage.hasSecond) return false;
     const own = this.ownOf(weights);
     if (!this.held || this.held.key !== key || this.held.own !== own) this.begin(gbuffer, key, own);
     const { held } = this, { at_once, beside } = this.layers, program = this.stage.shading(environment, weights.tilts !== null, "gathering");
-    const waiting = this.waiting(weights, environment, others, stride);
+    const waiting = this.waiting(weights, environment, others);
     if (waiting.length > held.capacity - 1) return false;  // they have no room
     // Those of maps and those of lamps are drawn apart, since a sum over lamps is for four layers at once.
     const kind = waiting.filter((layer) => layer.lamps === waiting[0].lamps);
@@ -168,10 +168,8 @@ class GatheredLight {
     gl.activeTexture(gl.TEXTURE0);
   }
 
-  // The radiance of a paint that is served, in the target of that name, at one of `stride` pixels along each side. Layers that are missing
-  // are drawn first.
+  // The radiance of a paint that is served, in the target of that name, at one of `stride` pixels along each side.
   shade(name, gbuffer, weights, environment, stride = 1) {
-    while (this.waiting(weights, environment, false, stride).length > 0) this.gather(this.held.key, gbuffer, weights, environment, false, gbuffer.height, stride);
     const { stage, held } = this, { gl } = stage, withLamps = stage.shading(environment, weights.tilts !== null).lamps.length > 0;
     const target = stage.target("sum " + name, Math.ceil(held.width / stride), Math.ceil(held.height / stride), stage.sumKind, false), list = this.needed(weights, withLamps);
     const program = (this.program ??= stage.tileProgram(this.layers.program));

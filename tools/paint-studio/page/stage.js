@@ -87,6 +87,7 @@ class Stage {
     this.sparkling = false;  // whether single flakes are drawn
     this.ground = true;  // whether the environment lies on the ground
     this.versions = 0;
+    this.edgeRows = Infinity;  // of a step that draws edges
     this.turn = 0;     // of the environment about +Y, in degrees, as the camera's azimuth counts
     this.lamp = null;  // {direction, white}: where it stands beside the mesh, and what a white surface facing it shows
     this.partsVersion = 0;  // of what the parts wear
@@ -385,9 +386,9 @@ class Stage {
     this.drawTiles(program, gbuffer, (edges ?? gbuffer).texture, unit, edges ? { tile: edgeTile, pick: [1, 0, 0, 0] } : {});
   }
 
-  // The steps by which pixels of a sum become the mean of many samples, where they differ from those beside them. Each step is one draw.
+  // The steps by which pixels of a sum become the mean of many samples, where they differ from those beside them.
   // Samples that the sum has stay in it.
-  *smooth(name, sum, camera, weights, environment, stops, samples) {
+  *smooth(name, sum, camera, weights, environment, stops, samples, budget_ms = stepBudget_ms) {
     if (sum.samples >= samples) return;
     const gl = this.gl, { width, height } = sum, kept = samples * 28 * width * height <= mostSampleBytes;
     const gbufferOf = (k) => this.gbuffer(kept ? `${name} ${k}` : `${name} sample`, camera, width, height, sampleShifts[k], environment);
@@ -396,10 +397,14 @@ class Stage {
     this.addSample(mean, sum, edges, mostCounted / gain, sum.samples / samples, false);
     for (let k = sum.samples; k < samples; ++k) {
       const gbuffer = gbufferOf(k);
-      gl.bindFramebuffer(gl.FRAMEBUFFER, sample.framebuffer);
-      this.cast(gbuffer, weights, environment, 0, height, edges);
+      for (let begin = 0, rows; begin < height; begin += rows) {
+        rows = Math.min(height, this.edgeRows);
+        gl.bindFramebuffer(gl.FRAMEBUFFER, sample.framebuffer);
+        this.cast(gbuffer, weights, environment, begin, Math.min(height, begin + rows), edges);
+        const took_ms = yield;
+        if (took_ms > 0) this.edgeRows = clamped(Math.floor((rows * budget_ms) / took_ms), 8, height);
+      }
       this.addSample(mean, sample, edges, mostCounted / gain, 1 / samples, true);
-      yield;
     }
     this.addSample(sum, mean, edges, 1e30, 1, false);
     sum.samples = samples;
@@ -577,7 +582,7 @@ class Stage {
   // The steps that smooth the picture which was shown last, by the G-buffer of that name, and show it; then, with `sparkles`, those of flakes.
   *smoothSteps(name, camera, weights, environment, stops, samples, overlay, sparkles, budget_ms) {
     const { gbuffer, sums, border } = this.shown;
-    for (const [i, sum] of sums.entries()) yield* this.smooth(name, sum, camera, sums.length > 1 ? [weights.left, weights.right][i] : weights, environment, stops, samples);
+    for (const [i, sum] of sums.entries()) yield* this.smooth(name, sum, camera, sums.length > 1 ? [weights.left, weights.right][i] : weights, environment, stops, samples, budget_ms);
     this.showOver(gbuffer, sums, border, weights, environment, stops, overlay);
     if (!sparkles || this.sparkling || !this.sees(gbuffer, weights, environment)) return;
     let flaky = sums;

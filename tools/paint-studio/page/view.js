@@ -8,6 +8,7 @@ const cancelIdle = (number) => (window.requestIdleCallback ? cancelIdleCallback(
 const firstBudget_ms = 30;  // a picture that takes longer is drawn with fewer pixels first
 const slowPicture_ms = 40;  // the light of a view at rest is gathered where a picture takes longer
 const stepBudget_ms = 40;   // of a draw of a better picture, behind which an edit may have to wait
+const idleBudget_ms = 12;   // of a draw of what nobody waits for
 const scales = [1, 0.7, 0.5, 0.35];  // few, so that what is visible is seldom drawn anew
 
 class StageView {
@@ -396,7 +397,7 @@ class StageView {
   }
   // Draws an edit of a view at rest; returns whether it did.
   drawGathered(moving) {
-    const scale = this.gatheredScale, name = scale < 1 ? "gathered" : "centers", expected_ms = this.gathered_ms || 0.4 * scale * scale * this.full_ms;
+    const scale = this.gatheredScale, name = scale < 1 ? "gathered" : "centers", expected_ms = this.gathered_ms || 0.7 * scale * scale * this.full_ms;
     const stride = clamped(Math.ceil(Math.sqrt(expected_ms / firstBudget_ms)), 1, 4);
     if (!this.stage.drawGathered(name, ...this.picture(scale), this.overlay, stride)) return false;
     if (!moving) this.rest(this.finishing(this.sharpening(scale, stride)));
@@ -455,12 +456,14 @@ class StageView {
     }
     yield* this.smoothing(this.full_ms < slowPicture_ms ? mostSamples : 4);
   }
-  smoothing(samples) { return this.stage.smoothSteps("centers", this.camera, this.weights, this.environment, this.stops, samples, this.overlay, this.sparkles, stepBudget_ms); }
+  smoothing(samples, budget_ms = stepBudget_ms) {
+    return this.stage.smoothSteps("centers", this.camera, this.weights, this.environment, this.stops, samples, this.overlay, this.sparkles, budget_ms);
+  }
   // The steps that gather the light of the view: what the paint needs, or all that there is room for.
-  *gathering(others) {
+  *gathering(others, budget_ms = stepBudget_ms) {
     const scale = this.gatheredScale, [camera, width, height, weights, environment] = this.picture(scale);
-    for (let rows = Math.ceil(height / 8); this.stage.gather(scale < 1 ? "gathered" : "centers", camera, width, height, weights, environment, others, rows);)
-      rows = clamped(Math.floor((rows * stepBudget_ms) / (yield)), 8, 4 * rows);
+    for (let rows = 8; this.stage.gather(scale < 1 ? "gathered" : "centers", camera, width, height, weights, environment, others, rows);)
+      rows = clamped(Math.floor((rows * budget_ms) / (yield)), 8, 4 * rows);
   }
   // Those steps, and then the small pictures and, where pictures take long, the light of the view and the samples that are left.
   *finishing(steps) {
@@ -471,8 +474,8 @@ class StageView {
     this.times.sharp_ms = performance.now() - since;
     this.app.tiles.go();
     if (this.full_ms < slowPicture_ms || this.cars > 1 || this.stage.occlusion.busy) return;
-    yield* this.gathering(true);
-    yield* this.smoothing(mostSamples);
+    yield* this.gathering(true, idleBudget_ms);
+    yield* this.smoothing(mostSamples, idleBudget_ms);
   }
 
   // Runs steps, in the place of those that ran before. Each waits until the one before is drawn and is told how long that took, so that the
