@@ -16,7 +16,7 @@ HWY_INLINE Direction same(const rays::Float3& a) {
   const D f;
   return {hn::Set(f, a.x), hn::Set(f, a.y), hn::Set(f, a.z)};
 }
-HWY_INLINE Direction loaded(const GroundBlocks::Places& from, std::size_t i) {
+HWY_INLINE Direction loaded(const Places& from, std::size_t i) {
   return loaded(from[0].data(), from[1].data(), from[2].data(), i);
 }
 HWY_INLINE rays::Float3 sum(const Direction& a) {
@@ -34,6 +34,10 @@ struct Columns {
 
 // The logarithm of a power of which a lobe shows nothing: 1e-7.
 constexpr float kDarkest = -16.1F;
+// The parts of blocks are summed of tiles with a block that is seen larger than this, or from which the way to the
+// mirror direction has a larger cosine. In a test 95 of 100 points are within .8 % then, and within 6 % by whole
+// blocks.
+constexpr float kLargest_sr = 0.05F, kInLobes = 0.9F;
 
 // Adds the light that comes along these directions.
 HWY_INLINE void Gather(const GroundReceiver& receiver, const Point& point, const Direction& direction,
@@ -65,22 +69,45 @@ HWY_INLINE void Gather(const GroundReceiver& receiver, const Point& point, const
   }
 }
 
+// Blocks of floor as a point sees them.
+struct SeenBlocks {
+  Direction direction;
+  V extent_sr;  // for each unit of area
+};
+HWY_INLINE SeenBlocks Seen(const Direction& from, const FloorBlocks& blocks, std::size_t i) {
+  const D d;
+  const Direction way = minus(loaded(blocks.place, i), from);
+  const V inverse2 = hn::Div(hn::Set(d, 1.0F), dot(way, way));
+  const Direction direction = scaled(hn::Sqrt(inverse2), way);
+  // The floor's own cosine, seen from above.
+  return {direction, hn::Mul(hn::Max(hn::Neg(direction.y), hn::Zero(d)), inverse2)};
+}
+
 GroundColumns SumGround(const GroundBlocks& blocks, const GroundReceiver& receiver) {
   const D d;
+  constexpr std::size_t kTile = GroundBlocks::kTile, kParts = GroundBlocks::kParts;
   const Point point{same(receiver.normal), same(receiver.to_viewer), same(receiver.mirrored)};
   const Direction from = same(receiver.position);
   const Direction none = same({});
   Columns sums;
   sums.diffuse = none;
   for (std::size_t j = 0; j < receiver.lobes; ++j) sums.flakes[j] = sums.gloss[j] = none;
-  for (std::size_t i = 0; i < blocks.place[0].size(); i += hn::Lanes(d)) {
-    const Direction way = minus(loaded(blocks.place, i), from);
-    const V inverse2 = hn::Div(hn::Set(d, 1.0F), dot(way, way)), inverse = hn::Sqrt(inverse2);
-    const Direction direction = scaled(inverse, way);
-    // The floor's own cosine, seen from above.
-    const V extent = hn::Mul(hn::Max(hn::Neg(direction.y), hn::Zero(d)), inverse2);
-    Gather(receiver, point, direction, scaled(extent, loaded(blocks.sent, i)), sums);
-    Gather(receiver, point, loaded(blocks.toward, i), scaled(hn::Set(d, -1.0F), loaded(blocks.hidden, i)), sums);
+  for (std::size_t tile = 0; tile < blocks.area.size(); tile += kTile) {
+    bool is_near = false;
+    for (std::size_t i = tile; i < tile + kTile; i += hn::Lanes(d)) {
+      const SeenBlocks seen = Seen(from, blocks.whole, i);
+      const V seen_sr = hn::Mul(seen.extent_sr, hn::LoadU(d, &blocks.area[i]));
+      const auto large = hn::Gt(seen_sr, hn::Set(d, kLargest_sr)),
+                 in_lobes = hn::Gt(dot(point.mirrored, seen.direction), hn::Set(d, kInLobes));
+      is_near = is_near || !hn::AllFalse(d, large) || (receiver.lobes > 0 && !hn::AllFalse(d, in_lobes));
+    }
+    const FloorBlocks& taken = is_near ? blocks.parts : blocks.whole;
+    const std::size_t parts = is_near ? kParts : 1;
+    for (std::size_t i = parts * tile; i < parts * (tile + kTile); i += hn::Lanes(d)) {
+      const SeenBlocks seen = Seen(from, taken, i);
+      Gather(receiver, point, seen.direction, scaled(seen.extent_sr, loaded(taken.sent, i)), sums);
+      Gather(receiver, point, loaded(taken.toward, i), scaled(hn::Set(d, -1.0F), loaded(taken.hidden, i)), sums);
+    }
   }
   GroundColumns columns;
   columns.diffuse = sum(sums.diffuse);
@@ -100,23 +127,6 @@ HWY_EXPORT(SumGround);
 
 GroundColumns sum_ground(const GroundBlocks& blocks, const GroundReceiver& point) {
   return HWY_DYNAMIC_DISPATCH(SumGround)(blocks, point);
-}
-
-namespace {
-
-void push(const rays::Float3& a, GroundBlocks::Places& to) {
-  to[0].push_back(a.x), to[1].push_back(a.y), to[2].push_back(a.z);
-}
-
-}  // namespace
-
-void GroundBlocks::add(const rays::Float3& at, const rays::Float3& light, const rays::Float3& direction,
-                       const rays::Float3& behind) {
-  push(at, place), push(light, sent), push(direction, toward), push(behind, hidden);
-}
-
-void GroundBlocks::fill() {
-  while (place[0].size() % kLanes != 0) add({0, -1e6F, 0}, {}, {0, -1, 0}, {});
 }
 
 }  // namespace goniochrome::render

@@ -11,19 +11,24 @@
 
 namespace goniochrome::render {
 
-// Blocks one by one, each quantity by itself; the last ones are dark and fill the lanes of a kernel.
-struct GroundBlocks {
-  static constexpr std::size_t kLanes = 16;  // No kernel takes more blocks at once.
-  using Places = std::array<std::vector<float>, 3>;
+using Places = std::array<std::vector<float>, 3>;
 
+// Blocks one by one, each quantity by itself.
+struct FloorBlocks {
   Places place;   // of the light of a block of floor, local
   Places sent;    // radiance times area
   Places toward;  // of the light that the environment has in the block's place below the horizon, unit
   Places hidden;  // its radiance times solid angle
+};
 
-  void add(const rays::Float3& at, const rays::Float3& light, const rays::Float3& direction,
-           const rays::Float3& behind);
-  void fill();
+// Blocks in tiles of so many. Dark ones fill the tiles that the horizon cuts.
+struct GroundBlocks {
+  static constexpr std::size_t kTile = 16;  // No kernel takes more blocks at once.
+  static constexpr std::size_t kParts = 4;  // of a block
+
+  FloorBlocks whole;
+  std::vector<float> area;  // of a block
+  FloorBlocks parts;        // of the blocks of a tile, one after the other
 };
 
 // A point with the lobes cos^E about its mirror direction.

@@ -27,7 +27,7 @@ class OpenFloor {
   bool tells(const rays::Float3& position) const;
 
   // The light that the diffuse part and wide lobes gather, of weight 1.
-  GroundColumns columns(const GroundReceiver& point) const;
+  GroundColumns columns(const GroundReceiver& point) const { return sum_ground(blocks_, point); }
   // The means about a direction below the horizon, over about so much of the hemisphere; `number` in [0,1).
   rays::Float3 lit(const rays::Float3& from, const rays::Float3& direction, float extent_sr, float number) const;
   rays::Float3 hidden(const rays::Float3& direction, float extent_sr, float number) const {
@@ -38,13 +38,17 @@ class OpenFloor {
   rays::Float3 place(const rays::Float3& from_eye) const {
     return eye_ + scene_->floor_distance(eye_, from_eye) * from_eye;
   }
-  GroundBlocks blocks(int across, const std::vector<rays::Float3>& hidden, const std::vector<rays::Float3>& lit) const;
+  struct Texels {
+    std::vector<rays::Float3> hidden, lit;
+  };
+  void add_blocks(const Texels& texels);
+  float add_block(const Texels& texels, int left, int top, int across, FloorBlocks& to) const;
 
   const rays::RayScene* scene_;
   rays::Float3 eye_;
   float height_ = 0;  // of the eye above the floor
   std::unique_ptr<const HemisphereMap> hidden_, lit_;
-  GroundBlocks coarse_, fine_;
+  GroundBlocks blocks_;
 };
 
 }  // namespace goniochrome::render

@@ -107,7 +107,7 @@ Errors errors_of_blocks(const Floor& floor, double low, double high) {
 TEST(OpenFloor, ItsBlocksAreTheSumOverAllDirections) {
   const Floor floor;
   const Errors found = errors_of_blocks(floor, 0.25, 1.75);
-  EXPECT_LT(percentile_95(found.errors), 0.03);
+  EXPECT_LT(percentile_95(found.errors), 0.012);
   EXPECT_GT(percentile_95(found.control), 0.3) << "the control: without the floor";
 }
 
