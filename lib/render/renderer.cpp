@@ -307,6 +307,7 @@ void Renderer::State::correct(int first, int count, image::Image& picture, Corre
   if (!effects.rays.any() || !transport) return;
   PathRequest request = correction_request(effects.rays, effort_asked.bounces, tolerance_de00);
   if (maps_found) request.beside_de00 = maps_found->errors_de00;
+  if (noise.points > 0) request.before = &noise.drawn;
   request.white_luminance = white_luminance > 0 ? white_luminance : 1;
   request.most_samples = std::max(2 * kBatch, effects.most_ray_samples);
   request.progress = effort_asked.progress;
@@ -320,7 +321,8 @@ void Renderer::State::correct(int first, int count, image::Image& picture, Corre
   std::vector<std::shared_ptr<const Gbuffer>> seen;
   std::vector<const Gbuffer*> samples;
   for (int i = first; i < first + count; ++i) samples.push_back(seen.emplace_back(gbuffer(i)).get());
-  noise.add(add_correction(*transport, samples, request, before, picture));
+  noise.add(add_correction(*transport, samples, request, before, picture), band.first_kept - band.first,
+            band.last_kept - band.first);
 }
 
 Result<void> Renderer::State::trace(const Scene& whole_scene, bool rough_coats) {

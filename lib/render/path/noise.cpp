@@ -104,4 +104,15 @@ double largest_errors(const std::vector<double>& deviations, const std::vector<d
   return math::percentile_95(std::move(sizes));
 }
 
+void PointErrors::add(const PointErrors& more) {
+  mesh.insert(mesh.end(), more.mesh.begin(), more.mesh.end());
+  floor.insert(floor.end(), more.floor.begin(), more.floor.end());
+}
+
+TotalErrors total_errors(const PointErrors& points, const std::vector<double>& beside, double stopped_de00) {
+  const double on_floor = largest_errors(points.floor);
+  return {std::max(largest_errors(points.mesh), on_floor),
+          std::hypot(std::max(largest_errors(points.mesh, beside), on_floor), stopped_de00)};
+}
+
 }  // namespace goniochrome::render

@@ -62,4 +62,18 @@ double largest_errors(const std::vector<double>& deviations, const std::vector<d
 // They were about so many standard deviations of the noisiest points, in four pictures.
 constexpr double kDeviations = 1.4;
 
+// Errors of points of the mesh and of the floor, CIEDE2000, one standard deviation.
+struct PointErrors {
+  std::vector<double> mesh, floor;
+
+  void add(const PointErrors& more);
+};
+
+// largest_errors() over the mesh or over the floor, whichever is larger.
+struct TotalErrors {
+  double noise = 0;  // that samples leave
+  double all = 0;    // with what the mesh of the picture has `beside` it, and with the shares of light that stopped
+};
+TotalErrors total_errors(const PointErrors& points, const std::vector<double>& beside, double stopped_de00);
+
 }  // namespace goniochrome::render

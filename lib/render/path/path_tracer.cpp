@@ -51,7 +51,7 @@ class Picture {
 
   PathPicture draw() {
     std::vector<int> more = first_fours();
-    Errors errors;
+    TotalErrors errors;
     bool reached = false;
     bool mended = false;
     while (true) {
@@ -78,8 +78,8 @@ class Picture {
       if (!goes_on || !cut(pace_.left(judging_s_), more)) break;
     }
     PathPicture picture;
-    picture.reached = reached, picture.found = found_.of;
-    picture.noise_p95_de00 = std::hypot(errors.noise, found_.stopped_de00), picture.error_p95_de00 = errors.all;
+    picture.reached = reached && told_.all <= request_.tolerance_de00, picture.found = found_.of;
+    picture.noise_p95_de00 = std::hypot(told_.noise, found_.stopped_de00), picture.error_p95_de00 = told_.all;
     const double count = std::max<double>(1, static_cast<double>(points_.size()));
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const PathPoint& point = points_[i];
@@ -412,27 +412,23 @@ class Picture {
     points_[i].samples = kOfFour * sums(i).fours();
   }
 
-  // 95th percentiles.
-  struct Errors {
-    double noise = 0;  // that samples leave
-    double all = 0;    // with the shares that stopped and what the picture misses beside
-  };
-
   // Radiance, error and noise of every point from its sums.
-  Errors judge() {
+  TotalErrors judge() {
     each_point([&](std::size_t i) { show_own(i); });
     if (!request_.reconstruct) {
       each_point([this](std::size_t i) { judge(i); });
       const double noise = worse_percentile([this](std::size_t i) { return points_[i].noise_de00; });
-      return {noise, noise};
+      return told_ = {noise, noise};
     }
     reconstruct();
     fill_gaps();
-    std::vector<double> mesh, floor;
-    for (const PathPoint& point : points_) (point.floor ? floor : mesh).push_back(point.noise_de00);
-    const double on_floor = largest_errors(floor);
-    return {std::max(largest_errors(mesh), on_floor),
-            std::hypot(std::max(largest_errors(mesh, request_.beside_de00), on_floor), found_.stopped_de00)};
+    PointErrors of;
+    for (const PathPoint& point : points_) (point.floor ? of.floor : of.mesh).push_back(point.noise_de00);
+    const TotalErrors own = told_ = total_errors(of, request_.beside_de00, found_.stopped_de00);
+    if (request_.before == nullptr) return own;
+    of.add(*request_.before);
+    told_ = total_errors(of, request_.beside_de00, found_.stopped_de00);
+    return {std::min(own.noise, told_.noise), std::min(own.all, told_.all)};
   }
 
   // Light that is known without samples stays sharp. What is taken and what is left are never mixed.
@@ -516,7 +512,7 @@ class Picture {
 
   // The fours of the next round, unless points that got all that they may get keep the picture from its tolerance: they
   // end with what their neighborhoods ask for. Returns true if there are any.
-  bool plan(const Errors& errors, std::vector<int>& more) const {
+  bool plan(const TotalErrors& errors, std::vector<int>& more) const {
     RoundLimits limits;
     limits.of_point = request_.most_samples / kOfFour;
     limits.typical = worse_percentile([this](std::size_t i) { return states_[i].needed; });
@@ -573,6 +569,7 @@ class Picture {
   Stopwatch clock_;
   bool first_round_ = true;
   double judging_s_ = 0;                       // after the last round
+  TotalErrors told_;                           // of all points, those that were drawn before among them
   std::size_t count_ = 1;                      // of the pixels' samples
   std::vector<std::array<double, 2>> shifts_;  // of these, where rays find what is seen
   Coverage coverage_;

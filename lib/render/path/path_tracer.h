@@ -20,6 +20,9 @@ struct PathRequest {
   // The errors that the picture has beside its noise, at any points of the mesh. Where they leave less than half of the
   // tolerance to the noise, samples end at that half.
   std::vector<double> beside_de00 = {};
+  // The errors of the points that were drawn of the picture before; null: none. Samples end where these points or all
+  // together are within the tolerance.
+  const PointErrors* before = nullptr;
   // The shares of light that together change no more than this in the first round get no further samples, and their
   // pixels stay as they are: a part of the tolerance. 0: none stops, nor is told.
   double stop_de00 = 0;

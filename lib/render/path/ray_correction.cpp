@@ -32,21 +32,20 @@ double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Ba
   return percentile_95(std::move(de00));
 }
 
-void CorrectionNoise::add(const PathPicture& one) {
+void CorrectionNoise::add(const PathPicture& one, int first, int last) {
   const double before = points, added = static_cast<double>(one.points.size()), all = before + added;
   if (before == 0) dark = true, found = one.found;
   points = all, ms += 1000 * one.time_s;
-  reached = reached && one.reached, dark = dark && one.dark;
+  de00_p95 = one.noise_p95_de00, error_de00_p95 = one.error_p95_de00, reached = one.reached;
+  dark = dark && one.dark;
+  for (const PathPoint& point : one.points)
+    if (point.y >= first && point.y < last) (point.floor ? drawn.floor : drawn.mesh).push_back(point.noise_de00);
   for (std::size_t i = 0; i < found.size(); ++i) {
     found[i].de00_p95 = std::max(found[i].de00_p95, one.found[i].de00_p95);
     found[i].stopped = found[i].stopped && one.found[i].stopped;
   }
   if (added == 0) return;
   const auto take_in = [&](double& mean, double value) { mean += added / all * (value - mean); };
-  const auto take_in_squared = [&](double& mean, double value) {
-    mean = std::sqrt((before * mean * mean + added * value * value) / all);
-  };
-  take_in_squared(de00_p95, one.noise_p95_de00), take_in_squared(error_de00_p95, one.error_p95_de00);
   take_in(free_share, one.free_share), take_in(samples, one.samples_mean);
 }
 

@@ -13,7 +13,7 @@ namespace goniochrome::render {
 // The paths that find what these effects change, reconstructed. Effects that change little stop after the first round.
 PathRequest correction_request(const RayEffects& effects, int bounces, double tolerance_de00);
 
-// How the effects were drawn; of several bands of a picture the means over their points.
+// How the effects were drawn; of several bands of a picture the means over their points, and the errors of all points.
 struct CorrectionNoise {
   double de00_p95 = 0;        // of the size of the errors that rays leave
   double error_de00_p95 = 0;  // and of all errors of the picture
@@ -26,9 +26,10 @@ struct CorrectionNoise {
   std::array<FoundShare, kShareCount> found;
 
   double points = 0;  // that these are means over
+  PointErrors drawn;  // of them
 
-  // Adds a band.
-  void add(const PathPicture& one);
+  // Adds a band that was drawn after these, of which the rows from `first` up to `last` are kept.
+  void add(const PathPicture& one, int first, int last);
 };
 
 // The background around the mesh of a picture with a floor that shows the environment.
