@@ -399,6 +399,31 @@ TEST(PathPicture, PointsThatNoNeighborTellsGetMoreSamples) {
   EXPECT_GE(apart[apart.size() / 2], 16);
 }
 
+// Points that were drawn before, in other bands of a picture, share its tolerance: beside many without an error samples
+// end earlier, and beside worse ones no later than alone, which is the control. What is told is the error of all.
+TEST(PathPicture, SharesItsToleranceWithPointsThatWereDrawnBefore) {
+  const auto stage = ball_in_a_cup();
+  const std::vector<Gbuffer> samples = four_samples(*stage, from_above(), 64, 48);
+  PathRequest request;
+  request.options.bounces = 2;
+  request.tolerance_de00 = 1, request.reconstruct = true, request.seed = 1;
+  const auto picture_beside = [&](double error_de00, std::size_t count) {
+    const PointErrors before{std::vector<double>(count, error_de00), {}};
+    request.before = &before;
+    return path_picture(*stage->transport, pointers(samples), nullptr, request);
+  };
+  const PathPicture alone = picture_beside(0, 0);
+  ASSERT_TRUE(alone.reached);
+  const PathPicture late = picture_beside(0, 40 * alone.points.size());
+  EXPECT_TRUE(late.reached);
+  EXPECT_LT(late.samples_mean, 0.6 * alone.samples_mean);
+  EXPECT_LT(late.error_p95_de00, 0.5 * alone.error_p95_de00);
+  const PathPicture beside_worse = picture_beside(3, 9 * alone.points.size());
+  EXPECT_EQ(beside_worse.samples_mean, alone.samples_mean);
+  EXPECT_FALSE(beside_worse.reached);
+  EXPECT_GT(beside_worse.error_p95_de00, 3);
+}
+
 // Groups of any size are drawn together, by the memory that samples take.
 TEST(PathPicture, TakesAnyNumberOfSamplesOfAPixel) {
   const auto stage = ball_in_a_cup();

@@ -60,5 +60,23 @@ TEST(Surroundings, APixelIsTheMeanOfItsSamples) {
   EXPECT_GT(apart, 50) << "the control: first samples alone, which are wrong at edges";
 }
 
+// Rows beside a band are drawn with it, and are points of another one.
+TEST(CorrectionNoise, HasTheErrorsOfPointsThatAreKept) {
+  PathPicture band;
+  for (int y = 0; y < 4; ++y) {
+    PathPoint point;
+    point.y = y, point.floor = y == 2, point.noise_de00 = y;
+    band.points.push_back(point);
+  }
+  band.noise_p95_de00 = 1.5, band.error_p95_de00 = 2, band.reached = true;
+  CorrectionNoise noise;
+  noise.add(band, 0, 3);
+  band.error_p95_de00 = 1.25;
+  noise.add(band, 1, 4);
+  EXPECT_EQ(noise.drawn.mesh, (std::vector<double>{0, 1, 1, 3}));
+  EXPECT_EQ(noise.drawn.floor, (std::vector<double>{2, 2}));
+  EXPECT_EQ(noise.error_de00_p95, 1.25) << "that of all, which the last band tells";
+}
+
 }  // namespace
 }  // namespace goniochrome::render::ray_correction_test
