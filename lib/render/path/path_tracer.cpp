@@ -108,11 +108,11 @@ class Picture {
   }
 
   // Light on a surface does not change with the resolution: a first round leaves points out that neighbors tell.
-  std::vector<int> first_fours() const {
+  std::vector<int> first_fours() {
     std::vector<int> fours(points_.size(), kFirstFours);
-    const int spacing = first_spacing(points_.size(), request_.first_points);
-    if (!request_.reconstruct || even_.empty() || spacing == 1) return fours;
-    const PixelFlags told = told_by_corners(first_seen_, even_, spacing);
+    if (!request_.reconstruct || even_.empty()) return fours;
+    spacing_ = first_spacing(points_.size(), request_.first_points);
+    const PixelFlags told = told_by_corners(first_seen_, even_, spacing_);
     for (std::size_t i = 0; i < points_.size(); ++i)
       if (told[place(points_[i])] != 0) fours[i] = 0;
     return fours;
@@ -127,7 +127,9 @@ class Picture {
     const auto part_of = [this](std::size_t k) { return first_seen_.at(points_[k].x, points_[k].y)[3]; };
     const auto taken_at = [this](std::size_t k) { return -(first_shares(k).direct + first_shares(k).from_floor).y; };
     double base = 0, taken = 0;
-    by_pixel_.visit_around(points_[i].x, points_[i].y, [&](std::size_t k) {
+    // Far enough that several points are sampled there: by one or two it would be decided by chance.
+    const int reach = std::max(PixelPoints::kReach, spacing_);
+    by_pixel_.visit_within(reach, points_[i].x, points_[i].y, [&](std::size_t k) {
       if (is_unknown(k) || (even && !(is_even(k) && part_of(k) == part_of(i)))) return;
       base += base_at(points_[k]).y, taken += taken_at(k);
     });
@@ -582,6 +584,7 @@ class Picture {
   FoundShares found_;
   std::vector<std::array<LightShares, Round::kSequences>> first_;  // of those sampled first; empty: not kept
   const double beside_ = percentile_95(request_.beside_de00);      // of the errors that are no noise
+  int spacing_ = 1;                                                // of points that the first round samples
   int left_ = 0;                                                   // the least x of a point
   std::vector<ShownPoint> shown_;                                  // by the points; empty: nothing is reconstructed
 };

@@ -399,6 +399,36 @@ TEST(PathPicture, PointsThatNoNeighborTellsGetMoreSamples) {
   EXPECT_GE(apart[apart.size() / 2], 16);
 }
 
+// In large pictures few points are sampled first. Which of the others lie in the dark is told by several of them: by
+// the one or two in a neighborhood of fixed size, pieces of the dark were decided by chance. Control: all points are
+// sampled.
+TEST(PathPicture, TheDarkIsFoundByFewPoints) {
+  const auto stage = ball_in_a_cup();
+  constexpr int kWidth = 160, kHeight = 120;
+  const std::vector<Gbuffer> samples = four_samples(*stage, from_above(), kWidth, kHeight);
+  PathRequest request;
+  request.options.bounces = 2, request.tolerance_de00 = 0, request.most_samples = 512;
+  const std::vector<PathPoint> truth = path_picture(*stage->transport, pointers(samples), nullptr, request).points;
+  request.options.correction = true;
+  const std::vector<PathPoint> change = path_picture(*stage->transport, pointers(samples), nullptr, request).points;
+  image::Image base;
+  base.width = kWidth, base.height = kHeight, base.channels = 3;
+  base.data.assign(std::size_t{kWidth} * kHeight * 3, 0);
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      base.pixel(truth[i].x, truth[i].y)[c] = static_cast<float>(truth[i].radiance[c] - change[i].radiance[c]);
+  request.reconstruct = true, request.most_samples = 8;
+  const auto error_with = [&](std::size_t first_points) {
+    request.first_points = first_points;
+    std::vector<double> errors;
+    const std::vector<PathPoint> drawn = path_picture(*stage->transport, pointers(samples), &base, request).points;
+    for (std::size_t i = 0; i < truth.size(); ++i)
+      errors.push_back(std::abs(drawn[i].radiance.y - change[i].radiance.y));
+    return percentile_95(errors);
+  };
+  EXPECT_LT(error_with(truth.size() / 32), 2.8 * error_with(truth.size()));
+}
+
 // Points that were drawn before, in other bands of a picture, share its tolerance: beside many without an error samples
 // end earlier, and beside worse ones no later than alone, which is the control. What is told is the error of all.
 TEST(PathPicture, SharesItsToleranceWithPointsThatWereDrawnBefore) {

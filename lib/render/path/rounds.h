@@ -74,6 +74,8 @@ void draw_round(const std::vector<std::uint32_t>& points, const Deadline* deadli
 // The points of a picture by their pixels.
 class PixelPoints {
  public:
+  static constexpr int kReach = 2;  // of a neighborhood, to each side
+
   PixelPoints() = default;
   PixelPoints(int width, int height)
       : width_(width),
@@ -85,9 +87,13 @@ class PixelPoints {
   // Calls visit(number) for each point near a pixel, one in it among them.
   template <class Visit>
   void visit_around(int x, int y, const Visit& visit) const {
-    constexpr int kReach = 2;  // pixels to each side
-    for (int v = std::max(0, y - kReach); v <= std::min(height_ - 1, y + kReach); ++v)
-      for (int u = std::max(0, x - kReach); u <= std::min(width_ - 1, x + kReach); ++u)
+    visit_within(kReach, x, y, visit);
+  }
+  // So many pixels to each side.
+  template <class Visit>
+  void visit_within(int reach, int x, int y, const Visit& visit) const {
+    for (int v = std::max(0, y - reach); v <= std::min(height_ - 1, y + reach); ++v)
+      for (int u = std::max(0, x - reach); u <= std::min(width_ - 1, x + reach); ++u)
         if (number_[place(u, v)] != kNone) visit(std::size_t{number_[place(u, v)]});
   }
 
