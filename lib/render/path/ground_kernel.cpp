@@ -34,9 +34,8 @@ struct Columns {
 
 // The logarithm of a power of which a lobe shows nothing: 1e-7.
 constexpr float kDarkest = -16.1F;
-// The parts of blocks are summed of tiles with a block that is seen larger than this, or from which the way to the
-// mirror direction has a larger cosine. In a test 95 of 100 points are within .8 % then, and within 6 % by whole
-// blocks.
+// Parts are summed in place of blocks in tiles with a block that is seen larger than this, or with this cosine to the
+// mirror direction. In a test 95 of 100 points are within .8 % then, and within 6 % by whole blocks.
 constexpr float kLargest_sr = 0.05F, kInLobes = 0.9F;
 
 // Adds the light that comes along these directions.
