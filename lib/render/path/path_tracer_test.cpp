@@ -323,6 +323,15 @@ std::vector<Gbuffer> four_samples(const PathStage& stage, const Camera& camera, 
   return samples;
 }
 
+// The picture that these changes were added to.
+image::Image without(const std::vector<PathPoint>& change, const std::vector<PathPoint>& truth, int width, int height) {
+  image::Image base = image::even_image(width, height, 3, {"R", "G", "B"});
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      base.pixel(truth[i].x, truth[i].y)[c] = static_cast<float>(truth[i].radiance[c] - change[i].radiance[c]);
+  return base;
+}
+
 // At the edges of a ball deep in a cup hardly anything is left of the light that the ball shows without the cup. What
 // is shown there is near that, at every point.
 TEST(PathPicture, EdgesInTheDarkShowTheLightThatIsLeft) {
@@ -337,12 +346,7 @@ TEST(PathPicture, EdgesInTheDarkShowTheLightThatIsLeft) {
   };
   const std::vector<PathPoint> truth = picture_of(false, false, 1024, nullptr),
                                change = picture_of(true, false, 1024, nullptr);
-  image::Image base;
-  base.width = kWidth, base.height = kHeight, base.channels = 3;
-  base.data.assign(std::size_t{kWidth} * kHeight * 3, 0);
-  for (std::size_t i = 0; i < truth.size(); ++i)
-    for (int c = 0; c < 3; ++c)
-      base.pixel(truth[i].x, truth[i].y)[c] = static_cast<float>(truth[i].radiance[c] - change[i].radiance[c]);
+  const image::Image base = without(change, truth, kWidth, kHeight);
   const auto too_dark = [&](const std::vector<PathPoint>& points) {
     return std::ranges::count_if(points, [&](const PathPoint& point) {
       const PathPoint& true_point = truth[static_cast<std::size_t>(&point - points.data())];
@@ -411,12 +415,7 @@ TEST(PathPicture, TheDarkIsFoundByFewPoints) {
   const std::vector<PathPoint> truth = path_picture(*stage->transport, pointers(samples), nullptr, request).points;
   request.options.correction = true;
   const std::vector<PathPoint> change = path_picture(*stage->transport, pointers(samples), nullptr, request).points;
-  image::Image base;
-  base.width = kWidth, base.height = kHeight, base.channels = 3;
-  base.data.assign(std::size_t{kWidth} * kHeight * 3, 0);
-  for (std::size_t i = 0; i < truth.size(); ++i)
-    for (int c = 0; c < 3; ++c)
-      base.pixel(truth[i].x, truth[i].y)[c] = static_cast<float>(truth[i].radiance[c] - change[i].radiance[c]);
+  const image::Image base = without(change, truth, kWidth, kHeight);
   request.reconstruct = true, request.most_samples = 8;
   const auto error_with = [&](std::size_t first_points) {
     request.first_points = first_points;

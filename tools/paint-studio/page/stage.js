@@ -87,7 +87,7 @@ class Stage {
     this.sparkling = false;  // whether single flakes are drawn
     this.ground = true;  // whether the environment lies on the ground
     this.versions = 0;
-    this.edgeRows = Infinity;  // of a step that draws edges
+    this.edgeRows = Infinity;  // that one step of smoothing draws
     this.turn = 0;     // of the environment about +Y, in degrees, as the camera's azimuth counts
     this.lamp = null;  // {direction, white}: where it stands beside the mesh, and what a white surface facing it shows
     this.partsVersion = 0;  // of what the parts wear
