@@ -34,6 +34,9 @@ static_assert(kChoices == kFilterChoices);
 constexpr Filter kErrorMean = {2, {3, 0.25F, 0.5F, kNoSlopes}};
 // A squared difference of a filter from its reference above this multiple of their common variance counts as bias.
 constexpr float kSurprise = 25;
+// The largest bias of the smallest filter, as a multiple of that of the next one beside it: 2.6 at the edge of a
+// shadow, by two normal kernels, and a ninth where light is curved.
+constexpr float kMostOfNext = 3;
 // Samples with so many times the variance of their neighborhood have a large part of it: some hundred points count in
 // its mean.
 constexpr float kLargePart = 16;
@@ -327,6 +330,9 @@ Measured measured(const std::vector<ShownPoint>& points, const Predictions& pred
     result.seen[n] = seen;
   });
   take_neighborhood_means(points, biases);
+  // Beside samples, a bias is lost in their noise.
+  each_point(points.size(),
+             [&](std::size_t n) { biases[n][1] = std::min(biases[n][1], kMostOfNext * std::max(0.0F, biases[n][2])); });
   result.mean_variances = result.variances;
   take_neighborhood_means(points, result.mean_variances);
   return result;
