@@ -34,9 +34,12 @@ static_assert(kChoices == kFilterChoices);
 constexpr Filter kErrorMean = {2, {3, 0.25F, 0.5F, kNoSlopes}};
 // A squared difference of a filter from its reference above this multiple of their common variance counts as bias.
 constexpr float kSurprise = 25;
-// The largest bias of the smallest filter, as a multiple of that of the next one beside it: 2.6 at the edge of a
-// shadow, by two normal kernels, and a ninth where light is curved.
+// A squared bias of the smallest filter, measured beside samples, is believed up to this multiple of that of the next
+// filter beside the smallest. Without noise it was 1.7 to 2.9 times that at edges of shadows, and .2 in smooth light.
 constexpr float kMostOfNext = 3;
+// More is believed where it exceeds this part of the variance of the samples: lines of one pixel have 9 times that of
+// the next filter.
+constexpr float kOfSamples = 0.25F;
 // Samples with so many times the variance of their neighborhood have a large part of it: some hundred points count in
 // its mean.
 constexpr float kLargePart = 16;
@@ -330,11 +333,13 @@ Measured measured(const std::vector<ShownPoint>& points, const Predictions& pred
     result.seen[n] = seen;
   });
   take_neighborhood_means(points, biases);
-  // Beside samples, a bias is lost in their noise.
-  each_point(points.size(),
-             [&](std::size_t n) { biases[n][1] = std::min(biases[n][1], kMostOfNext * std::max(0.0F, biases[n][2])); });
   result.mean_variances = result.variances;
   take_neighborhood_means(points, result.mean_variances);
+  each_point(points.size(), [&](std::size_t n) {
+    float& smallest = biases[n][1];
+    const float believed = kMostOfNext * std::max(0.0F, biases[n][2]);
+    smallest = std::min(smallest, std::max(believed, smallest - kOfSamples * result.mean_variances[n][0]));
+  });
   return result;
 }
 

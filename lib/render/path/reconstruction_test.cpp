@@ -110,6 +110,19 @@ TEST(Reconstruction, TellsNoLessThanItsError) {
   }
 }
 
+// A dark line of one pixel, four times as deep as the noise of a half. The smallest filter loses it already, so that
+// the next one hardly differs and does not tell its bias: by that alone, .42 of the error was told.
+TEST(Reconstruction, TellsALineOfOnePixel) {
+  const Told of = told(sheet(
+      [](const ShownPoint& point) {
+        const double below = point.y + 0.2 * point.x - 40;
+        return below > 0 && below < 1 ? color::Rgb{-0.2, -0.2, -0.2} : color::Rgb{};
+      },
+      0.05));
+  EXPECT_GT(of.told, 0.6 * of.error);
+  EXPECT_LT(of.error, 0.8 * of.sampled);
+}
+
 // Two kinds of points, drawn: the size that 5 of 100 errors exceed is found. The control is the 95th percentile of the
 // standard deviations, which is far from it.
 TEST(Reconstruction, LargestErrorsAreThoseOfNormalNumbers) {
