@@ -36,6 +36,10 @@ Curve lab_curve(double t) {
   return {root, root / (3 * t)};
 }
 
+// Of degrees.
+constexpr double kCos30 = 0.8660254037844387, kCos6 = 0.9945218953682733, kSin6 = 0.10452846326765347,
+                 kCos63 = 0.45399049973954675, kSin63 = 0.8910065241883678;
+
 double variance_along(const Vec3& v, const Covariance& c) {
   return v.x * v.x * c[0] + v.y * v.y * c[1] + v.z * v.z * c[2] +
          2 * (v.x * v.y * c[3] + v.x * v.z * c[4] + v.y * v.z * c[5]);
@@ -66,17 +70,21 @@ SeenRows::SeenRows(const color::Rgb& radiance, double white_luminance) {
     gradient[i] = (scale * f[i].slope) * xyz[i];
   }
   const double lightness = 116 * f[1].value - 16, a = 500 * (f[0].value - f[1].value),
-               b = 200 * (f[1].value - f[2].value), c7 = std::pow(std::hypot(a, b), 7);
+               b = 200 * (f[1].value - f[2].value), c2 = a * a + b * b, c7 = c2 * c2 * c2 * std::sqrt(c2);
   const double stretch = 1.5 - 0.5 * std::sqrt(c7 / (c7 + 6103515625.0)), a_prime = stretch * a,
-               chroma = std::hypot(a_prime, b);
+               chroma = std::sqrt(a_prime * a_prime + b * b);
   const Vec3 d_lightness = 116.0 * gradient[1], d_a = (500 * stretch) * (gradient[0] - gradient[1]),
              d_b = 200.0 * (gradient[1] - gradient[2]);
-  const double hue = std::atan2(b, a_prime), l50 = (lightness - 50) * (lightness - 50);
-  const double t = 1 - 0.17 * std::cos(hue - 0.5235987755982988) + 0.24 * std::cos(2 * hue) +
-                   0.32 * std::cos(3 * hue + 0.10471975511965978) - 0.2 * std::cos(4 * hue - 1.0995574287564276);
-  const double s_l = 1 + 0.015 * l50 / std::sqrt(20 + l50), s_c = 1 + 0.045 * chroma, s_h = 1 + 0.015 * chroma * t;
-  // Without chroma every direction is both.
+  // Of the hue h; without chroma every direction is both.
   const double cosine = chroma > 1e-9 ? a_prime / chroma : 1, sine = chroma > 1e-9 ? b / chroma : 0;
+  const double cos_2h = cosine * cosine - sine * sine, sin_2h = 2 * sine * cosine,
+               cos_3h = cos_2h * cosine - sin_2h * sine, sin_3h = sin_2h * cosine + cos_2h * sine,
+               cos_4h = cos_2h * cos_2h - sin_2h * sin_2h, sin_4h = 2 * sin_2h * cos_2h;
+  // 1 - .17 cos(h - 30) + .24 cos(2 h) + .32 cos(3 h + 6) - .2 cos(4 h - 63 deg)
+  const double t = 1 - 0.17 * (kCos30 * cosine + 0.5 * sine) + 0.24 * cos_2h +
+                   0.32 * (kCos6 * cos_3h - kSin6 * sin_3h) - 0.2 * (kCos63 * cos_4h + kSin63 * sin_4h);
+  const double l50 = (lightness - 50) * (lightness - 50);
+  const double s_l = 1 + 0.015 * l50 / std::sqrt(20 + l50), s_c = 1 + 0.045 * chroma, s_h = 1 + 0.015 * chroma * t;
   const Vec3 d_chroma = cosine * d_a + sine * d_b, d_hue = cosine * d_b - sine * d_a;
   rows = {(1 / s_l) * d_lightness, (1 / s_c) * d_chroma, (1 / s_h) * d_hue};
 }

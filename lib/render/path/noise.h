@@ -41,14 +41,10 @@ struct SeenRows {
 
   SeenRows() = default;
   SeenRows(const color::Rgb& radiance, double white_luminance);
-  double square(const color::Rgb& difference) const {
-    double sum = 0;
-    for (const Vec3& row : rows) {
-      const double along = dot(row, difference);
-      sum += along * along;
-    }
-    return sum;
+  Vec3 along(const color::Rgb& difference) const {
+    return {dot(rows[0], difference), dot(rows[1], difference), dot(rows[2], difference)};
   }
+  double square(const color::Rgb& difference) const { return dot(along(difference), along(difference)); }
 };
 
 // The root mean square CIEDE2000 difference between a radiance and the same with a small random error of this

@@ -31,7 +31,7 @@ constexpr int kLevels = 4;
 constexpr std::size_t kChoices = kFilters.size() + 1;
 static_assert(kChoices == kFilterChoices);
 // Errors are means over this neighborhood.
-constexpr Filter kErrorMean = {2, {3, 0.25F, 0.5F, kNoSlopes}};
+constexpr Filter kErrorMean = {2, {3, 0.25F, 0.5F}};
 // A squared difference of a filter from its reference above this multiple of their common variance counts as bias.
 constexpr float kSurprise = 25;
 // A squared bias of the smallest filter, measured beside samples, is believed up to this multiple of that of the next
@@ -56,110 +56,131 @@ void each_point(std::size_t count, const Visit& visit) {
 color::Rgb half(const Predicted& p, std::size_t which) {
   return {p[3 * which], p[3 * which + 1], p[3 * which + 2]};
 }
+color::Rgb mean_of(const Predicted& p) {
+  return 0.5 * (half(p, 0) + half(p, 1));
+}
 
 bool at_edge(const ShownPoint& point) {
   return !point.pieces.empty();
 }
 
-// The image of the points at edges or of all others, without those that have no value.
-SurfaceImage image_of(int width, int height, const std::vector<ShownPoint>& points,
-                      const std::vector<Predicted>& values, bool at_edges) {
-  SurfaceImage image(width, height);
-  each_point(points.size(), [&](std::size_t n) {
-    if (at_edge(points[n]) != at_edges || std::isnan(values[n][0])) return;
-    const ShownPiece& p = points[n].piece;
-    const std::size_t i = image.at(points[n].x, points[n].y);
-    image.weight[i] = 1, image.part[i] = static_cast<float>(p.part);
-    image.normal[0][i] = p.normal.x, image.normal[1][i] = p.normal.y, image.normal[2][i] = p.normal.z;
-    image.position[0][i] = p.position.x, image.position[1][i] = p.position.y, image.position[2][i] = p.position.z;
-    for (std::size_t c = 0; c < kHalvesChannels; ++c) image.value[c][i] = values[n][c];
+// What an element of an image shows, SurfaceImage; nothing where its weight is 0.
+template <std::size_t kChannels>
+struct Element {
+  float weight = 0, part = 0;
+  std::array<float, 2> shift = {};
+  std::array<float, 3> normal = {}, position = {};
+  std::array<float, kChannels> value = {};
+};
+
+template <std::size_t kChannels>
+Element<kChannels> element(const ShownPiece& piece, const std::array<float, kChannels>& value) {
+  const rays::Float3 &n = piece.normal, &p = piece.position;
+  return {1, static_cast<float>(piece.part), {}, {n.x, n.y, n.z}, {p.x, p.y, p.z}, value};
+}
+
+template <std::size_t kChannels>
+Element<kChannels> element(const SurfaceImage& image, std::size_t i) {
+  Element<kChannels> e;
+  e.weight = image.weight[i], e.part = image.part[i];
+  for (std::size_t c = 0; c < 2; ++c) e.shift[c] = image.shift[c][i];
+  for (std::size_t c = 0; c < 3; ++c) e.normal[c] = image.normal[c][i], e.position[c] = image.position[c][i];
+  for (std::size_t c = 0; c < kChannels; ++c) e.value[c] = image.value[c][i];
+  return e;
+}
+
+template <std::size_t kChannels>
+void put(const Element<kChannels>& e, SurfaceImage& image, std::size_t i) {
+  image.weight[i] = e.weight, image.part[i] = e.part;
+  for (std::size_t c = 0; c < 2; ++c) image.shift[c][i] = e.shift[c];
+  for (std::size_t c = 0; c < 3; ++c) image.normal[c][i] = e.normal[c], image.position[c][i] = e.position[c];
+  for (std::size_t c = 0; c < kChannels; ++c) image.value[c][i] = e.value[c];
+}
+
+// An element of the coarser image is the mean of those of its four that lie on one piece of surface.
+template <std::size_t kChannels>
+Element<kChannels> mean_of(const std::array<Element<kChannels>, 4>& fine) {
+  const Element<kChannels>& pivot = *std::ranges::max_element(fine, {}, &Element<kChannels>::weight);
+  Element<kChannels> mean;
+  if (!(pivot.weight > 0)) return mean;
+  mean.part = pivot.part;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Element<kChannels>& of = fine[k];
+    float turn = 0;
+    for (std::size_t c = 0; c < 3; ++c) turn += of.normal[c] * pivot.normal[c];
+    if (!(of.weight > 0) || of.part != pivot.part || turn < kSamePiece) continue;
+    mean.weight += of.weight;
+    mean.shift[0] += of.weight * (static_cast<float>(k % 2) - 0.5F + of.shift[0]) / 2;
+    mean.shift[1] += of.weight * (static_cast<float>(k / 2) - 0.5F + of.shift[1]) / 2;
+    for (std::size_t c = 0; c < 3; ++c)
+      mean.normal[c] += of.weight * of.normal[c], mean.position[c] += of.weight * of.position[c];
+    for (std::size_t c = 0; c < kChannels; ++c) mean.value[c] += of.weight * of.value[c];
+  }
+  float length = 0;
+  for (const float along : mean.normal) length += along * along;
+  length = std::sqrt(length);
+  for (float& along : mean.normal) along /= length;
+  for (float& along : mean.position) along /= mean.weight;
+  for (float& by : mean.shift) by /= mean.weight;
+  for (float& value : mean.value) value /= mean.weight;
+  return mean;
+}
+
+// Calls of(x, y) for the four elements beneath one of the coarser image.
+template <class Of>
+auto mean_below(int x, int y, const Of& of) {
+  return mean_of(std::array{of(2 * x, 2 * y), of(2 * x + 1, 2 * y), of(2 * x, 2 * y + 1), of(2 * x + 1, 2 * y + 1)});
+}
+
+SurfaceImage coarser(const SurfaceImage& fine) {
+  SurfaceImage image((fine.width + 1) / 2, (fine.height + 1) / 2, kHalvesChannels);
+  for_pixels(image.width, image.height, [&](int x, int y) {
+    put(mean_below(x, y, [&](int u, int v) { return element<kHalvesChannels>(fine, fine.at(u, v)); }), image,
+        image.at(x, y));
   });
   return image;
 }
 
-// An element of the coarser image is the mean of those of its four that lie on one piece of surface.
-void average(const SurfaceImage& fine, int x, int y, SurfaceImage& image) {
-  std::size_t pivot = fine.at(2 * x, 2 * y);
-  for (int k = 1; k < 4; ++k) {
-    const std::size_t j = fine.at(2 * x + k % 2, 2 * y + k / 2);
-    if (fine.weight[j] > fine.weight[pivot]) pivot = j;
-  }
-  if (!(fine.weight[pivot] > 0)) return;
-  const std::size_t i = image.at(x, y);
-  image.part[i] = fine.part[pivot];
-  float sum = 0;
-  for (int k = 0; k < 4; ++k) {
-    const std::size_t j = fine.at(2 * x + k % 2, 2 * y + k / 2);
-    const float weight = fine.weight[j];
-    float turn = 0;
-    for (std::size_t c = 0; c < 3; ++c) turn += fine.normal[c][j] * fine.normal[c][pivot];
-    if (!(weight > 0) || fine.part[j] != fine.part[pivot] || turn < kSamePiece) continue;
-    sum += weight;
-    image.shift[0][i] += weight * (static_cast<float>(k % 2) - 0.5F + fine.shift[0][j]) / 2;
-    image.shift[1][i] += weight * (static_cast<float>(k / 2) - 0.5F + fine.shift[1][j]) / 2;
-    for (std::size_t c = 0; c < 3; ++c)
-      image.normal[c][i] += weight * fine.normal[c][j], image.position[c][i] += weight * fine.position[c][j];
-    for (std::size_t c = 0; c < kHalvesChannels; ++c) image.value[c][i] += weight * fine.value[c][j];
-  }
-  image.weight[i] = sum;
-  float length = 0;
-  for (std::size_t c = 0; c < 3; ++c) length += image.normal[c][i] * image.normal[c][i];
-  length = std::sqrt(length);
-  for (std::size_t c = 0; c < 3; ++c) image.normal[c][i] /= length, image.position[c][i] /= sum;
-  for (auto& plane : image.shift) plane[i] /= sum;
-  for (auto& plane : image.value) plane[i] /= sum;
-}
-
-SurfaceImage coarser(const SurfaceImage& fine) {
-  SurfaceImage image((fine.width + 1) / 2, (fine.height + 1) / 2);
-  for_pixels(image.width, image.height, [&](int x, int y) { average(fine, x, y, image); });
-  return image;
-}
-
-// The linear functions around each element of some rows of an image, which lies on a level of the pyramid.
+// Linear functions of half lights, or means of errors, around each element of some rows of an image, which lies on a
+// level of the pyramid.
+template <class Value>
 class Fits {
  public:
   Fits(const SurfaceImage& image, const Filter& filter, int begin, int end)
-      : image_(image), filter_(filter), begin_(begin) {
-    const auto width = static_cast<std::size_t>(image.width);
-    const std::size_t row = (width + SurfaceImage::kLanes - 1) / SurfaceImage::kLanes * SurfaceImage::kLanes;
-    coefficients_.reserve(kCoefficients * width * static_cast<std::size_t>(end - begin));
-    std::vector<float> planes(kCoefficients * row);
-    std::array<float*, kCoefficients> plane{};
-    for (std::size_t k = 0; k < kCoefficients; ++k) plane[k] = &planes[k * row];
-    for (int y = begin; y < end; ++y) {
-      fit_row(image, filter.window, y, plane.data());
-      for (std::size_t x = 0; x < width; ++x)
-        for (std::size_t k = 0; k < kCoefficients; ++k) coefficients_.push_back(plane[k][x]);
-    }
+      : image_(image),
+        filter_(filter),
+        begin_(begin),
+        coefficients_(kCoefficients * static_cast<std::size_t>(image.width * (end - begin))) {
+    for (int y = begin; y < end; ++y) (kFeatures > 1 ? fit_row : mean_row)(image, filter.window, y, coefficients(0, y));
   }
 
-  Predicted at(const ShownPoint& point) const {
+  Value at(const ShownPoint& point) const {
     if (!at_edge(point)) return of_piece(point);
-    Predicted sum{};
+    Value sum{};
     for (const ShownPiece& piece : point.pieces) {
-      const Predicted one = about(point.x, point.y, piece, kFarReach);
-      for (std::size_t c = 0; c < kHalvesChannels; ++c) sum[c] += piece.share * one[c];
+      const Value one = about(point.x, point.y, piece, kFarReach);
+      for (std::size_t c = 0; c < kChannels; ++c) sum[c] += piece.share * one[c];
     }
     return sum;
   }
   // The light of its one piece, as if it were at no edge.
-  Predicted of_piece(const ShownPoint& point) const {
+  Value of_piece(const ShownPoint& point) const {
     if (filter_.level == 0 && image_.weight[image_.at(point.x, point.y)] > 0) return own(point);
     return about(point.x, point.y, point.piece, filter_.level == 0 ? kFarReach : kNearReach);
   }
 
  private:
-  static constexpr std::size_t kCoefficients = kSurfaceFeatures * kHalvesChannels;
+  static constexpr std::size_t kChannels = std::tuple_size_v<Value>,
+                               kFeatures = kChannels == kHalvesChannels ? kSurfaceFeatures : 1,
+                               kCoefficients = kFeatures * kChannels;
 
   // By feature and channel.
-  const float* coefficients(int x, int y) const {
-    const auto width = static_cast<std::size_t>(image_.width);
-    return &coefficients_[kCoefficients * (static_cast<std::size_t>(y - begin_) * width + static_cast<std::size_t>(x))];
-  }
-  Predicted own(const ShownPoint& point) const {
-    Predicted result;
-    std::copy_n(coefficients(point.x, point.y), kHalvesChannels, result.begin());
+  const float* coefficients(int x, int y) const { return &coefficients_[kCoefficients * place(x, y)]; }
+  float* coefficients(int x, int y) { return &coefficients_[kCoefficients * place(x, y)]; }
+  std::size_t place(int x, int y) const { return static_cast<std::size_t>((y - begin_) * image_.width + x); }
+  Value own(const ShownPoint& point) const {
+    Value result;
+    std::copy_n(coefficients(point.x, point.y), kChannels, result.begin());
     return result;
   }
 
@@ -168,26 +189,26 @@ class Fits {
   static constexpr float kNearReach = 1, kFarReach = 1.5F;
 
   // The mean of what the elements about a pixel tell of a piece of surface in it; not a number where none does.
-  Predicted about(int pixel_x, int pixel_y, const ShownPiece& piece, float reach) const {
+  Value about(int pixel_x, int pixel_y, const ShownPiece& piece, float reach) const {
     const int count = static_cast<int>(2 * reach);
     const auto size = static_cast<float>(1 << filter_.level);
     const float u = (static_cast<float>(pixel_x) + 0.5F) / size - 0.5F,
                 v = (static_cast<float>(pixel_y) + 0.5F) / size - 0.5F;
     const int left = static_cast<int>(std::ceil(u - reach)), top = static_cast<int>(std::ceil(v - reach));
-    Predicted sum{};
+    Value sum{};
     float weights = 0;
     for (int y = std::max(0, top); y < std::min(image_.height, top + count); ++y)
       for (int x = std::max(0, left); x < std::min(image_.width, left + count); ++x)
         weights += add(x, y, u - static_cast<float>(x), v - static_cast<float>(y), piece, reach, sum);
-    for (float& value : sum) value = weights > 1e-3F ? value / weights : kNowhere;
+    const float per_weight = weights > 1e-3F ? 1 / weights : kNowhere;
+    for (float& value : sum) value *= per_weight;
     return sum;
   }
 
   // Adds what the fit of an element tells, and returns the weight of that.
-  float add(int x, int y, float right, float down, const ShownPiece& piece, float reach, Predicted& sum) const {
+  float add(int x, int y, float right, float down, const ShownPiece& piece, float reach, Value& sum) const {
     const std::size_t i = image_.at(x, y);
     if (!(image_.weight[i] > 0) || image_.part[i] != static_cast<float>(piece.part)) return 0;
-    const RegressionWindow& window = filter_.window;
     const rays::Float3 normal{image_.normal[0][i], image_.normal[1][i], image_.normal[2][i]},
         position{image_.position[0][i], image_.position[1][i], image_.position[2][i]};
     const rays::Float3 turned = piece.normal - normal, way = piece.position - position;
@@ -195,39 +216,43 @@ class Fits {
     // The direction of the way tells nothing at the middle of the element's points, which on a bent surface lies off
     // it.
     const float off = rays::dot(way, normal), off_plane = off * off / (rays::dot(way, way) + 1e-20F);
-    const float far = rays::dot(turned, turned) / (window.normal * window.normal) +
-                      std::min(1.0F, across * across + below * below) * off_plane / (window.plane * window.plane);
+    const float far = per_normal_ * per_normal_ * rays::dot(turned, turned) +
+                      std::min(1.0F, across * across + below * below) * per_plane_ * per_plane_ * off_plane;
     if (far >= 1) return 0;
     const float weight = (reach - std::abs(right)) * (reach - std::abs(down)) * (1 - far) * (1 - far);
     if (!(weight > 0)) return 0;
-    const float scale = 1.0F / (static_cast<float>(window.reach) + 0.5F);
-    const rays::Frame tangents = rays::frame_about(normal);
-    const std::array<float, kSurfaceFeatures> feature = {1, scale * across, scale * below,
-                                                         rays::dot(turned, tangents.x) / window.normal,
-                                                         rays::dot(turned, tangents.y) / window.normal};
+    std::array<float, kFeatures> feature = {weight};
+    if constexpr (kFeatures > 1) {
+      const float place = weight * per_reach_, turn = weight * per_normal_;
+      const rays::Frame tangents = rays::frame_about(normal);
+      feature = {weight, place * across, place * below, turn * rays::dot(turned, tangents.x),
+                 turn * rays::dot(turned, tangents.y)};
+    }
     const float* fitted = coefficients(x, y);
-    for (std::size_t f = 0; f < kSurfaceFeatures; ++f)
-      for (std::size_t c = 0; c < kHalvesChannels; ++c) sum[c] += weight * feature[f] * *fitted++;
+    for (std::size_t f = 0; f < kFeatures; ++f)
+      for (std::size_t c = 0; c < kChannels; ++c) sum[c] += feature[f] * *fitted++;
     return weight;
   }
 
   const SurfaceImage& image_;
   const Filter& filter_;
-  int begin_;                        // the first row
-  std::vector<float> coefficients_;  // by element
+  int begin_;  // the first row
+  const float per_reach_ = 1 / (static_cast<float>(filter_.window.reach) + 0.5F),
+              per_normal_ = 1 / filter_.window.normal, per_plane_ = 1 / filter_.window.plane;
+  UnsetArray<float> coefficients_;  // by element
 };
 
 // Calls visit(fits, n) for each point, where the fits have the rows about it: bands of rows are fitted one by one,
 // because the functions of a whole image fill more memory than all else.
-template <class Visit>
+template <class Value, class Visit>
 void each_fit(const Filter& filter, const SurfaceImage& image, const std::vector<ShownPoint>& points,
               const Visit& visit) {
   constexpr int kAround = 1;  // rows on each side of those in which points lie
-  const int rows = std::max(16, 64 >> filter.level), bands = (image.height + rows - 1) / rows;
+  const int rows = std::max(4, 32 >> filter.level), bands = (image.height + rows - 1) / rows;
   parallel_for(static_cast<std::size_t>(bands), 1, [&](std::size_t first, std::size_t last) {
     for (int band = static_cast<int>(first); band < static_cast<int>(last); ++band) {
       const int begin = band * rows, end = std::min(image.height, begin + rows);
-      const Fits fits(image, filter, std::max(0, begin - kAround), std::min(image.height, end + kAround));
+      const Fits<Value> fits(image, filter, std::max(0, begin - kAround), std::min(image.height, end + kAround));
       auto point = std::ranges::lower_bound(points, begin << filter.level, {}, &ShownPoint::y);
       for (; point != points.end() && point->y >> filter.level < end; ++point)
         visit(fits, static_cast<std::size_t>(point - points.begin()));
@@ -235,21 +260,30 @@ void each_fit(const Filter& filter, const SurfaceImage& image, const std::vector
   });
 }
 
+// Two halves as they are seen, so that squares of differences are those of CIEDE2000.
+using SeenHalves = std::array<Vec3, 2>;
+
+double square(const Vec3& v) {
+  return dot(v, v);
+}
+
 // The variance of the mean of two halves, whose difference is noise alone.
-double variance(const SeenRows& seen, const Predicted& halves) {
-  return 0.25 * seen.square(half(halves, 0) - half(halves, 1));
+double variance(const SeenHalves& halves) {
+  return 0.25 * square(halves[0] - halves[1]);
 }
 
 // The squared bias of a filter beside a reference: each filtered half differs from the other half of the reference by
 // the bias, by the noise that the filter leaves of one, and by that of the other. Its expectation is exact, and it may
 // be negative.
-double squared_bias(const SeenRows& seen, const Predicted& reference, const Predicted& filtered) {
-  return 0.5 * (seen.square(half(filtered, 0) - half(reference, 1)) +
-                seen.square(half(filtered, 1) - half(reference, 0))) -
-         2 * (variance(seen, reference) + variance(seen, filtered));
+double squared_bias(const SeenHalves& reference, const SeenHalves& filtered) {
+  return 0.5 * (square(filtered[0] - reference[1]) + square(filtered[1] - reference[0])) -
+         2 * (variance(reference) + variance(filtered));
 }
 
+// Errors of all choices.
 using Values = std::array<float, kChoices>;
+// Variances, and then squared biases.
+using Errors = std::array<float, 2 * kChoices>;
 static_assert(kChoices == kHalvesChannels);
 
 // The reference of the wider filters is the smallest one, whose noise is less than that of the samples.
@@ -259,8 +293,8 @@ std::size_t reference_of(std::size_t choice) {
 
 // Measurements at each point from which the errors of all choices follow.
 struct Measured {
-  std::vector<SeenRows> seen;
-  std::vector<Values> variances, mean_variances, mean_biases;
+  std::vector<Values> variances, apart;  // apart: squared differences from the references
+  std::vector<Errors> means;             // over neighborhoods
 };
 
 using Predictions = std::array<std::vector<Predicted>, kChoices>;
@@ -278,29 +312,49 @@ Predictions all_predictions(const std::vector<ShownPoint>& points, const std::ve
     for (std::size_t c = 0; c < kHalvesChannels; ++c)
       predicted[0][n][c] = static_cast<float>(halves[n][c / 3][static_cast<int>(c % 3)]);
   });
-  SurfaceImage image = image_of(width, height, points, predicted[0], false);
+  SurfaceImage image(width, height, kHalvesChannels);
+  each_point(points.size(), [&](std::size_t n) {
+    if (at_edge(points[n]) || std::isnan(predicted[0][n][0])) return;
+    put(element(points[n].piece, predicted[0][n]), image, image.at(points[n].x, points[n].y));
+  });
   for (int level = 0; level < kLevels; ++level) {
     if (level > 0) image = coarser(image);
     for (std::size_t f = 0; f < kFilters.size(); ++f) {
       if (kFilters[f].level != level) continue;
       predicted[f + 1].resize(points.size());
-      each_fit(kFilters[f], image, points,
-               [&](const Fits& fits, std::size_t n) { predicted[f + 1][n] = fits.at(points[n]); });
+      each_fit<Predicted>(kFilters[f], image, points,
+                          [&](const auto& fits, std::size_t n) { predicted[f + 1][n] = fits.at(points[n]); });
     }
   }
   return predicted;
 }
 
-// Values at points become means over their neighborhoods. Errors at edges are no mean of those beside them, so that
-// each kind has an image of its own, in which the few points at edges are not lost among the others.
-void take_neighborhood_means(const std::vector<ShownPoint>& points, std::vector<Values>& values) {
+// Errors at points become means over their neighborhoods. Those at edges are no mean of those beside them, so that each
+// kind has an image of its own, in which the few points at edges are not lost among the others.
+void take_neighborhood_means(const std::vector<ShownPoint>& points, std::vector<Errors>& errors) {
+  static_assert(kErrorMean.level == 2);
   const auto [width, height] = size_of(points);
+  std::vector<const Errors*> by_pixel(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), nullptr);
+  const auto place = [width = width](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  };
   for (const bool at_edges : {false, true}) {
-    SurfaceImage image = image_of(width, height, points, values, at_edges);
-    for (int level = 0; level < kErrorMean.level; ++level) image = coarser(image);
-    each_fit(kErrorMean, image, points, [&](const Fits& fits, std::size_t n) {
+    each_point(points.size(), [&](std::size_t n) {
+      const bool is_part = at_edge(points[n]) == at_edges && !std::isnan(errors[n][0]);
+      by_pixel[place(points[n].x, points[n].y)] = is_part ? &errors[n] : nullptr;
+    });
+    const auto pixel = [&, width = width, height = height](int x, int y) {
+      const Errors* const own = x < width && y < height ? by_pixel[place(x, y)] : nullptr;
+      return own != nullptr ? element(points[static_cast<std::size_t>(own - errors.data())].piece, *own)
+                            : Element<2 * kChoices>();
+    };
+    SurfaceImage image((width + 3) / 4, (height + 3) / 4, 2 * kChoices);
+    for_pixels(image.width, image.height, [&](int x, int y) {
+      put(mean_below(x, y, [&](int u, int v) { return mean_below(u, v, pixel); }), image, image.at(x, y));
+    });
+    each_fit<Errors>(kErrorMean, image, points, [&](const auto& fits, std::size_t n) {
       if (at_edge(points[n]) != at_edges) return;
-      if (const Values mean = fits.of_piece(points[n]); !std::isnan(mean[0])) values[n] = mean;
+      if (const Errors mean = fits.of_piece(points[n]); !std::isnan(mean[0])) errors[n] = mean;
     });
   }
 }
@@ -309,54 +363,50 @@ void take_neighborhood_means(const std::vector<ShownPoint>& points, std::vector<
 Measured measured(const std::vector<ShownPoint>& points, const Predictions& predicted,
                   const std::vector<color::Rgb>& beside, double white_luminance) {
   Measured result;
-  result.seen.resize(points.size()), result.variances.resize(points.size()), result.mean_biases.resize(points.size());
-  std::vector<Values>& biases = result.mean_biases;
+  result.apart.resize(points.size()), result.variances.resize(points.size()), result.means.resize(points.size());
   each_point(points.size(), [&](std::size_t n) {
     std::size_t finest = 2;  // of the filters that tell this point
     while (finest < kChoices && std::isnan(predicted[finest][n][0])) ++finest;
     const Predicted& smooth = predicted[finest < kChoices ? finest : 0][n];
-    const color::Rgb shown = beside[n] + 0.5 * (half(smooth, 0) + half(smooth, 1));
+    const color::Rgb shown = beside[n] + mean_of(smooth);
     const SeenRows seen({std::max(0.0, shown.x), std::max(0.0, shown.y), std::max(0.0, shown.z)}, white_luminance);
+    Values &variances = result.variances[n], &apart = result.apart[n];
+    Errors& errors = result.means[n];
+    std::array<SeenHalves, kChoices> halves;
+    for (std::size_t k = 0; k < kChoices; ++k)
+      halves[k] = {seen.along(half(predicted[k][n], 0)), seen.along(half(predicted[k][n], 1))};
+    const bool is_sampled = !std::isnan(predicted[0][n][0]);
     for (std::size_t k = 0; k < kChoices; ++k) {
-      const Predicted &one = predicted[k][n], &reference = predicted[reference_of(k)][n];
-      const bool known = !std::isnan(one[0]) && !std::isnan(reference[0]);
-      result.variances[n][k] = static_cast<float>(variance(seen, known ? one : predicted[0][n]));
-      biases[n][k] = known ? static_cast<float>(squared_bias(seen, reference, one)) : 0;
+      const SeenHalves &one = halves[k], &reference = halves[reference_of(k)];
+      const bool is_known = !std::isnan(predicted[k][n][0]) && !std::isnan(predicted[reference_of(k)][n][0]);
+      // A point without samples is no part of neighborhoods. Its filters have variances that neighbors tell.
+      variances[k] = static_cast<float>(variance(is_known || !is_sampled ? one : halves[0]));
+      errors[k] = variances[k];
+      errors[kChoices + k] = is_known ? static_cast<float>(squared_bias(reference, one)) : 0;
+      const Vec3 twice = one[0] + one[1] - reference[0] - reference[1];
+      apart[k] = is_known ? static_cast<float>(0.25 * square(twice)) : 0;
     }
-    // A point without samples is no part of neighborhoods. Its filters have variances that neighbors tell.
-    if (std::isnan(predicted[0][n][0])) {
-      result.variances[n][0] = biases[n][0] = kNowhere;
-      for (std::size_t k = 1; k < kChoices; ++k)
-        if (!std::isnan(predicted[k][n][0]))
-          result.variances[n][k] = static_cast<float>(variance(seen, predicted[k][n]));
-    }
-    result.seen[n] = seen;
   });
-  take_neighborhood_means(points, biases);
-  result.mean_variances = result.variances;
-  take_neighborhood_means(points, result.mean_variances);
+  take_neighborhood_means(points, result.means);
   each_point(points.size(), [&](std::size_t n) {
-    float& smallest = biases[n][1];
-    const float believed = kMostOfNext * std::max(0.0F, biases[n][2]);
-    smallest = std::min(smallest, std::max(believed, smallest - kOfSamples * result.mean_variances[n][0]));
+    Errors& mean = result.means[n];
+    float& smallest = mean[kChoices + 1];
+    const float believed = kMostOfNext * std::max(0.0F, mean[kChoices + 2]);
+    smallest = std::min(smallest, std::max(believed, smallest - kOfSamples * mean[0]));
   });
   return result;
 }
 
 // The squared error of a choice at a point, where it is a number.
-float squared_error(const Predictions& predicted, const Measured& measured, std::size_t n, std::size_t choice) {
-  const Values& mean = measured.mean_variances[n];
+float squared_error(const Measured& measured, std::size_t n, std::size_t choice) {
+  const Errors& mean = measured.means[n];
   if (std::isnan(mean[0])) return HUGE_VALF;
   const Values& own = measured.variances[n];
   const std::size_t reference = reference_of(choice);
-  float bias = std::max(0.0F, measured.mean_biases[n][choice]);
-  if (reference > 0) bias += std::max(0.0F, measured.mean_biases[n][reference]);
-  const Predicted &one = predicted[choice][n], &other = predicted[reference][n];
-  if (choice > 0 && !std::isnan(other[0])) {
-    const color::Rgb apart = 0.5 * (half(one, 0) + half(one, 1) - half(other, 0) - half(other, 1));
-    const float noise = std::max(mean[choice], own[choice]) + std::max(mean[reference], own[reference]);
-    bias = std::max(bias, static_cast<float>(measured.seen[n].square(apart)) - kSurprise * noise);
-  }
+  float bias = std::max(0.0F, mean[kChoices + choice]);
+  if (reference > 0) bias += std::max(0.0F, mean[kChoices + reference]);
+  const float noise = std::max(mean[choice], own[choice]) + std::max(mean[reference], own[reference]);
+  bias = std::max(bias, measured.apart[n][choice] - kSurprise * noise);
   return std::max({mean[choice], own[choice] / kSpike, 1e-6F}) + bias;
 }
 
@@ -372,14 +422,13 @@ Reconstruction reconstruction(const std::vector<ShownPoint>& points, const std::
   each_point(points.size(), [&](std::size_t n) {
     Values error{};
     for (std::size_t k = 0; k < kChoices; ++k)
-      error[k] = std::isnan(predicted[k][n][0]) ? HUGE_VALF : squared_error(predicted, errors, n, k);
+      error[k] = std::isnan(predicted[k][n][0]) ? HUGE_VALF : squared_error(errors, n, k);
     if (filters == Filters::kNone) {
       error.fill(HUGE_VALF);
-      if (!std::isnan(predicted[0][n][0])) error[0] = std::max(errors.mean_variances[n][0], 1e-6F);
+      if (!std::isnan(predicted[0][n][0])) error[0] = std::max(errors.means[n][0], 1e-6F);
     }
     const float own = errors.variances[n][0];
-    if (filters == Filters::kChosen && own > kLargePart * errors.mean_variances[n][0])
-      result.spike_de00[n] = std::sqrt(own);
+    if (filters == Filters::kChosen && own > kLargePart * errors.means[n][0]) result.spike_de00[n] = std::sqrt(own);
     const float least = *std::ranges::min_element(error);
     if (std::isinf(least)) {
       result.error_de00[n] = HUGE_VALF;
@@ -390,7 +439,7 @@ Reconstruction reconstruction(const std::vector<ShownPoint>& points, const std::
       if (std::isinf(error[k])) continue;
       const double ratio = least / error[k], weight = ratio * ratio * ratio * ratio;
       weights += weight, squared += weight * error[k];
-      result.light[n] += weight * 0.5 * (half(predicted[k][n], 0) + half(predicted[k][n], 1));
+      result.light[n] += weight * mean_of(predicted[k][n]);
       result.shares[n][k] = static_cast<float>(weight);
     }
     result.light[n] = (1 / weights) * result.light[n];

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/unset_array.h"
+
 namespace goniochrome::render {
 
 // Two halves of three channels.
@@ -14,24 +16,26 @@ constexpr std::size_t kHalvesChannels = 6;
 // 1, x, y, and the normal along two tangents.
 constexpr std::size_t kSurfaceFeatures = 5;
 
-// An image of a surface with a border of kBorder empty elements, one plane for each quantity.
+// An image of a surface with a border of kBorder empty elements, one plane for each quantity; 0 until it is written.
 struct SurfaceImage {
   static constexpr int kBorder = 5;
   static constexpr int kLanes = 16;  // Elements that a kernel may read past the end of a row.
 
   int width = 0, height = 0;
   std::size_t stride = 0;
-  std::vector<float> weight;                              // 0 where nothing is shown
-  std::vector<float> part;                                // Elements of different parts share nothing.
-  std::array<std::vector<float>, 2> shift;                // from the element's center, in elements
-  std::array<std::vector<float>, 3> normal, position;     // unit; world
-  std::array<std::vector<float>, kHalvesChannels> value;  // to be fitted
+  float *weight = nullptr, *part = nullptr;  // 0 where nothing is shown. Elements of different parts share nothing.
+  std::array<float*, 2> shift = {};          // from the element's center, in elements
+  std::array<float*, 3> normal = {}, position = {};  // unit; world
+  std::vector<float*> value;                         // to be fitted
 
   SurfaceImage() = default;
-  SurfaceImage(int w, int h);
+  SurfaceImage(int w, int h, std::size_t channels);
   std::size_t at(int x, int y) const {
     return (static_cast<std::size_t>(y) + kBorder) * stride + static_cast<std::size_t>(x) + kBorder;
   }
+
+ private:
+  UnsetArray<float> planes_;
 };
 
 // The elements that count in a fit around another one. Their weights fall to 0 at these distances.
@@ -39,14 +43,12 @@ struct RegressionWindow {
   int reach = SurfaceImage::kBorder;  // elements to each side, at most kBorder
   float normal = 0.1F;                // length of the difference of the normals
   float plane = 0.5F;                 // sine of the angle of the way between both with the surface
-  // The part of the weight that is added to the square of each slope: where a window tells nothing of a slope, it is 0.
-  // With much of it, fits are means.
-  float ridge = 2e-3F;
 };
-constexpr float kNoSlopes = 1e6F;
 
-// The linear functions fitted around the elements of a row: coefficients[feature * kHalvesChannels + channel] has one
-// value for each element of the row.
-void fit_row(const SurfaceImage& image, const RegressionWindow& window, int y, float* const* coefficients);
+// The linear functions fitted to kHalvesChannels around the elements of a row: coefficients of all channels by feature,
+// kSurfaceFeatures * kHalvesChannels for each element. Those of empty elements are left as they are.
+void fit_row(const SurfaceImage& image, const RegressionWindow& window, int y, float* coefficients);
+// The means of 2 * kHalvesChannels around them.
+void mean_row(const SurfaceImage& image, const RegressionWindow& window, int y, float* means);
 
 }  // namespace goniochrome::render
