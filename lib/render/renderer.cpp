@@ -437,11 +437,12 @@ Result<void> Renderer::load(const Scene& scene, const Effects& effects, const st
   s.engine = &engine;
   GONIO_TRY(s.show(*scene.mesh));
   if (effects.panes && !info->traces_rays) GONIO_TRY(s.meet(scene));
-  if (s.summed() != nullptr) GONIO_TRY(s.summed()->load(scene, effects));
   // The floor lies before the background, and is drawn with it.
   Effects by_engine = effects;
   if (effects.rays.floor) by_engine.background = Background::kNone;
-  return engine.load(scene, by_engine);
+  GONIO_TRY(engine.load(scene, by_engine));
+  return s.summed() != nullptr ? s.summed()->load(scene, effects, dynamic_cast<const CpuEngine*>(&engine))
+                               : Result<void>();
 }
 
 Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
@@ -483,7 +484,7 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
   s.sums_may_stop = is_drawn_unasked(plan, kSumsName);
   GONIO_ASSIGN(const EngineInfo* taken, engine_named(plan.engine));
   if (taken == &CpuEngine::kInfo) {  // that which tried out the plan has the maps
-    tried->keep_maps();
+    tried->share_maps(*tried);
     Engine& old = s.engine_of(*taken);
     if (s.engine == &old) s.engine = tried.get();
     std::ranges::find(s.made, &old, &std::unique_ptr<Engine>::get)->reset(tried.release());

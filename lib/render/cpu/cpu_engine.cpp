@@ -16,14 +16,15 @@ namespace {
 
 constexpr std::size_t kBlock = 8;  // floats of a texel: two maps
 
-UnsetArray<float> interleaved(const std::vector<envmap::MapPointer>& maps, std::size_t stride) {
-  const std::size_t texels = bordered_texels(maps.front()->size);
+UnsetArray<float> interleaved(const std::vector<envmap::MapPointer>& maps, int size, std::size_t stride) {
+  const std::size_t texels = bordered_texels(size);
   UnsetArray<float> data(texels * stride + kBlock);  // the last texel is read by the block
   // Floats that hold no map have the weight 0, and must be numbers for that.
   std::fill_n(&data[texels * stride], kBlock, 0.0F);
   for (std::size_t i = 0; stride > 4 * maps.size() && i < texels; ++i)
     std::fill_n(&data[i * stride + 4 * maps.size()], 4, 0.0F);
-  parallel_each(maps.size(), 1, [&](std::size_t map) { put_bordered(*maps[map], stride, &data[4 * map]); });
+  parallel_each(maps.size(), 1,
+                [&](std::size_t map) { put_bordered(*at_size(maps[map], size), stride, &data[4 * map]); });
   return data;
 }
 
@@ -80,17 +81,17 @@ InterleavedMaps CpuEngine::Stack::maps() const {
 CpuEngine::Stack CpuEngine::interleaved(const MapClass& maps, MapUse use) {
   const std::size_t blocks = (maps.maps.size() + 1) / 2, stride = maps.maps.size() == 1 ? kBlock / 2 : blocks * kBlock;
   return {maps, use, static_cast<int>(blocks), static_cast<int>(stride),
-          std::make_shared<const UnsetArray<float>>(render::interleaved(maps.maps, stride))};
+          std::make_shared<const UnsetArray<float>>(render::interleaved(maps.maps, maps.size, stride))};
 }
 
-// The maps of a scene that can be loaded, for the effects that were loaded.
-void CpuEngine::stack(const SceneMaps& maps) {
+// The maps of a scene that can be loaded, for the effects that were loaded; those that are known already are shared.
+void CpuEngine::stack(const SceneMaps& maps, const std::vector<Stack>& known) {
   stacks_.clear();
   const auto add = [&](const MapClass& of, MapUse use) {
     if (of.size == 0) return;
     const auto same = std::ranges::find_if(
-        other_stacks_, [&](const Stack& other) { return other.use == use && other.shape.maps == of.maps; });
-    stacks_.push_back(same != other_stacks_.end() ? *same : interleaved(of, use));
+        known, [&](const Stack& other) { return other.use == use && other.shape.maps == of.maps; });
+    stacks_.push_back(same != known.end() ? *same : interleaved(of, use));
     stacks_.back().shape = of;  // lobes may have other numbers
   };
   add(maps.diffuse, MapUse::kNormal);
@@ -105,17 +106,16 @@ void CpuEngine::take_out_spots(const Scene& scene, std::size_t spots) {
   std::swap(stacks_, other_stacks_);
   if (stacks_.empty()) {
     const Result<SceneMaps> maps = scene_maps(scene, effects_);
-    if (maps.ok()) stack(*maps);
+    if (maps.ok()) stack(*maps, other_stacks_);
   }
   for (std::size_t k = 0; k < stacks_.size(); ++k) shading_.maps[k] = stacks_[k].maps();
 }
 
 Result<void> CpuEngine::load(const Scene& scene, const Effects& effects) {
   GONIO_ASSIGN(const SceneMaps maps, scene_maps(scene, effects));
-  other_stacks_ = std::exchange(keeps_maps_, false) ? std::move(stacks_) : std::vector<Stack>();
   effects_ = effects;
   background_map_ = {};
-  stack(maps);
+  stack(maps, std::exchange(shared_, {}));
   other_stacks_.clear();
   if (effects.background == Background::kEnvironment) {
     background_map_ = effects.mirror ? stacks_.back() : interleaved(maps.mirror, MapUse::kMirror);

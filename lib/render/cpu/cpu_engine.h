@@ -30,8 +30,8 @@ class CpuEngine : public Engine {
   Result<void> can_shade(const Scene& scene) const override { return draws_placed_lamps(scene, kInfo.name); }
   // Interleaves the maps. Error: as scene_maps(), and more face sizes than there is room for.
   Result<void> load(const Scene& scene, const Effects& effects) override;
-  // The next load() is of the scene that was loaded, with other effects: interleaved maps are kept.
-  void keep_maps() { keeps_maps_ = true; }
+  // The next load() is of the environment that an engine, or this one, was loaded with: interleaved maps are shared.
+  void share_maps(const CpuEngine& loaded) { shared_ = loaded.stacks_; }
   void load_paints(const Scene& scene) override { load_paints(scene, effects_); }
   Result<void> shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) override;
 
@@ -52,7 +52,7 @@ class CpuEngine : public Engine {
     std::shared_ptr<const UnsetArray<float>> texels;  // maps without bright spots may be those with them
   };
   static Stack interleaved(const MapClass& maps, MapUse use);
-  void stack(const SceneMaps& maps);
+  void stack(const SceneMaps& maps, const std::vector<Stack>& known);
   void take_out_spots(const Scene& scene, std::size_t spots);
   void set_lights(const Scene& scene, const Effects& effects);
   void set_discs(const std::vector<Light>& lights, const Effects& effects);
@@ -63,6 +63,7 @@ class CpuEngine : public Engine {
 
   Effects effects_;
   std::vector<Stack> stacks_, other_stacks_;  // those with other spots; none: not yet
+  std::vector<Stack> shared_;                 // see share_maps()
   Stack background_map_;
   ProductColumns product_{};
   std::vector<float> weights_, lights_, exponents_, tilts_;
@@ -73,7 +74,6 @@ class CpuEngine : public Engine {
   TiltStore tilt_store_;
   TiltShading tilt_shading_;  // of tilted lobes
   Background background_ = Background::kNone;
-  bool keeps_maps_ = false;
   color::Rgb background_color_;
   std::vector<PlacedLamp> placed_;
   const mesh::Mesh* mesh_ = nullptr;  // which lamps at a place need

@@ -62,7 +62,7 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
   if (maps.diffuse.maps.size() > 1) upload(*maps.diffuse.maps[1], "coat_diffuse");
   for (const MapClass& lobes : maps.lobes) {
     for (std::size_t i = 0; i < lobes.slots.size(); ++i)
-      upload(*lobes.maps[i], fmt::format("lobe_{}", lobes.slots[i] - 1));
+      upload(*at_size(lobes.maps[i], lobes.size), fmt::format("lobe_{}", lobes.slots[i] - 1));
   }
   if (maps.mirror.size > 0) upload(*maps.mirror.maps[0], "mirror");
   effects_ = effects;

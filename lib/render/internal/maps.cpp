@@ -25,10 +25,6 @@ Result<void> check_lobe(const envmap::PrefilteredEnvironment& env, double expone
       shortest(exponent), env.source.empty() ? "SOURCE" : env.source, joined(exponents, ",", shortest));
 }
 
-envmap::MapPointer of_size(envmap::MapPointer map, int size) {
-  return map->size == size ? map : std::make_shared<const envmap::CubeMap>(envmap::resized(*map, size));
-}
-
 MapClass single(int slot, envmap::MapPointer map) {
   const int size = map->size;
   return {size, {slot}, {std::move(map)}, false};
@@ -58,6 +54,10 @@ std::vector<LobeClass> lobe_classes(const envmap::PrefilteredEnvironment& env, c
   return shifted;
 }
 
+envmap::MapPointer at_size(envmap::MapPointer map, int size) {
+  return map->size == size ? map : std::make_shared<const envmap::CubeMap>(envmap::resized(*map, size));
+}
+
 Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
   SceneMaps maps;
   if (!effects.environment) return maps;
@@ -75,7 +75,7 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
     for (const std::size_t j : of.lobes) {
       into.slots.push_back(WeightTable::lobe_slot(j));
       const double exponent = effects.lobes[j].exponent;
-      into.maps.push_back(of_size(envmap::open_map(env, *env.lobe(exponent), effects.spots), into.size));
+      into.maps.push_back(envmap::open_map(env, *env.lobe(exponent), effects.spots));
     }
     maps.lobes.push_back(std::move(into));
   }

@@ -14,7 +14,7 @@ namespace goniochrome::render {
 struct MapClass {
   int size = 0;
   std::vector<int> slots;                // of the weight table, ascending
-  std::vector<envmap::MapPointer> maps;  // one for each slot
+  std::vector<envmap::MapPointer> maps;  // one for each slot, to be brought to that size by at_size()
   bool shifted = false;                  // a single lobe, met by r + s n
 };
 
@@ -33,9 +33,10 @@ struct LobeClass {
 std::vector<LobeClass> lobe_classes(const envmap::PrefilteredEnvironment& env, const Effects& effects);
 
 // The maps of the scene's environment that the effects need, without the bright spots that they cut one by one; the
-// mirror part keeps these. A lobe's map is brought to the size of its class by
-// bilinear interpolation between its own texels. Error: a lobe or the mirror part that the environment lacks, with the
-// command that makes it. The maps may be those of the environment, which must outlive them.
+// mirror part keeps these. Error: a lobe or the mirror part that the environment lacks, with the command that makes it.
+// The maps may be those of the environment, which must outlive them.
 Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects);
+// By bilinear interpolation between its own texels.
+envmap::MapPointer at_size(envmap::MapPointer map, int size);
 
 }  // namespace goniochrome::render

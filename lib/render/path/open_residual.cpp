@@ -61,7 +61,7 @@ std::size_t OpenResidual::surface_of(double coat_index) {
   return surfaces_.size() - 1;
 }
 
-Result<void> OpenResidual::load(const Scene& scene, const Effects& effects) {
+Result<void> OpenResidual::load(const Scene& scene, const Effects& effects, const CpuEngine* loaded) {
   LobeColumns columns;
   for (const envmap::PrefilteredLobe& lobe : scene.env->lobes)
     if (lobe.exponent <= kWidestShared) columns.exponents.push_back(lobe.exponent);
@@ -76,8 +76,8 @@ Result<void> OpenResidual::load(const Scene& scene, const Effects& effects) {
   effects_.texture = effects_.texture_filter = effects_.maps = effects_.image_maps = false;
   effects_.tilt_level = 0, effects_.lights = 0, effects_.background = Background::kNone, effects_.rays = {};
   GONIO_TRY(set_paints(scene));
-  GONIO_TRY(engine_.load(scene_, effects_));
-  return {};
+  if (loaded != nullptr) engine_.share_maps(*loaded);
+  return engine_.load(scene_, effects_);
 }
 
 Result<void> OpenResidual::load_paints(const Scene& scene) {

@@ -26,8 +26,9 @@ class OpenResidual {
 
   // Takes a scene as engines draw it with these effects, whose tolerance decides how close the nodes are. Sums that
   // were made before are kept as far as they hold. Brushed parts, those with textures or color maps, and the gloss of
-  // rough coats are left as the maps have them. Error: as the engine cpu loads it, and as column_weights().
-  Result<void> load(const Scene& scene, const Effects& effects);
+  // rough coats are left as the maps have them. An engine that was loaded with the scene shares its maps.
+  // Error: as the engine cpu loads it, and as column_weights().
+  Result<void> load(const Scene& scene, const Effects& effects, const CpuEngine* loaded = nullptr);
   // Takes other paints for the scene and the effects that were loaded. Error: as column_weights().
   Result<void> load_paints(const Scene& scene);
 
