@@ -21,7 +21,7 @@ from shared.colors import de2000, lab_of_rec2020
 from shared.tools import DATA, Failed, put_tools_into_path, run_tool
 
 PAINTS = {"silver_fine": "paints", "candy_red": "paints", "film_green_violet": "travel"}
-REFERENCE = ("--tolerance", "0.3", "--time-limit", "30", "--seed", "7")
+REFERENCE = ("--aov", "part,normal", "--tolerance", "0.3", "--time-limit", "30", "--seed", "7")
 FLAT = 1.25  # A pixel that is no brighter than this many times its neighbors is no highlight.
 BLACK = 0.005  # of the white
 SAME_PIECE = 0.96  # cosine of the normals
@@ -46,25 +46,32 @@ class Picture:
         report, begin = out.with_suffix(".json"), time.monotonic()
         # A child of this process would count its memory before it becomes another program.
         used = out.with_suffix(".used")
-        run_tool("time", "--quiet", "-f", "%U %S %M", "-o", used, "render-osmesa", "-q", *words, "--background", "env", "--aov",
-                 "part,normal", "-o", out, "--report", report, done=(0, 4))
+        run_tool("time", "--quiet", "-f", "%U %S %M", "-o", used, "render-osmesa", "-q", *words, "--background", "env",
+                 "-o", out, "--report", report, done=(0, 4))
         self.seconds = time.monotonic() - begin
         user_s, system_s, peak_kb = map(float, used.read_text().split())
         self.cpu_s, self.peak_mb = user_s + system_s, peak_kb / 1024
-        planes = pictures.channels(out)
-        self.rgb = numpy.stack([planes[name] for name in "RGB"], -1).astype(float)
-        self.part = planes["part"]
-        self.seen = self.part > 0
-        self.normal = numpy.stack([planes[f"normal.{axis}"] for axis in "XYZ"], -1)
+        self.planes = pictures.channels(out)
+        self.rgb = numpy.stack([self.planes[name] for name in "RGB"], -1).astype(float)
         self.report = json.loads(report.read_text())["results"]
 
-    def de00(self, reference):
-        """CIEDE2000 to the reference at each pixel that shows the mesh, before the white of the reference."""
-        return de2000(*(lab_of_rec2020(p.rgb[reference.seen], reference.report["white_luminance"]) for p in (self, reference)))
 
-    def isolated(self, reference):
-        """The number of pixels over twice all their neighbors, on one even piece of surface with these, that are no highlights of
-        the reference."""
+class Reference(Picture):
+    """A long picture, which tells the part and the normal that a pixel shows, too."""
+
+    def __init__(self, out, *words):
+        super().__init__(out, *words, *REFERENCE)
+        self.part = self.planes["part"]
+        self.seen = self.part > 0
+        self.normal = numpy.stack([self.planes[f"normal.{axis}"] for axis in "XYZ"], -1)
+
+    def de00_of(self, picture):
+        """CIEDE2000 of a picture at each pixel that shows the mesh, before the white of the reference."""
+        return de2000(*(lab_of_rec2020(p.rgb[self.seen], self.report["white_luminance"]) for p in (picture, self)))
+
+    def isolated(self, picture):
+        """The number of pixels of a picture over twice all their neighbors, on one even piece of surface with these, that are no
+        highlights of the reference."""
         height, width = self.part.shape
         middle = (slice(1, -1), slice(1, -1))
         neighbors = [(slice(v, height - 2 + v), slice(u, width - 2 + u))
@@ -72,8 +79,8 @@ class Picture:
         flat = self.seen[middle] & numpy.all([(self.part[at] == self.part[middle]) &
                                               ((self.normal[at] * self.normal[middle]).sum(-1) > SAME_PIECE)
                                               for at in neighbors], 0)
-        light, true = self.rgb.mean(-1), reference.rgb.mean(-1)
-        flat &= light[middle] > BLACK * reference.report["white_luminance"]
+        light, true = picture.rgb.mean(-1), self.rgb.mean(-1)
+        flat &= light[middle] > BLACK * self.report["white_luminance"]
         return int((flat & (light[middle] > 2 * numpy.max([light[at] for at in neighbors], 0)) &
                     (true[middle] < FLAT * numpy.max([true[at] for at in neighbors], 0))).sum())
 
@@ -81,11 +88,11 @@ class Picture:
 def row(name, words, work, size):
     """Draws a default picture and its reference, prints their row, and returns whether what is told of the noise is true."""
     out = Picture(work / "picture.exr", *words, "--size", size)
-    reference = Picture(work / "reference.exr", *words, "--size", size, *REFERENCE)
-    error, rays = out.de00(reference), out.report.get("rays", {})
+    reference = Reference(work / "reference.exr", *words, "--size", size)
+    error, rays = reference.de00_of(out), out.report.get("rays", {})
     told, p95 = rays.get("noise_de00_p95", 0.0), float(numpy.quantile(error, 0.95))
     left = reference.report.get("rays", {}).get("noise_de00_p95", 0.0)
-    per_1e5 = 1e5 * out.isolated(reference) / out.seen.size
+    per_1e5 = 1e5 * reference.isolated(out) / reference.seen.size
     print(f"{name:58} {size:>9} {out.seconds:6.2f} {out.cpu_s:6.2f} {out.peak_mb:6.0f}  {error.mean():5.2f} {p95:5.2f}"
           f"  {told:5.2f} {rays.get('error_de00_p95', 0.0):5.2f} {left:5.2f} {per_1e5:6.1f}", flush=True)
     return p95 <= MOST_RATIO * (told ** 2 + left ** 2) ** 0.5

@@ -76,7 +76,7 @@ int ground_directions(double tolerance_de00) {
 
 GroundRequest ground_request(double tolerance_de00, std::uint64_t seed, double left_s) {
   GroundRequest request{.directions = ground_directions(tolerance_de00), .seed = seed};
-  request.bounced_directions = 4 * request.directions;
+  request.bounced_directions = 2 * request.directions;
   request.longest_s = left_s / 4;
   return request;
 }

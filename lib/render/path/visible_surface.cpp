@@ -149,10 +149,11 @@ SampledSurface sampled_surface(const rays::RayScene& scene, const Gbuffer& cente
                                const std::vector<std::array<double, 2>>& shifts) {
   SampledSurface result;
   auto& [samples, edges] = result;
-  for (const auto& [x, y] : shifts) {
-    samples.push_back(centers);
-    samples.back().rays = centers.rays.shifted(x, y);
-  }
+  samples.resize(shifts.size());
+  parallel_each(shifts.size(), 1, [&](std::size_t k) {
+    samples[k] = centers;
+    samples[k].rays = centers.rays.shifted(shifts[k][0], shifts[k][1]);
+  });
   edges.resize(centers.triangles.size());
   for_pixels(centers.width, centers.height,
              [&](int x, int y) { edges[centers.index(x, y)] = is_amid_one_piece(centers, x, y) ? 0 : 1; });
