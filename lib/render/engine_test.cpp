@@ -102,5 +102,42 @@ TEST(Engines, ShadeBuffersAndPointsAlike) {
   EXPECT_GE(able, 2);
 }
 
+// A third paint meets the light that the first one met, on smooth and on brushed parts, under point lamps and discs.
+// Another engine has the same colors by maps that it shares.
+TEST(Engines, ShadePointsInSeveralPaintsAsInEach) {
+  World world;
+  const envmap::PrefilteredEnvironment uneven = uneven_env({1.3, 6, 40}, {8, 16, 32});
+  Scene& scene = world.scene;
+  scene.env = &uneven;
+  paint::LobeFit wide = matt({0.1, 0.2, 0.05}), glossy = matt({0, 0, 0});
+  wide.lobes = {{1.3, {0.3, 0.1, 0.02}, {}}};
+  glossy.lobes = {{1.3, {}, {0.1, 0.1, 0.1}}, {6, {}, {0.04, 0.03, 0.02}}};
+  scene.paints.insert(scene.paints.end(), {wide, glossy});
+  const Gbuffer buffer = seen_by_rays(world.mesh, world.view.camera, 24, 24);
+  std::vector<VisiblePoint> seen;
+  for_seen(buffer, [&](int x, int y, int) { seen.push_back(buffer.point(x, y)); });
+  ASSERT_GT(seen.size(), 64U);
+  for (const bool brushed : {false, true})
+    for (const double radius_rad : {0.0, 0.1}) {
+      scene.lights.front().radius_rad = radius_rad;
+      scene.anisotropy.assign(3, brushed ? paint::Anisotropy{0.05, 0.3} : paint::Anisotropy{});
+      CpuEngine engine, other;
+      ASSERT_TRUE(engine.load(scene, effects_of(scene)).ok());
+      const std::vector<color::Rgb> together = engine.colors(seen, 3);
+      other.share_maps(engine);
+      ASSERT_TRUE(other.load(scene, effects_of(scene)).ok());
+      ASSERT_EQ(together.size(), 3 * seen.size());
+      for (std::size_t paint = 0; paint < 3; ++paint) {
+        std::vector<VisiblePoint> points = seen;
+        for (VisiblePoint& point : points) point.part = static_cast<int>(paint);
+        const std::vector<color::Rgb> alone = engine.colors(points);
+        for (std::size_t i = 0; i < seen.size(); ++i)
+          EXPECT_LT(length(together[paint * seen.size() + i] - alone[i]), 1e-6) << brushed << radius_rad;
+        EXPECT_EQ(other.colors(points), alone);
+        EXPECT_EQ(alone == engine.colors(seen), paint == 0);
+      }
+    }
+}
+
 }  // namespace
 }  // namespace goniochrome::render::engine_test

@@ -49,6 +49,11 @@ class Batch {
     p.px[count_] = position[0], p.py[count_] = position[1], p.pz[count_] = position[2];
     index_[count_++] = index;
   }
+  void add(std::size_t index, const VisiblePoint& point, const Vec3& origin) {
+    add(index, floats(point.normal).data(), floats(point.to_viewer), point.part, floats(point.position - origin));
+  }
+  // The colors in the paints of so many parts: 4 * kPointsAtOnce floats a paint.
+  void shade(int paints, float* rgba) { shade_paints(shading_, points_, count_, paints, rgba); }
   void shade() {
     shade_points(shading_, points_, count_, rgba_);
     if (tilted_.segments > 0) add_tilted(tilted_, points_, count_, rgba_);
@@ -330,12 +335,23 @@ std::vector<color::Rgb> CpuEngine::colors(const std::vector<VisiblePoint>& point
   std::vector<color::Rgb> colors(points.size());
   parallel_for(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
     Batch batch(shading_, tilt_shading_);
-    for (std::size_t i = begin; i < end; ++i) {
-      const VisiblePoint& point = points[i];
-      batch.add(i, floats(point.normal).data(), floats(point.to_viewer), point.part, floats(point.position - origin_));
-    }
+    for (std::size_t i = begin; i < end; ++i) batch.add(i, points[i], origin_);
     batch.shade();
     for (int i = 0; i < batch.count(); ++i) colors[batch.index(i)] = vec3(batch.rgba(i));
+  });
+  return colors;
+}
+
+std::vector<color::Rgb> CpuEngine::colors(const std::vector<VisiblePoint>& points, std::size_t paints) const {
+  std::vector<color::Rgb> colors(points.size() * paints);
+  parallel_for(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+    Batch batch(shading_, tilt_shading_);
+    for (std::size_t i = begin; i < end; ++i) batch.add(i, points[i], origin_);
+    std::vector<float> rgba(4 * kPointsAtOnce * paints);
+    batch.shade(static_cast<int>(paints), rgba.data());
+    for (std::size_t paint = 0; paint < paints; ++paint)
+      for (std::size_t i = begin; i < end; ++i)
+        colors[paint * points.size() + i] = vec3(&rgba[4 * (kPointsAtOnce * paint + i - begin)]);
   });
   return colors;
 }

@@ -42,6 +42,9 @@ class CpuEngine : public Engine {
   void shade(const Gbuffer& gbuffer, float gain, bool add, image::Image& rgba) const;
   // The radiance of single points, each of which gets the color of its pixel.
   std::vector<color::Rgb> colors(const std::vector<VisiblePoint>& points) const;
+  // The same in the paints of so many parts, from that of each point on, paint by paint. They have no tilted lobes, and
+  // the parts of a point have one coat and one brushing.
+  std::vector<color::Rgb> colors(const std::vector<VisiblePoint>& points, std::size_t paints) const;
 
  private:
   struct Stack {

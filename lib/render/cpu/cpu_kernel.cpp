@@ -61,11 +61,17 @@ HWY_INLINE Direction viewer_of(const PointArrays& p, std::size_t i) {
   return loaded(p.vx, p.vy, p.vz, i);
 }
 
+// So many points with those that fill the last vector.
+HWY_INLINE std::size_t whole_vectors(int count) {
+  const std::size_t lanes = hn::Lanes(D());
+  return (static_cast<std::size_t>(count) + lanes - 1) / lanes * lanes;
+}
+
 // Makes the directions to the viewer unit, mirrors them, and finds the segments of the weights.
-HWY_INLINE void set_up(const CpuShading& s, PointArrays& points, Frame& frame) {
+HWY_INLINE void set_up(const CpuShading& s, PointArrays& points, int count, Frame& frame) {
   const D f;
   const hn::RebindToSigned<D> whole;
-  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+  for (std::size_t i = 0; i < whole_vectors(count); i += hn::Lanes(f)) {
     Direction v = viewer_of(points, i);
     v = scaled(hn::Div(hn::Set(f, 1.0F), hn::Sqrt(dot(v, v))), v);
     store(v, points.vx, points.vy, points.vz, i);
@@ -88,8 +94,9 @@ HWY_INLINE void set_up(const CpuShading& s, PointArrays& points, Frame& frame) {
 struct Shifts {
   HWY_ALIGN float shift[kPointsAtOnce];
 
-  HWY_INLINE void set(const CpuShading& s, const PointArrays& points, const Frame& frame, int k) {
-    for (int i = 0; i < kPointsAtOnce; ++i) {
+  HWY_INLINE void set(const CpuShading& s, const PointArrays& points, const Frame& frame, int count, int k) {
+    std::fill_n(shift, whole_vectors(count), 0.0F);
+    for (int i = 0; i < count; ++i) {
       const float* ends = frame.weights(s, points, i) + s.shift_offset + 2 * k;
       shift[i] = ends[0] + frame.t[i] * ends[1];
     }
@@ -114,19 +121,20 @@ struct Tilted {
 };
 
 // The tangent runs level around the vertical axis; on a level surface along +X.
-HWY_INLINE void tilt(const CpuShading& s, const PointArrays& points, int which, Tilted& tilted) {
+HWY_INLINE void tilt(const CpuShading& s, const PointArrays& points, int count, int which, Tilted& tilted) {
   const D f;
   HWY_ALIGN float tx[kPointsAtOnce], ty[kPointsAtOnce], tz[kPointsAtOnce];
-  for (int i = 0; i < kPointsAtOnce; ++i) {
-    const int first = s.first_tilt[points.part[i]], count = s.first_tilt[points.part[i] + 1] - first;
-    const float* t = s.tilts + 4 * (first + (which < count ? which : 0));
+  const auto end = static_cast<int>(whole_vectors(count));
+  for (int i = 0; i < end; ++i) {
+    const int first = s.first_tilt[points.part[i]], tilts = s.first_tilt[points.part[i] + 1] - first;
+    const float* t = s.tilts + 4 * (first + (which < tilts ? which : 0));
     tx[i] = t[0], ty[i] = t[1], tz[i] = t[2];
-    tilted.share[i] = which < count ? t[3] : 0;
+    tilted.share[i] = which < tilts ? t[3] : 0;
   }
   const V zero = hn::Zero(f), one = hn::Set(f, 1.0F);
   // Each tilted normal m = a x + b y + c n is taken into the world, the viewer is mirrored about it, and tilts that
   // turn away from the viewer or mirror below the surface get no share.
-  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
     const Direction n = normal_of(points, i), v = viewer_of(points, i);
     const V level2 = hn::MulAdd(n.x, n.x, hn::Mul(n.z, n.z));
     const auto steep = hn::Gt(level2, hn::Set(f, 1e-12F));
@@ -144,73 +152,112 @@ HWY_INLINE void tilt(const CpuShading& s, const PointArrays& points, int which, 
   }
 }
 
-// The blocks of all tilted classes, side by side, between their texels and averaged over the tilts.
+// Blocks that were looked up beforehand.
+struct Gathered {
+  static constexpr int kMost = kMostBlocks + 2;  // the diffuse maps and the mirror beside those that lobes meet
+  HWY_ALIGN float blocks[8 * kPointsAtOnce * kMost];
+  bool has[kMostClasses] = {};
+
+  Gathered() {}  // `blocks` are left as they are
+  // Of a point, by its number among the blocks of all classes.
+  float* at(int i, int block) { return blocks + 8 * (i * kMost + block); }
+  const float* at(int i, int block) const { return blocks + 8 * (i * kMost + block); }
+};
+
+// The blocks of all tilted classes, between their texels and averaged over the tilts.
 HWY_INLINE void gather_tilted(const CpuShading& s, const PointArrays& points, const Frame& frame, int count,
-                              float* gathered) {
+                              Gathered& gathered) {
   const D f;
   Tilted tilted;
   Taps taps;
   Shifts shifts[kMostClasses];
   for (int k = 0; k < s.classes; ++k) {
-    if (s.use[k] == MapUse::kTilted) shifts[k].set(s, points, frame, k);
+    gathered.has[k] = s.use[k] == MapUse::kTilted;
+    if (gathered.has[k]) shifts[k].set(s, points, frame, count, k);
   }
   for (int which = 0; which < s.most_tilts; ++which) {
-    tilt(s, points, which, tilted);
+    tilt(s, points, count, which, tilted);
     int first = 0;
-    for (int k = 0; k < s.classes; ++k) {
-      if (s.use[k] != MapUse::kTilted) continue;
+    for (int k = 0; k < s.classes; first += s.maps[k++].blocks) {
+      if (!gathered.has[k]) continue;
       for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f))
         address(shifts[k].of(tilted.r(i), normal_of(points, i), i), s.maps[k].size, i, taps);
       for (int i = 0; i < count; ++i) {
         if (which > 0 && tilted.share[i] == 0) continue;
         const Corners corners = corners_of(s.maps[k], taps, i, tilted.share[i]);
-        float* sums = gathered + (i * kMostBlocks + first) * 8;
+        float* sums = gathered.at(i, first);
         for (int block = 0; block < s.maps[k].blocks; ++block, sums += 8) {
           const Block before = which > 0 ? Block::load(sums) : Block::filled(0);
           add_between(corners, static_cast<std::size_t>(block) * 8, before).store(sums);
         }
       }
-      first += s.maps[k].blocks;
     }
   }
 }
 
+// The blocks of all classes that every paint meets in the same direction; nothing is tilted.
+HWY_INLINE void gather_alike(const CpuShading& s, const PointArrays& points, const Frame& frame, int count,
+                             Gathered& gathered) {
+  const D f;
+  Taps taps;
+  int first = 0;
+  for (int k = 0; k < s.classes; first += s.maps[k++].blocks) {
+    gathered.has[k] = !s.shifted[k];
+    if (s.shifted[k]) continue;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f))
+      address(s.use[k] == MapUse::kNormal ? normal_of(points, i) : frame.r(i), s.maps[k].size, i, taps);
+    for (int i = 0; i < count; ++i) {
+      const Corners corners = corners_of(s.maps[k], taps, i);
+      for (int block = 0; block < s.maps[k].blocks; ++block)
+        add_between(corners, static_cast<std::size_t>(block) * 8, Block::filled(0))
+            .store(gathered.at(i, first + block));
+    }
+  }
+}
+
+HWY_INLINE std::uint64_t bits_of(int first, int blocks) {
+  return ((std::uint64_t{1} << blocks) - 1) << first;
+}
+
 HWY_INLINE void add_environment(const CpuShading& s, const PointArrays& points, const Frame& frame, int count,
-                                float* rgba) {
+                                const Gathered& gathered, float* rgba) {
   const D f;
   Taps taps[kMostClasses];
-  HWY_ALIGN float gathered[kPointsAtOnce * kMostBlocks * 8];
-  // 1. Brushed parts: their maps are averaged over the tilted normals first.
-  if (s.tilts != nullptr) gather_tilted(s, points, frame, count, gathered);
-  // 2. The addresses of all points in every other class of maps, side by side.
-  for (int k = 0; k < s.classes; ++k) {
-    if (s.use[k] == MapUse::kTilted && s.tilts != nullptr) continue;
+  std::uint64_t shown_by_any = 0;
+  for (int i = 0; i < count; ++i) shown_by_any |= s.shown_blocks[points.part[i]];
+  // 1. The addresses of all points in every class of maps that is not gathered, side by side.
+  int first = 0;
+  for (int k = 0; k < s.classes; first += s.maps[k++].blocks) {
+    if (gathered.has[k] || (shown_by_any & bits_of(first, s.maps[k].blocks)) == 0) continue;
     Shifts shifts;
-    if (s.shifted[k]) shifts.set(s, points, frame, k);
+    if (s.shifted[k]) shifts.set(s, points, frame, count, k);
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
       const Direction n = normal_of(points, i);
       const Direction d = s.use[k] == MapUse::kNormal ? n : s.shifted[k] ? shifts.of(frame.r(i), n, i) : frame.r(i);
       address(d, s.maps[k].size, i, taps[k]);
     }
   }
-  // 3. Point by point, each block of texels is interpolated and weighed, and the sum is turned into a color.
+  // 2. Point by point, each block of texels is interpolated and weighed, and the sum is turned into a color.
   for (int i = 0; i < count; ++i) {
-    const float* weight = frame.weights(s, points, i);
+    const float* weights = frame.weights(s, points, i);
     const Block t = Block::filled(frame.t[i]);
-    const float* tilted = gathered + i * kMostBlocks * 8;
     Products<8> sums;
-    std::uint64_t shown = s.shown_blocks[points.part[i]];
-    for (int k = 0; k < s.classes; ++k) {
-      if (s.use[k] == MapUse::kTilted && s.tilts != nullptr) {
-        for (int block = 0; block < s.maps[k].blocks; ++block, tilted += 8, weight += 16, shown >>= 1) {
-          if ((shown & 1) != 0) add_weighted(t, Block::load(tilted), weight, sums);
+    const std::uint64_t all_shown = s.shown_blocks[points.part[i]];
+    first = 0;
+    for (int k = 0; k < s.classes; first += s.maps[k++].blocks) {
+      std::uint64_t shown = all_shown & bits_of(first, s.maps[k].blocks);
+      if (gathered.has[k]) {
+        for (; shown != 0; shown &= shown - 1) {
+          const int block = std::countr_zero(shown);
+          add_weighted(t, Block::load(gathered.at(i, block)), weights + 16 * block, sums);
         }
-        continue;
-      }
-      const Corners corners = corners_of(s.maps[k], taps[k], i);
-      for (int block = 0; block < s.maps[k].blocks; ++block, weight += 16, shown >>= 1) {
-        if ((shown & 1) != 0)
-          add_weighted(t, add_between(corners, static_cast<std::size_t>(block) * 8, Block::filled(0)), weight, sums);
+      } else if (shown != 0) {
+        const Corners corners = corners_of(s.maps[k], taps[k], i);
+        for (; shown != 0; shown &= shown - 1) {
+          const int block = std::countr_zero(shown);
+          const Block between = add_between(corners, 8 * static_cast<std::size_t>(block - first), Block::filled(0));
+          add_weighted(t, between, weights + 16 * block, sums);
+        }
       }
     }
     sums.on(Quad::filled(0), s.product).store(rgba + 4 * i);
@@ -233,11 +280,10 @@ HWY_INLINE float let_in(float c, float index2) {
 class Lit {
  public:
   // `lobes`: bits, of those that any of the points shows.
-  HWY_INLINE Lit(const CpuShading& s, std::uint64_t lobes) : lobes_(lobes) {
-    add_slot(0);
-    for (std::uint64_t left = lobes; left != 0; left &= left - 1)
-      add_slot(flake(std::countr_zero(left))), add_slot(gloss(std::countr_zero(left)));
-    add_slot(mirror(s));
+  HWY_INLINE Lit(const CpuShading& s, std::uint64_t lobes, int count) : lobes_(lobes) {
+    for_slots(s, lobes, [&](int slot) HWY_ATTR {
+      for (int c = 0; c < 3; ++c) std::fill_n(light_ + (3 * slot + c) * kPointsAtOnce, whole_vectors(count), 0.0F);
+    });
   }
 
   static int flake(int lobe) { return 1 + 2 * lobe; }
@@ -254,38 +300,39 @@ class Lit {
     }
   }
 
-  // Adds what the points show of it.
-  HWY_INLINE void show(const CpuShading& s, const PointArrays& points, const Frame& frame, int count,
-                       float* rgba) const {
+  // Adds what the points, which show none but these lobes, show of it.
+  HWY_INLINE void show(const CpuShading& s, std::uint64_t lobes, const PointArrays& points, const Frame& frame,
+                       int count, float* rgba) const {
     for (int i = 0; i < count; ++i) {
       const float* weights = frame.weights(s, points, i) + s.light_offset;
       const Quad t = Quad::filled(frame.t[i]);
       Products<4> sums;
-      for (int k = 0; k < slots_; ++k) {
-        const float *weight = weights + 8 * slot_[k], *light = light_ + 3 * slot_[k] * kPointsAtOnce + i;
+      for_slots(s, lobes, [&](int slot) HWY_ATTR {
+        const float *weight = weights + 8 * slot, *light = light_ + 3 * slot * kPointsAtOnce + i;
         const Quad shown = mul_add(t, Quad::load(weight + 4), Quad::load(weight));
         for (int c = 0; c < 3; ++c) sums.of[c] = mul_add(Quad::filled(light[c * kPointsAtOnce]), shown, sums.of[c]);
-      }
+      });
       sums.on(Quad::load(rgba + 4 * i), s.product).store(rgba + 4 * i);
     }
   }
 
  private:
   static constexpr int kMostSlots = 2 * kMostLobes + 2;
-  HWY_INLINE void add_slot(int slot) {
-    slot_[slots_++] = slot;
-    std::fill_n(light_ + 3 * slot * kPointsAtOnce, 3 * kPointsAtOnce, 0.0F);
+  template <class Visit>
+  static HWY_INLINE void for_slots(const CpuShading& s, std::uint64_t lobes, const Visit& visit) {
+    visit(0);
+    for (; lobes != 0; lobes &= lobes - 1) visit(flake(std::countr_zero(lobes))), visit(gloss(std::countr_zero(lobes)));
+    visit(mirror(s));
   }
 
   std::uint64_t lobes_;
-  int slots_ = 0, slot_[kMostSlots];  // that are met
   HWY_ALIGN float light_[3 * kMostSlots * kPointsAtOnce];
 };
 
 // The square of the index of each point's coat.
 HWY_INLINE void coat_indices(const CpuShading& s, const PointArrays& points, const Frame& frame, int count,
                              float* index2) {
-  std::fill(index2, index2 + kPointsAtOnce, 1.0F);
+  std::fill_n(index2, whole_vectors(count), 1.0F);
   for (int i = 0; s.coat && i < count; ++i) index2[i] = (frame.weights(s, points, i) + s.light_offset)[3];
 }
 
@@ -297,10 +344,10 @@ HWY_INLINE void add_light(const CpuShading& s, int number, const PointArrays& po
   const float* light = s.light + 8 * number;
   HWY_ALIGN float base[kPointsAtOnce], fresnel[kPointsAtOnce];
   LampSeen lamp;
-  see_lamp(light, s.placed != nullptr ? s.placed + number : nullptr, points, lamp);
+  see_lamp(light, s.placed != nullptr ? s.placed + number : nullptr, points, count, lamp);
   // 1. The cosine at the surface, as the coat lets light in, and the Fresnel reflectance at half the angle between
   // light and viewer; the first is 0 below the horizon.
-  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
     const Direction l = lamp.toward(i);
     hn::Store(hn::Max(dot(normal_of(points, i), l), hn::Zero(f)), f, base + i);
     const V half = hn::Set(f, 0.5F), cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), l), half);
@@ -311,7 +358,7 @@ HWY_INLINE void add_light(const CpuShading& s, int number, const PointArrays& po
   // 2. What the diffuse part meets, and each lobe.
   Tilted tilted;
   for (int which = 0; which < s.most_tilts; ++which) {
-    if (s.tilts != nullptr) tilt(s, points, which, tilted);
+    if (s.tilts != nullptr) tilt(s, points, count, which, tilted);
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
       const V strength = hn::Load(f, lamp.strength + i), by_cosine = hn::Mul(strength, hn::Load(f, base + i)),
               by_coat = hn::Mul(strength, hn::Load(f, fresnel + i));
@@ -353,12 +400,12 @@ HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& poi
   const float* light = s.light + 8 * number;
   const CpuShading::Disc& disc = s.discs[number];
   LampSeen lamp;
-  see_lamp(light, s.placed != nullptr ? s.placed + number : nullptr, points, lamp);
+  see_lamp(light, s.placed != nullptr ? s.placed + number : nullptr, points, count, lamp);
   const V half = hn::Set(f, 0.5F), zero = hn::Zero(f), one = hn::Set(f, 1.0F);
   // 1. How much of the disc stands above the horizon of each point: its irradiance as the coat lets it in, and its part
   // times the coat's reflectance in its middle.
   HWY_ALIGN float irradiance[kPointsAtOnce], above[kPointsAtOnce], seen[kPointsAtOnce];
-  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
     const Direction l = lamp.toward(i);
     const V cosine = dot(normal_of(points, i), l), cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), l), half);
     hn::Store(cosine, f, irradiance + i);
@@ -390,8 +437,8 @@ HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& poi
   HWY_ALIGN float chord[kPointsAtOnce], cos_r[kPointsAtOnce], coat_r[kPointsAtOnce];
   HWY_ALIGN float by_node[kNodeFloats * kPointsAtOnce];
   for (int which = 0; which < s.most_tilts; ++which) {
-    if (s.tilts != nullptr) tilt(s, points, which, tilted);
-    for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    if (s.tilts != nullptr) tilt(s, points, count, which, tilted);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
       const Direction r = s.tilts != nullptr ? tilted.r(i) : frame.r(i), l = lamp.toward(i);
       const Direction apart = minus(r, l);
       hn::Store(hn::Sqrt(dot(apart, apart)), f, chord + i);
@@ -399,7 +446,7 @@ HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& poi
       const V cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), r), half);
       hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero)), kCoat2) : one, f, coat_r + i);
     }
-    for (int i = 0; i < kPointsAtOnce; ++i) {
+    for (int i = 0; i < static_cast<int>(whole_vectors(count)); ++i) {
       if (s.coat && i < count) cos_r[i] *= let_in(cos_r[i], index2[i]);
       float* of_node = by_node + kNodeFloats * i;
       of_node[0] = irradiance[i], of_node[1] = cos_r[i], of_node[2] = above[i], of_node[3] = coat_r[i];
@@ -439,17 +486,15 @@ HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& poi
   }
 }
 
-// A point's view and segment of weights; the environment by prefiltered maps; then the lights.
-void ShadePoints(const CpuShading& s, PointArrays& points, int count, float* rgba) {
-  Frame frame;
-  set_up(s, points, frame);
-  add_environment(s, points, frame, count, rgba);
-  if (s.lights == 0) return;
-  HWY_ALIGN float index2[kPointsAtOnce];
-  coat_indices(s, points, frame, count, index2);
+HWY_INLINE std::uint64_t lit_lobes(const CpuShading& s, const PointArrays& points, int count) {
   std::uint64_t lobes = 0;
   for (int i = 0; i < count; ++i) lobes |= s.lit_lobes[points.part[i]];
-  Lit lit(s, lobes);
+  return lobes;
+}
+
+HWY_INLINE void add_lights(const CpuShading& s, const PointArrays& points, const Frame& frame, int count, Lit& lit) {
+  HWY_ALIGN float index2[kPointsAtOnce];
+  coat_indices(s, points, frame, count, index2);
   for (int i = 0; i < s.lights; ++i) {
     if (s.discs != nullptr) {
       add_disc(s, i, points, frame, count, index2, lit);
@@ -457,13 +502,50 @@ void ShadePoints(const CpuShading& s, PointArrays& points, int count, float* rgb
       add_light(s, i, points, frame, count, index2, lit);
     }
   }
-  lit.show(s, points, frame, count, rgba);
+}
+
+// A point's view and segment of weights; the environment by prefiltered maps; then the lights.
+void ShadePoints(const CpuShading& s, PointArrays& points, int count, float* rgba) {
+  Frame frame;
+  set_up(s, points, count, frame);
+  Gathered gathered;
+  if (s.tilts != nullptr) gather_tilted(s, points, frame, count, gathered);
+  add_environment(s, points, frame, count, gathered, rgba);
+  if (s.lights == 0) return;
+  Lit lit(s, lit_lobes(s, points, count), count);
+  add_lights(s, points, frame, count, lit);
+  lit.show(s, lit.lobes(), points, frame, count, rgba);
+}
+
+HWY_INLINE void to_next_part(PointArrays& points, int count) {
+  for (int i = 0; i < count; ++i) ++points.part[i];
+}
+
+void ShadePaints(const CpuShading& s, PointArrays& points, int count, int paints, float* rgba) {
+  if (s.tilts != nullptr) {
+    for (int paint = 0; paint < paints; ++paint, rgba += 4 * kPointsAtOnce, to_next_part(points, count))
+      ShadePoints(s, points, count, rgba);
+    return;
+  }
+  Frame frame;
+  set_up(s, points, count, frame);
+  Gathered gathered;
+  gather_alike(s, points, frame, count, gathered);
+  std::uint64_t lobes = 0;
+  for (int i = 0; i < count; ++i)
+    for (int paint = 0; paint < paints; ++paint) lobes |= s.lit_lobes[points.part[i] + paint];
+  Lit lit(s, lobes, count);
+  add_lights(s, points, frame, count, lit);
+  for (int paint = 0; paint < paints; ++paint, rgba += 4 * kPointsAtOnce, to_next_part(points, count)) {
+    add_environment(s, points, frame, count, gathered, rgba);
+    if (s.lights > 0) lit.show(s, lit_lobes(s, points, count), points, frame, count, rgba);
+  }
 }
 
 void LookUpBackground(const InterleavedMaps& map, PointArrays& points, int count, float* rgba) {
   const D f;
   Taps taps;
-  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
     const Direction v = viewer_of(points, i);
     address({hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)}, map.size, i, taps);
   }
@@ -478,10 +560,15 @@ HWY_AFTER_NAMESPACE();
 namespace goniochrome::render {
 
 HWY_EXPORT(ShadePoints);
+HWY_EXPORT(ShadePaints);
 HWY_EXPORT(LookUpBackground);
 
 void shade_points(const CpuShading& shading, PointArrays& points, int count, float* rgba) {
   HWY_DYNAMIC_DISPATCH(ShadePoints)(shading, points, count, rgba);
+}
+
+void shade_paints(const CpuShading& shading, PointArrays& points, int count, int paints, float* rgba) {
+  HWY_DYNAMIC_DISPATCH(ShadePaints)(shading, points, count, paints, rgba);
 }
 
 void look_up_background(const InterleavedMaps& map, PointArrays& points, int count, float* rgba) {

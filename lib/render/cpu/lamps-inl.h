@@ -24,20 +24,21 @@ struct LampSeen {
 };
 
 // Light as light_at() has it. `direction` is that of a lamp that is far away; `placed` may be null. `points` has px,
-// py, pz.
+// py, pz; the first `count` of them are seen, with those that fill the last vector.
 template <class Points>
-HWY_INLINE void see_lamp(const float* direction, const PlacedLamp* placed, const Points& points, LampSeen& seen) {
+HWY_INLINE void see_lamp(const float* direction, const PlacedLamp* placed, const Points& points, int count,
+                         LampSeen& seen) {
   const D f;
   const bool far = placed == nullptr || placed->reach2 == 0;
-  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
     if (far) {
       store({hn::Set(f, direction[0]), hn::Set(f, direction[1]), hn::Set(f, direction[2])}, seen.x, seen.y, seen.z, i);
       hn::Store(hn::Set(f, 1.0F), f, seen.strength + i), hn::Store(hn::Set(f, 1.0F), f, seen.distance2 + i);
       continue;
     }
     const auto& at = placed->position;
-    const Direction to = minus({hn::Set(f, at[0]), hn::Set(f, at[1]), hn::Set(f, at[2])},
-                               loaded(points.px, points.py, points.pz, i));
+    const Direction to =
+        minus({hn::Set(f, at[0]), hn::Set(f, at[1]), hn::Set(f, at[2])}, loaded(points.px, points.py, points.pz, i));
     const V squared = dot(to, to), unit = hn::Div(hn::Set(f, 1.0F), hn::Sqrt(hn::Max(squared, hn::Set(f, 1e-30F))));
     store(scaled(unit, to), seen.x, seen.y, seen.z, i);
     const V distance2 = hn::Max(squared, hn::Set(f, placed->least2));

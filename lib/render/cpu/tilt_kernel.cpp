@@ -139,8 +139,8 @@ void TiltStore::load_paints(const Scene& scene, const Effects& effects) {
 
 TiltShading TiltStore::shading(const float* product) const {
   if (!any_) return {};
-  return {kViewSegments,   groups_.data(), rows_.data(), axes_.data(), places_.data(), weights_.data(),
-          texels_.data(), product};
+  return {kViewSegments,  groups_.data(),  rows_.data(),   axes_.data(),
+          places_.data(), weights_.data(), texels_.data(), product};
 }
 
 }  // namespace goniochrome::render

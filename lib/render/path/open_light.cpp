@@ -109,18 +109,14 @@ std::vector<LobeAxis> OpenLight::axes(const OpenView& view, const Surface& surfa
   return axes;
 }
 
-// Column by column: points that are shaded side by side then show one lobe, and the light of lamps in no other is
-// computed.
 void OpenLight::look_up(const std::vector<VisiblePoint>& points, color::Rgb* light) const {
   const std::size_t count = columns_.count();
   std::vector<VisiblePoint> units;
-  units.reserve(points.size() * count);
-  for (std::size_t k = 0; k < count; ++k)
-    for (const VisiblePoint& point : points)
-      units.push_back({.normal = point.normal,
-                       .to_viewer = point.to_viewer,
-                       .part = static_cast<int>(surface_of(point.part) * count + k)});
-  const std::vector<color::Rgb> seen = engine_->colors(units);
+  for (const VisiblePoint& point : points)
+    units.push_back({.normal = point.normal,
+                     .to_viewer = point.to_viewer,
+                     .part = static_cast<int>(surface_of(point.part) * count)});
+  const std::vector<color::Rgb> seen = engine_->colors(units, count);
   for (std::size_t i = 0; i < seen.size(); ++i) light[i % points.size() * count + i / points.size()] = seen[i];
 }
 

@@ -67,7 +67,7 @@ HWY_INLINE void find_lamp(const SbrdfShading& s, int number, const SbrdfPoints& 
   const float* light = s.light + 8 * number;
   const PlacedLamp* placed = s.placed != nullptr ? s.placed + number : nullptr;
   LampSeen seen;
-  see_lamp(light, placed, p, seen);
+  see_lamp(light, placed, p, kPointsAtOnce, seen);
   const bool sphere = placed != nullptr && placed->radius2 > 0;
   for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
     const Direction to = seen.toward(i);
