@@ -466,10 +466,10 @@ HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& poi
         const V from = hn::IfThenElseZero(meets, x);
         const auto node = hn::ConvertTo(whole, from);
         HWY_ALIGN std::int32_t at[kMostLanes];
-        HWY_ALIGN float part[kMostLanes], by_cosine[kMostLanes], by_coat[kMostLanes];
+        HWY_ALIGN float part[kMostLanes], by_cosine[kMostLanes] = {}, by_coat[kMostLanes] = {};
         hn::Store(node, whole, at);
         hn::Store(hn::Sub(from, hn::ConvertTo(f, node)), f, part);
-        for (std::size_t k = 0; k < hn::Lanes(f); ++k) {
+        for (std::size_t k = 0; k < std::min(hn::Lanes(f), static_cast<std::size_t>(count) - i); ++k) {
           const float* here = nodes + kNodeFloats * at[k];
           const Quad zero4 = Quad::filled(0), by = Quad::load(by_node + kNodeFloats * (i + k)),
                      low = mul_add(Quad::filled(1 - part[k]), Quad::load(here), zero4);
