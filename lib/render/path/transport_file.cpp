@@ -39,11 +39,14 @@ std::string class_name(std::size_t k) {
 
 // The change of the gray paint of a column by rounding to halves, the 95th percentile.
 double half_error(const LobeTransport& t, std::size_t column, const std::vector<float>& column_light) {
-  std::vector<double> errors;
+  constexpr std::size_t kStep = 7;
+  constexpr double kNone = -1;
+  std::vector<double> errors((t.places.size() + kStep - 1) / kStep, kNone);
   const double weight = nominal_weight(t.columns, column);
-  for (std::size_t i = 0; i < t.places.size(); i += 7) {
+  parallel_each(errors.size(), 256, [&](std::size_t n) {
+    const std::size_t i = kStep * n;
     const auto at = t.at(i, column);
-    if (!at) continue;
+    if (!at) return;
     color::Rgb light, rounded, base;
     for (int c = 0; c < 3; ++c) {
       light[c] = column_light[*at + static_cast<std::size_t>(c)] / t.white_luminance;
@@ -51,8 +54,9 @@ double half_error(const LobeTransport& t, std::size_t column, const std::vector<
     }
     if (t.columns.is_gloss(column))
       base = (kNominalGray / kPi / t.white_luminance) * t.light(i, LobeColumns::diffuse());
-    errors.push_back(seen_difference(base + weight * light, base + weight * rounded, 1));
-  }
+    errors[n] = seen_difference(base + weight * light, base + weight * rounded, 1);
+  });
+  std::erase(errors, kNone);
   return percentile_95(std::move(errors));
 }
 
