@@ -42,8 +42,8 @@ class CpuEngine : public Engine {
   void shade(const Gbuffer& gbuffer, float gain, bool add, image::Image& rgba) const;
   // The radiance of single points, each of which gets the color of its pixel.
   std::vector<color::Rgb> colors(const std::vector<VisiblePoint>& points) const;
-  // The same in the paints of so many parts, from that of each point on, paint by paint. They have no tilted lobes, and
-  // the parts of a point have one coat and one brushing.
+  // Each point in the paints of so many parts, from its own on: paint by paint. These have no tilted lobes, and one
+  // coat and one brushing.
   std::vector<color::Rgb> colors(const std::vector<VisiblePoint>& points, std::size_t paints) const;
 
  private:

@@ -159,7 +159,7 @@ struct Gathered {
   bool has[kMostClasses] = {};
 
   Gathered() {}  // `blocks` are left as they are
-  // Of a point, by its number among the blocks of all classes.
+  // A block of a point, by its number among those of all classes.
   float* at(int i, int block) { return blocks + 8 * (i * kMost + block); }
   const float* at(int i, int block) const { return blocks + 8 * (i * kMost + block); }
 };

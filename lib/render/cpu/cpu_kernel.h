@@ -71,8 +71,8 @@ struct PointArrays {
 // rgba: 4 floats a point, of which the fourth has no meaning.
 void shade_points(const CpuShading& shading, PointArrays& points, int count, float* rgba);
 
-// The same for the paints of so many parts, from that of each point on, which differ in what they show of light that
-// they meet alike: one coat, one brushing. 4 * kPointsAtOnce floats a paint. The parts of the points are changed.
+// Shades each point in the paints of so many parts, from its own on, which have one coat and one brushing, so that they
+// meet the same light. rgba: 4 * kPointsAtOnce floats a paint. The parts of the points are changed.
 void shade_paints(const CpuShading& shading, PointArrays& points, int count, int paints, float* rgba);
 
 // Looks up one class of maps (a single map) in the directions toward which the points' v point, reversed.

@@ -36,7 +36,7 @@ Curve lab_curve(double t) {
   return {root, root / (3 * t)};
 }
 
-// Of degrees.
+// Functions of angles in degrees.
 constexpr double kCos30 = 0.8660254037844387, kCos6 = 0.9945218953682733, kSin6 = 0.10452846326765347,
                  kCos63 = 0.45399049973954675, kSin63 = 0.8910065241883678;
 
@@ -75,7 +75,7 @@ SeenRows::SeenRows(const color::Rgb& radiance, double white_luminance) {
                chroma = std::sqrt(a_prime * a_prime + b * b);
   const Vec3 d_lightness = 116.0 * gradient[1], d_a = (500 * stretch) * (gradient[0] - gradient[1]),
              d_b = 200.0 * (gradient[1] - gradient[2]);
-  // Of the hue h; without chroma every direction is both.
+  // Functions of the hue h; without chroma every direction is both.
   const double cosine = chroma > 1e-9 ? a_prime / chroma : 1, sine = chroma > 1e-9 ? b / chroma : 0;
   const double cos_2h = cosine * cosine - sine * sine, sin_2h = 2 * sine * cosine,
                cos_3h = cos_2h * cosine - sin_2h * sine, sin_3h = sin_2h * cosine + cos_2h * sine,

@@ -64,7 +64,7 @@ bool at_edge(const ShownPoint& point) {
   return !point.pieces.empty();
 }
 
-// What an element of an image shows, SurfaceImage; nothing where its weight is 0.
+// An element of a SurfaceImage, which shows nothing where its weight is 0.
 template <std::size_t kChannels>
 struct Element {
   float weight = 0, part = 0;
