@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "render/gbuffer.h"
 #include "render/path/noise.h"
 #include "render/path/regression_kernel.h"
 
