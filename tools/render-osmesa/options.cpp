@@ -312,11 +312,12 @@ cli::ToolSpec tool_spec(Options& o) {
   add_engines(spec, o);
   add_checking(spec, o);
   add_output(spec, o);
-  cli::add_common_options(spec, o.common,
-                          {.explain = true,
-                           .time_limit = "each picture by the engine path, rays, and --aov transport",
-                           .stopped = "the exit status is 4 where --tolerance was given and not met",
-                           .seed = "the pixels to check, and the samples of the engine path"});
+  cli::add_common_options(
+      spec, o.common,
+      {.explain = true,
+       .time_limit = "each picture by the engine path, rays, and --aov transport",
+       .stopped = "the exit status is 4 where --tolerance was given and not met. Every pixel is drawn",
+       .seed = "the pixels to check, and the samples of the engine path"});
   add_examples(spec);
   add_report(spec);
   add_gone(spec);
