@@ -316,7 +316,7 @@ cli::ToolSpec tool_spec(Options& o) {
       spec, o.common,
       {.explain = true,
        .time_limit = "each picture by the engine path, rays, and --aov transport",
-       .stopped = "the exit status is 4 where --tolerance was given and missed. Every pixel is drawn first",
+       .stopped = "the exit status is 4 where --tolerance was given and missed. Every pixel is drawn regardless",
        .seed = "the pixels to check, and the samples of the engine path"});
   add_examples(spec);
   add_report(spec);

@@ -61,7 +61,7 @@ HWY_INLINE Direction viewer_of(const PointArrays& p, std::size_t i) {
   return loaded(p.vx, p.vy, p.vz, i);
 }
 
-// So many points with those that fill the last vector.
+// The number of points with those that fill up the last vector, which the kernel computes with as well.
 HWY_INLINE std::size_t whole_vectors(int count) {
   const std::size_t lanes = hn::Lanes(D());
   return (static_cast<std::size_t>(count) + lanes - 1) / lanes * lanes;
@@ -71,7 +71,7 @@ HWY_INLINE std::size_t whole_vectors(int count) {
 HWY_INLINE void set_up(const CpuShading& s, PointArrays& points, int count, Frame& frame) {
   const D f;
   const hn::RebindToSigned<D> whole;
-  for (std::size_t i = 0; i < whole_vectors(count); i += hn::Lanes(f)) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
     Direction v = viewer_of(points, i);
     v = scaled(hn::Div(hn::Set(f, 1.0F), hn::Sqrt(dot(v, v))), v);
     store(v, points.vx, points.vy, points.vz, i);
@@ -446,8 +446,8 @@ HWY_INLINE void add_disc(const CpuShading& s, int number, const PointArrays& poi
       const V cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), r), half);
       hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero)), kCoat2) : one, f, coat_r + i);
     }
-    for (int i = 0; i < static_cast<int>(whole_vectors(count)); ++i) {
-      if (s.coat && i < count) cos_r[i] *= let_in(cos_r[i], index2[i]);
+    for (int i = 0; i < count; ++i) {
+      if (s.coat) cos_r[i] *= let_in(cos_r[i], index2[i]);
       float* of_node = by_node + kNodeFloats * i;
       of_node[0] = irradiance[i], of_node[1] = cos_r[i], of_node[2] = above[i], of_node[3] = coat_r[i];
     }

@@ -39,12 +39,11 @@ class Estimates {
 struct SeenRows {
   std::array<Vec3, 3> rows = {};  // along lightness, chroma and hue
 
-  SeenRows() = default;
   SeenRows(const color::Rgb& radiance, double white_luminance);
+  // The products: their length is that of the difference.
   Vec3 along(const color::Rgb& difference) const {
     return {dot(rows[0], difference), dot(rows[1], difference), dot(rows[2], difference)};
   }
-  double square(const color::Rgb& difference) const { return dot(along(difference), along(difference)); }
 };
 
 // The root mean square CIEDE2000 difference between a radiance and the same with a small random error of this

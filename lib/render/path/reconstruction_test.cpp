@@ -70,7 +70,7 @@ color::Rgb parted(const ShownPoint& point) {
 }
 
 double de00(const Stage& stage, std::size_t n, const color::Rgb& light) {
-  return std::sqrt(SeenRows(kBeside + stage.truth[n], 1).square(light - stage.truth[n]));
+  return length(SeenRows(kBeside + stage.truth[n], 1).along(light - stage.truth[n]));
 }
 
 struct Told {

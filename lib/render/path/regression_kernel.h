@@ -28,7 +28,6 @@ struct SurfaceImage {
   std::array<float*, 3> normal = {}, position = {};  // unit; world
   std::vector<float*> value;                         // to be fitted
 
-  SurfaceImage() = default;
   SurfaceImage(int w, int h, std::size_t channels);
   std::size_t at(int x, int y) const {
     return (static_cast<std::size_t>(y) + kBorder) * stride + static_cast<std::size_t>(x) + kBorder;
