@@ -86,7 +86,7 @@ class Browser {
     if (exceptionDetails) throw new Error(exceptionDetails.exception?.description ?? exceptionDetails.text);
     return result.value;
   }
-  async until(expression, seconds = 60) {
+  async until(expression, seconds = 180) {
     for (const end = Date.now() + 1000 * seconds; Date.now() < end;) {
       if (await this.evaluate(expression).catch(() => false)) return;  // a page that loads has no answer yet
       await new Promise((resolve) => setTimeout(resolve, 50));

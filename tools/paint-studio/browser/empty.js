@@ -31,7 +31,7 @@ drive("the empty page is whole", { width: 1400, height: 900 }, async ({ browser,
   const pixels = Buffer.concat(Array.from({ length: 32 * 16 }, (_, i) => Buffer.from([i % 250, 120, 90, i % 32 === 4 ? 132 : 128])));
   fs.writeFileSync(path.join(folder, "own.hdr"), Buffer.concat([Buffer.from("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16 +X 32\n"), pixels]));
   await give("#open-files", ["own.csv", "own.obj", "own.hdr"].map((name) => path.join(folder, name)));
-  await browser.until("studio.data.environments.length === 2", 120);
+  await browser.until("studio.data.environments.length === 2");
   check("they came together", (await value("studio.paint.name")) === "own" && (await value("studio.stage.mesh.parts.length")) === 1);
   await checkNames();
 });

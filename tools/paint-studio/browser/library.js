@@ -7,7 +7,7 @@ const { check, drive } = require("./drive.js");
 
 drive("the library answers", { width: 1280, height: 1000 }, async ({ browser, value, shot, quiet }) => {
   const open_ms = await value("studioOpened_ms");
-  await quiet(120);
+  await quiet();
   await browser.send("HeapProfiler.collectGarbage");
   const memory = await value("({ heap_mb: performance.memory.usedJSHeapSize / 1e6, compiled_mb: studio.engine.bytes() / 1e6 })");
   const best = "Math.min(...[1, 2, 3, 4, 5].map(() => (studio.panel.filter(), studio.panel.filter_ms)))";

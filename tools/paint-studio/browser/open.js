@@ -14,8 +14,8 @@ drive("files of every kind are opened", { width: 1400, height: 900 }, async ({ b
   const open = async (...files) => {
     await value("studio.say('')");
     await give("#open-files", files);
-    await browser.until("((said) => said !== '' && !/is being (read|filtered)/.test(said))(document.getElementById('status').textContent)", 120);
-    await browser.until("!studio.stage.occlusion.busy", 120);
+    await browser.until("((said) => said !== '' && !/is being (read|filtered)/.test(said))(document.getElementById('status').textContent)");
+    await browser.until("!studio.stage.occlusion.busy");
     return status();
   };
   for (const file of paints) {
@@ -87,14 +87,14 @@ drive("files of every kind are opened", { width: 1400, height: 900 }, async ({ b
   const ofDoors = await open(path.join(data, "doors.glb"));
   check(`the doors are there: ${ofDoors}`, (await parts()).map(([name]) => name).join() === "Closet,Left.Panel,Left.Pane,Right.Panel,Right.Pane");
   await browser.until("studio.stageView.full_ms > 0", 30).catch(() => {});
-  await browser.until("!studio.stage.occlusion.busy", 120);
+  await browser.until("!studio.stage.occlusion.busy");
   const covered = "studio.stage.radiance(studio.stageView.camera, 64, 36, studio.weights, 0)";
   check("the mesh is seen", (await value(`new Set(${covered}).size`)) > 100);
   await shot("open-mesh");
 
   // Parts wear what is chosen in the list, or after a click on them.
   const wear = (name, row) => value(`(() => { const list = [...document.querySelectorAll("#parts .part")].find((one) => one.textContent.includes(${JSON.stringify(name)})).querySelector("select");
-    list.value = ${row}; list.dispatchEvent(new Event("change")); })()`).then(() => browser.until("!studio.stage.occlusion.busy", 120));
+    list.value = ${row}; list.dispatchEvent(new Event("change")); })()`).then(() => browser.until("!studio.stage.occlusion.busy"));
   const sums = () => value(`[...${covered}].reduce((sum, x) => sum + x, 0)`), plain = await sums();
   await wear("Closet", 3);
   const rubber = await sums();

@@ -72,6 +72,19 @@ async function main() {
   await browser.evaluate("studio.grounds = studio.data.environments.map((one) => one.ground_light)");
   await browser.evaluate("(() => { const { occlusion } = studio.stage; for (const one of studio.data.environments) delete one.ground_light; occlusion.begin(); while (occlusion.step()); })()");
   await variant("found", "", "");
+  // Steps of pictures in several lights come in turn; a ground may be hidden. As a control, pictures of two lights differ.
+  const inTurn = await browser.evaluate(`(() => {
+    const { stage } = studio, camera = cameraOf(studio.data.mesh.view), weights = stage.weights(studio.engine), last = studio.data.environments.length - 1;
+    const radiance = (environment) => stage.radiance(camera, ${width / 2}, ${height / 2}, weights, environment), found = {};
+    for (const ground of [true, false]) {
+      stage.ground = ground;
+      const first = radiance(0), gbuffer = stage.gbuffer("kept", camera, ${width / 2}, ${height / 2}, [0, 0], 0);
+      const other = radiance(last), between = stage.valuesOf(stage.shade("kept", gbuffer, weights, 0));
+      found[ground ? "shown" : "hidden"] = { again: apart(radiance(0), first, 0).most, between: apart(between, first, 0).most, other: apart(other, first, 0).most };
+    }
+    stage.ground = true;
+    return found;
+  })()`);
   await browser.evaluate("studio.data.environments.forEach((one, i) => { one.ground_light = studio.grounds[i]; })");
   // Layers that were drawn for one paint show another one: that whose wide lobes look elsewhere most, of all that little gloss makes
   // of paints of the library; and with the lamp. The control takes layers as they are.
@@ -198,7 +211,7 @@ async function main() {
     return count;
   })()`);
   await browser.close();
-  console.log(JSON.stringify({ timers, ...times, ...settled, ...dragged, environments, layers, smooth, ...moved, problems: browser.problems }));
+  console.log(JSON.stringify({ timers, in_turn: inTurn, ...times, ...settled, ...dragged, environments, layers, smooth, ...moved, problems: browser.problems }));
   if (browser.problems.length > 0) process.exit(1);
 }
 

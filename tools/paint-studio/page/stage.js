@@ -248,7 +248,8 @@ class Stage {
     made.groundTurn = this.turn;
     return made.ground;
   }
-  // The shadow on the ground: its texture, null where it is not known, and 1 over its reach.
+  // The shadow on the ground: its texture, null where it is not known, and 1 over its reach. In a light that was not the last one it is
+  // drawn first, so whoever is to shade asks for it before a target is bound.
   groundShade(environment) {
     const packed = this.data.environments[environment].ground_light;
     const shade = packed ? { ...packed, texture: this.groundLight(environment, packed) } : this.occlusion.ground ? this.occlusion.groundLight(environment) : null;
@@ -353,15 +354,16 @@ class Stage {
   // Shades rows of a G-buffer into the sum of that name. `weights` are those of one paint, or {left, right, at}: of two, which
   // meet at that part of the width.
   shade(name, gbuffer, weights, environment, begin = 0, end = gbuffer.height) {
-    const gl = this.gl, target = this.target("sum " + name, gbuffer.width, gbuffer.height, this.sumKind, false);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
-    gl.disable(gl.BLEND);
-    this.cast(gbuffer, weights, environment, begin, end);
+    const target = this.target("sum " + name, gbuffer.width, gbuffer.height, this.sumKind, false);
+    this.cast(target, gbuffer, weights, environment, begin, end);
     return Object.assign(target, { stride: 1, samples: 1 });
   }
-  // Draws what shade() does into the framebuffer that is bound: the whole picture, or the tiles that have edges.
-  cast(gbuffer, weights, environment, begin, end, edges = null) {
+  // Draws what shade() does into a target: the whole picture, or the tiles that have edges.
+  cast({ framebuffer }, gbuffer, weights, environment, begin, end, edges = null) {
     const gl = this.gl, border = weights.left ? Math.round(weights.at * gbuffer.width) : gbuffer.width;
+    this.groundShade(environment);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+    gl.disable(gl.BLEND);
     gl.bindVertexArray(this.noVertices);
     gl.enable(gl.SCISSOR_TEST);
     for (const [paint, from, to] of [[weights.left ?? weights, 0, border], [weights.right, border, gbuffer.width]]) {
@@ -399,8 +401,7 @@ class Stage {
       const gbuffer = gbufferOf(k);
       for (let begin = 0, rows; begin < height; begin += rows) {
         rows = Math.min(height, this.edgeRows);
-        gl.bindFramebuffer(gl.FRAMEBUFFER, sample.framebuffer);
-        this.cast(gbuffer, weights, environment, begin, Math.min(height, begin + rows), edges);
+        this.cast(sample, gbuffer, weights, environment, begin, Math.min(height, begin + rows), edges);
         const took_ms = yield;
         if (took_ms > 0) this.edgeRows = clamped(Math.floor((rows * budget_ms) / took_ms), 8, height);
       }
@@ -615,6 +616,7 @@ class Stage {
   // Draws the mesh once more, so that its program knows the place of each pixel, and adds to a copy of the sum.
   sparkle(gbuffer, sum, weights, { texture, per_m2 }, environment, [x, y, width, height]) {
     const gl = this.gl, target = this.target(`sparkle ${x > 0}`, sum.width, sum.height, this.sumKind, false), program = this.shading(environment, false, "sparkle");
+    this.groundShade(environment);
     gl.bindFramebuffer(gl.READ_FRAMEBUFFER, sum.framebuffer);
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, target.framebuffer);
     gl.blitFramebuffer(x, y, x + width, y + height, x, y, x + width, y + height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
