@@ -91,6 +91,7 @@ needs_browser() {
 @test "the ground lies where render-osmesa lays it, with the shadow of the mesh" {
   needs_browser
   [ -s candy_red-studio-groundless.f32 ] || skip "the pictures were not drawn"
+  [ "$(jq '.search | all' pictures.json)" = true ]
   [ "$(jq '.in_turn | map(.again == 0 and .between == 0 and .other > 0.1) | all' pictures.json)" = true ]
   for light in studio outdoor; do
     white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' page.html |

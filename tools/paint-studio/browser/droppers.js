@@ -89,7 +89,10 @@ drive("the droppers take what they are on", { width: 1700, height: 1000 }, async
   await value("studio.openSession(window.savedSession)");
   await browser.until("Object.keys(studio.pictures.droppers).length === 3");
   check("the session has the boards with their pictures and droppers", (await shown()) === kept);
-  check("the browser keeps them", (await value("JSON.parse(studio.kept()[0].session).pictures.boards[0].pictures.length")) === 2);
+  const pictures = "JSON.parse(studio.kept()[0].session).pictures?.boards[0].pictures.length";
+  check("the browser keeps them", (await value(pictures)) === 2);
+  check("it keeps them while they come", (await value(`(() => { studio.openSession(window.savedSession); studio.show(); return ${pictures}; })()`)) === 2);
+  await browser.until("Object.keys(studio.pictures.droppers).length === 3");
   await browser.click("#new-board");
   check("the new board is empty", (await value("document.querySelectorAll('#picture canvas').length")) === 0);
   await give("#open-files", [second]);

@@ -85,6 +85,36 @@ async function main() {
     stage.ground = true;
     return found;
   })()`);
+  // A search for shadows finds the same after pictures in light of lamps came between its steps, and after another one that was broken off.
+  const search = await browser.evaluate(`(() => {
+    const { stage, parts } = studio, { gl, occlusion } = stage, all = () => { while (occlusion.step()); };
+    const bits = () => {
+      const { columns, rows, bits: { framebuffer } } = occlusion.mesh, values = new Uint32Array(4 * columns * rows);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+      gl.readBuffer(gl.COLOR_ATTACHMENT0);
+      gl.readPixels(0, 0, columns, rows, gl.RGBA_INTEGER, gl.UNSIGNED_INT, values);
+      return values.join();
+    };
+    const begin = () => { occlusion.begin(); for (let i = 0; i < 20; ++i) occlusion.step(); };
+    occlusion.shown = null;
+    occlusion.begin();
+    all();
+    const found = bits();
+    occlusion.shown = null;
+    begin();
+    stage.turnTo(20);
+    studio.data.environments.forEach((_, i) => stage.gbuffer("between", cameraOf(studio.data.mesh.view), 64, 36, [0, 0], i));
+    stage.turnTo(0);
+    all();
+    const between = bits() === found, part = parts.list.find(({ row }) => row === 0);
+    part.row = -1;
+    begin();
+    const other = bits() !== found;
+    part.row = 0;
+    occlusion.begin();
+    all();
+    return { lamps: studio.data.environments.some(({ lamps }) => lamps.length > 0), between, other, broken_off: bits() === found };
+  })()`);
   await browser.evaluate("studio.data.environments.forEach((one, i) => { one.ground_light = studio.grounds[i]; })");
   // Layers that were drawn for one paint show another one: that whose wide lobes look elsewhere most, of all that little gloss makes
   // of paints of the library; and with the lamp. The control takes layers as they are.
@@ -211,7 +241,7 @@ async function main() {
     return count;
   })()`);
   await browser.close();
-  console.log(JSON.stringify({ timers, in_turn: inTurn, ...times, ...settled, ...dragged, environments, layers, smooth, ...moved, problems: browser.problems }));
+  console.log(JSON.stringify({ timers, in_turn: inTurn, search, ...times, ...settled, ...dragged, environments, layers, smooth, ...moved, problems: browser.problems }));
   if (browser.problems.length > 0) process.exit(1);
 }
 

@@ -25,6 +25,17 @@ drive("flakes sparkle", { width: 1000, height: 700 }, async ({ folder, value, qu
       return texts; })()`);
     ["plain", "flaky"].forEach((name, i) => fs.writeFileSync(path.join(folder, `${name}-${meters}.f32`), Buffer.from(pictures[i], "base64")));
   }
+  // Each of two paints has flakes on its own side.
+  const [named] = await value("(() => { studio.compare(`library ${[...Array(studio.library.count).keys()].find((i) => studio.library.paint(i).name === 'silver_fine')}`); return [studio.compared.name]; })()");
+  const sides = await value(`(() => {
+    const { stage, weights, compared } = studio, camera = cameraOf({ azimuth: 0, elevation: 0, distance: 1, target: [0, 0, 0], fov: 15 });
+    return [[weights, compared.weights], [compared.weights, weights]].map(([left, right]) => {
+      stage.draw("check", camera, 64, 64, { left, right, at: 0.25 }, 0, 0);
+      const { gbuffer, sums, border } = stage.shown;
+      return [border, ...stage.sparkled(gbuffer, sums, border, { left, right, at: 0.25 }, 0).map((one, i) => one !== sums[i])];
+    }); })()`);
+  check(`flakes lie on the side of their paint: ${named} ${JSON.stringify(sides)}`, named === "silver_fine" && JSON.stringify(sides) === "[[16,true,false],[16,false,true]]");
+  await value("studio.compare('none')");
   const drawn = (paint) => value(`(() => { const { stage, weights } = studio, gbuffer = stage.gbuffer("radiance", cameraOf({ azimuth: 0, elevation: 0, distance: 1, target: [0, 0, 0], fov: 15 }), 64, 64, [0, 0], 0), sum = stage.shade("radiance", gbuffer, weights, 0);
     return stage.sparkled(gbuffer, [sum], 64, weights, 0)[0] !== sum; })()`);
   check("flakes are drawn that an eye sees", await drawn());

@@ -22,6 +22,20 @@ drive("the picture answers", { width: 1400, height: 720 }, async ({ browser, val
   const angleAt = (at) => value(`studio.stageView.pointAt(${at.x}, ${at.y})?.angle`);
   await choose("library", "candy_red");
   await quiet();
+  // A slider that comes back to its place leaves a whole picture of the design.
+  for (const range of ["#exposure", "#numbers input[type=range][aria-label=travel]"]) {
+    const one = `document.querySelector(${JSON.stringify(range)})`, number = () => value(`${one}.valueAsNumber`), before = await number();
+    const from = await value(`(() => { const one = ${one}; one.scrollIntoView({ block: "center" });
+      const box = one.getBoundingClientRect(); return { x: box.left + 8 + ((one.value - one.min) / (one.max - one.min)) * (box.width - 16), y: box.top + box.height / 2 }; })()`);
+    await browser.mouse("mousePressed", from.x, from.y);
+    for (const by of [-10, -20]) await browser.mouse("mouseMoved", from.x + by, from.y);
+    check(`${range} moves`, (await number()) !== before);
+    for (const by of [0, 1, -1, 2, -2, 3, -3]) if ((await number()) !== before) await browser.mouse("mouseMoved", from.x + by, from.y);
+    await browser.mouse("mouseReleased", from.x, from.y);
+    check(`${range} is back`, (await number()) === before);
+    await browser.until("!studio.wanted && studio.stageView.lastFrame === undefined && studio.stageView.sharp && studio.stage.canvas.width === studio.stageView.size(1)[0]");
+    check(`${range} leaves the design`, await value("JSON.stringify(studio.paint) === JSON.stringify(studio.history.now.paint) && studio.history.at === 1"));
+  }
   await value("document.getElementById('stage').scrollIntoView()");
 
   // The lamp goes to where its highlight is dragged, by mouse and finger; keys and numbers move it too.

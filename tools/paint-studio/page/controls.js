@@ -77,6 +77,7 @@ class NumberControls {
   slider(name, low, high, step, unit) {
     const range = made("input", { type: "range", min: low, max: high, step, "aria-label": name,
                                   oninput: () => this.app.preview(this.edit(name, Number(range.value))),
+                                  onpointerup: () => setTimeout(() => this.app.abandon(), 100),  // where it is back at its place, so that there is no change
                                   onchange: () => this.app.commit(this.edit(name, Number(range.value)), true) });
     const field = made("input", { type: "number", min: low, max: high, step, "aria-label": name,
                                   onchange: () => this.commitNumber(name, low, high) });

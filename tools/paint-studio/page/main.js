@@ -190,8 +190,9 @@ class App {
     this.show();
   }
   start(number) { this.restore(this.fresh(number)); }
+  // A state of elsewhere, such as of the palette, becomes that of the design.
   restore(state) {
-    this.history.push(state);
+    this.history.push({ ...state, goesOn: false, by_key: "" });
     this.show();
   }
   turn(way) {
@@ -223,8 +224,9 @@ class App {
   }
   // Moves a paint of the palette to another place of it, or, where `to` is -1, takes it away.
   arrange(from, to) {
-    const [state] = this.palette.splice(from, 1);
+    const compared = this.compared.choice.startsWith("palette ") ? this.comparedState() : null, [state] = this.palette.splice(from, 1);
     if (to >= 0) this.palette.splice(to, 0, state);
+    if (compared) this.compared.choice = `palette ${this.palette.indexOf(compared)}`;
     this.tiles.palette();
     this.showChoices();
     this.store();
@@ -346,6 +348,7 @@ class App {
     group("Library", listed.map((i) => option(`library ${i}`, this.library.paint(i).name)));
     list.value = choice;
     if (list.value !== choice) this.compare("none");
+    else if (choice !== "none" && JSON.stringify(this.comparedState().paint) !== JSON.stringify(this.comparedWeights?.paint)) this.compare(choice);
   }
 
   showFigures(fit) {
@@ -403,13 +406,14 @@ class App {
     const palette = (session.palette ?? []).map((one) => this.replayed(one));
     this.history = new EditHistory(states, at);
     this.palette = palette;
+    if (session.pictures) this.pictures.restore(session.pictures).catch((error) => this.say(error.message));
     this.parts.restore(session.parts);
     this.card.notes.value = session.notes ?? "";
-    if (session.pictures) this.pictures.restore(session.pictures).catch((error) => this.say(error.message));
   }
   // Each tab keeps a session of its own, and a new tab begins with the last one. The newest eight stay. Browsers may refuse
   // to store anything, or so much as pictures take; the page then works without.
   store() {
+    if (this.pictures.coming) return;  // with those pictures
     const told = (lost) => {
       if (this.storeRefused !== lost) this.say(`The browser does not keep ${lost}: save the session as a file.`);
       this.storeRefused = lost;

@@ -266,6 +266,7 @@ class Occlusion {
     this.mesh ??= this.points(vertexColumns, positions, normals);  // not turned with the light
     const shown = stage.shownParts.map(({ first, row }) => `${first} ${row < 2}`).join();
     if (this.shown !== shown) {
+      this.shown = null;  // until all bits are of these parts
       yield* this.look(this.mesh, around);
       [this.shown, this.columns, this.ground] = [shown, vertexColumns, null];
       this.changed();
@@ -290,10 +291,13 @@ class Occlusion {
     const { gl } = this.stage, program = (this.bitsProgram ??= this.stage.program(bitsVertex, bitsFragment));
     for (let begin = 0; begin < aroundCount; begin += atOnce) {
       const list = directions.slice(begin, begin + atOnce);
-      for (let i = 0; i < atOnce; ++i) {
-        this.drawDepth(list[i], i);
-        if (i % 2 === 1) yield;
-      }
+      do {
+        this.lampsDrawn = false;  // over these depths, by a picture between two steps
+        for (let i = 0; i < atOnce; ++i) {
+          this.drawDepth(list[i], i);
+          if (i % 2 === 1) yield;
+        }
+      } while (this.lampsDrawn);
       gl.colorMask(...[0, 1, 2, 3].map((channel) => channel === begin / atOnce));
       this.draw(program, points, points.bits, [["depths", gl.TEXTURE_2D, this.depths.depth], ["paints", gl.TEXTURE_2D, this.depths.texture]], () => gl.uniform3fv(program.at("toward[0]"), list.flat()));
       gl.colorMask(true, true, true, true);
@@ -342,7 +346,10 @@ class Occlusion {
   // Draws the depths of the mesh as lamps see it, where their light is to be taken; returns what sets them in a program.
   lamps(what, environment, program) {
     const { stage } = this, { gl } = stage, lamps = stage.data.environments[environment].lamps.slice(0, atOnce), toward = lamps.map(({ direction }) => turnedAgainst(direction, -stage.turn));
-    if (!this.has(what, environment)) toward.forEach((direction, i) => this.drawDepth(direction, i));
+    if (!this.has(what, environment) && toward.length > 0) {
+      this.lampsDrawn = true;
+      toward.forEach((direction, i) => this.drawDepth(direction, i));
+    }
     return () => {
       gl.uniform1i(program.at("lamps"), lamps.length);
       if (lamps.length > 0) gl.uniform3fv(program.at("lamp_toward[0]"), toward.flat());

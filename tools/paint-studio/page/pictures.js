@@ -85,7 +85,16 @@ class Pictures {
              droppers: Object.entries(this.droppers).map(([kind, { picture, ...found }]) => ({ kind, place: places.get(picture), ...found })) };
   }
   // Takes the place of what stands here. A picture that cannot be read leaves its board without it, and is told.
-  async restore({ made: count, open, boards, droppers }) {
+  async restore(saved) {
+    this.coming = true;
+    try {
+      await this.putBack(saved);
+    } finally {
+      this.coming = false;
+      this.app.store();
+    }
+  }
+  async putBack({ made: count, open, boards, droppers }) {
     if (!Array.isArray(boards) || !Array.isArray(droppers)) throw new Error("The pictures of this session are damaged.");
     Object.assign(this, { boards: [], board: null, current: null, droppers: {}, made: 0 });
     const places = [];
@@ -103,7 +112,6 @@ class Pictures {
     for (const { kind, place: [b, i], ...found } of droppers) if (places[b]?.[i]) this.droppers[kind] = { picture: places[b][i], ...found };
     const board = this.boards[open] ?? this.boards.at(-1);
     if (board) this.openBoard(board);
-    this.app.store();
   }
   // Takes the picture that was used last away, and a board that has none with it.
   remove() {

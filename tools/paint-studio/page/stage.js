@@ -58,6 +58,9 @@ void main() {
 }
 `;
 
+// The column at which two paints meet; of one paint the width.
+const borderOf = (weights, width) => (weights.left ? Math.round(weights.at * width) : width);
+
 class Stage {
   // Throws a sentence where the browser cannot draw the page.
   constructor(canvas, data, engine) {
@@ -360,7 +363,7 @@ class Stage {
   }
   // Draws what shade() does into a target: the whole picture, or the tiles that have edges.
   cast({ framebuffer }, gbuffer, weights, environment, begin, end, edges = null) {
-    const gl = this.gl, border = weights.left ? Math.round(weights.at * gbuffer.width) : gbuffer.width;
+    const gl = this.gl, border = borderOf(weights, gbuffer.width);
     this.groundShade(environment);
     gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
     gl.disable(gl.BLEND);
@@ -550,7 +553,11 @@ class Stage {
   draw(name, camera, width, height, weights, environment, stops, overlay = null) {
     this.resize(width, height);  // which waits for all that is still to be drawn
     const gbuffer = this.gbuffer(name, camera, width, height, [0, 0], environment);
-    this.showOver(gbuffer, [this.shade(name, gbuffer, weights, environment)], width, weights, environment, stops, overlay);
+    this.showWhole(gbuffer, this.shade(name, gbuffer, weights, environment), weights, environment, stops, overlay);
+  }
+  // Shows a sum that has both sides, where there are two.
+  showWhole(gbuffer, sum, weights, environment, stops, overlay) {
+    this.showOver(gbuffer, weights.left ? [sum, sum] : [sum], borderOf(weights, sum.width), weights, environment, stops, overlay);
   }
   // Shows one sum, or two that meet at a column, and the overlay.
   showOver(gbuffer, sums, border, weights, environment, stops, overlay, shown = this.sparkling ? this.sparkled(gbuffer, sums, border, weights, environment) : sums) {
@@ -577,13 +584,13 @@ class Stage {
   *drawSteps(name, camera, width, height, weights, environment, stops, budget_ms, overlay) {
     const gbuffer = this.gbuffer(name, camera, width, height, [0, 0], environment);
     const took = yield* this.inRows(height, budget_ms, (begin, end) => this.shade(name, gbuffer, weights, environment, begin, end));
-    this.showOver(gbuffer, [this.targets.get("sum " + name)], width, weights, environment, stops, overlay);
+    this.showWhole(gbuffer, this.targets.get("sum " + name), weights, environment, stops, overlay);
     return took;
   }
   // The steps that smooth the picture which was shown last, by the G-buffer of that name, and show it; then, with `sparkles`, those of flakes.
   *smoothSteps(name, camera, weights, environment, stops, samples, overlay, sparkles, budget_ms) {
-    const { gbuffer, sums, border } = this.shown;
-    for (const [i, sum] of sums.entries()) yield* this.smooth(name, sum, camera, sums.length > 1 ? [weights.left, weights.right][i] : weights, environment, stops, samples, budget_ms);
+    const { gbuffer, sums, border } = this.shown, all = [...new Set(sums)];
+    for (const [i, sum] of all.entries()) yield* this.smooth(name, sum, camera, all.length > 1 ? [weights.left, weights.right][i] : weights, environment, stops, samples, budget_ms);
     this.showOver(gbuffer, sums, border, weights, environment, stops, overlay);
     if (!sparkles || this.sparkling || !this.sees(gbuffer, weights, environment)) return;
     let flaky = sums;
@@ -654,7 +661,7 @@ class Stage {
     if (!gathered.serves(key, own, environment, stride)) return false;
     const gbuffer = this.gbuffer(name, camera, width, height, [0, 0], environment), sums = [gathered.shade("gathered " + stride, gbuffer, own, environment, stride)];
     if (weights.left) sums.push(this.otherSide(key, gbuffer, weights.right, environment));
-    this.showOver(gbuffer, sums, weights.left ? Math.round(weights.at * width) : width, weights, environment, stops, overlay);
+    this.showOver(gbuffer, sums, borderOf(weights, width), weights, environment, stops, overlay);
     return true;
   }
   // The paint beside the design, which stays while the design changes.

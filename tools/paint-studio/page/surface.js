@@ -51,7 +51,7 @@ class Surface {
         last = this.dragged(event, from) ?? last;
       },
       end: () => {
-        if (this.kind === "view" && !this.fixed && !from.moved) this.app.parts.choose(view.hit(from.x, from.y)?.part ?? null);
+        if (this.kind === "view" && !this.fixed && !from.moved && !this.pinched) this.app.parts.choose(view.hit(from.x, from.y)?.part ?? null);
         if (this.kind === "travel" || this.kind === "gloss") {
           if (last) this.app.commit(last);
         } else if (this.kind !== "color" && !this.fixed) {
@@ -84,6 +84,7 @@ class Surface {
     };
     this.canvas.addEventListener("pointerdown", (event) => {
       if (event.pointerType === "touch") this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+      this.pinched = this.fingers.size > 1;  // until another finger comes alone
       if (this.fingers.size !== 2) return;
       stop();
       this.app.abandon();
@@ -114,7 +115,7 @@ class Surface {
   // One move of a drag; the edit that it stands for, if it is one.
   dragged(event, from) {
     const view = this.app.stageView, dx = event.clientX - from.x, dy = event.clientY - from.y;
-    if (this.fixed || this.fingers.size > 1) return null;
+    if (this.fixed || this.pinched) return null;
     if (this.kind === "view") {
       view.look({ ...from.view, azimuth: from.view.azimuth - 0.4 * dx, elevation: clamped(from.view.elevation + 0.3 * dy, -85, 85) }, true);
     } else if (this.kind === "light") {

@@ -63,8 +63,9 @@ class StageView {
   shadow() {
     const { stage } = this, go = async () => {
       if (stage !== this.stage || this.lost) return;
-      const waits = !this.sharp || this.lastFrame !== undefined;  // the picture comes first
+      const waits = !this.sharp || (this.lastFrame !== undefined && this.full_ms > 16);  // the picture comes first
       if (!waits && !stage.occlusion.step()) {
+        this.app.tiles.again();
         this.redraw();
         return;
       }
@@ -340,7 +341,9 @@ class StageView {
   drawNow(moving, now = performance.now()) {
     if (this.drawing !== undefined) cancelAnimationFrame(this.drawing);
     this.drawing = undefined;
+    clearTimeout(this.still);
     if (this.lost) return;
+    if (moving) this.still = setTimeout(() => this.redraw(), 600);  // a handle that came back to its place says nothing at its end
     this.rest(null);
     const since = this.since = this.asked ?? performance.now();
     this.asked = undefined;
