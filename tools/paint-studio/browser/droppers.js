@@ -83,9 +83,9 @@ drive("the droppers take what they are on", { width: 1700, height: 1000 }, async
   const shown = () => value(`JSON.stringify([studio.pictures.all.map(({ name, canvas }) => [name, canvas.toDataURL()]), studio.pictures.boards.map(({ name, zoom }) => [name, zoom]),
     Object.entries(studio.pictures.droppers).map(([kind, { picture, ...found }]) => [kind, studio.pictures.all.indexOf(picture), found])])`);
   const kept = await shown();
-  const forget = "Object.assign(studio.pictures, { boards: [], board: null, current: null, droppers: {} }); studio.pictures.show();";
-  await value(`(() => { const bare = studio.savedSession(false); window.savedSession = studio.savedSession(); ${forget} studio.openSession(bare); })()`);
-  check("a session without pictures brings none", (await value("studio.pictures.all.length")) === 0);
+  await value("(() => { window.savedSession = studio.savedSession(); studio.openSession(studio.savedSession(false)); })()");
+  await browser.until("studio.pictures.coming === 0");
+  check("a session without pictures leaves none", (await value("studio.pictures.all.length")) === 0);
   await value("studio.openSession(window.savedSession)");
   await browser.until("Object.keys(studio.pictures.droppers).length === 3");
   check("the session has the boards with their pictures and droppers", (await shown()) === kept);

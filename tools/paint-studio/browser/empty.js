@@ -20,6 +20,14 @@ drive("the empty page is whole", { width: 1400, height: 900 }, async ({ browser,
     check("its lobes meet it", (await value("studio.fit.de00_mean")) < 1);
   }
   check("paints differ", new Set(means.map((mean) => mean.toFixed(5))).size === paints);
+  const tires = await value(`(() => {
+    const { parts } = studio, all = parts.list.filter(({ name }) => name === "Tires");
+    parts.wear(all[1], -1);
+    studio.openSession(studio.savedSession());
+    const rows = all.map(({ row }) => row).join();
+    parts.wear(all[1], all[1].told);
+    return rows; })()`);
+  check(`of parts of one name each keeps its own: ${tires}`, tires === "3,-1,3,3");
   // The commands name a file that the page saves.
   await value("studio.commit({ gloss: 30 })");
   await browser.click("#save-xml");

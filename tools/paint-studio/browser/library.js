@@ -33,6 +33,7 @@ drive("the library answers", { width: 1280, height: 1000 }, async ({ browser, va
   const chosen = await value("studio.panel.place");
   await browser.click("#chosen button:nth-of-type(1)");
   check("the design starts from the chosen paint", (await value("studio.history.now.start")) === chosen);
+  await quiet();
   await browser.key("Home");
   await value("studio.panel.list.scrollIntoView({ block: 'center' })");
   await browser.click(".paint-row:nth-child(3)");

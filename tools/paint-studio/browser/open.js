@@ -33,6 +33,16 @@ drive("files of every kind are opened", { width: 1400, height: 900 }, async ({ b
   const send = browser.take.bind(browser);
   browser.take = (message) => { if (!/inline style/.test(message.params?.entry?.text ?? "")) send(message); };
 
+  // Openings come one after the other, and none is of no files; a file that cannot be read is told.
+  const order = await value(`(async () => {
+    const { opening, engine } = studio, { give } = engine, order = [];
+    const file = (name, ms, readable = true) => Object.assign(new File(["x"], name), { arrayBuffer: () => new Promise((done, fail) => setTimeout(() => (readable ? done(new ArrayBuffer(1)) : fail()), ms)) });
+    engine.give = (name, ...more) => { order.push(name); return give.call(engine, name, ...more); };
+    await Promise.all([[file("slow.csv", 60)], [], [file("fast.csv", 5)], [file("folder", 5, false)]].map((files) => opening.open(files)));
+    engine.give = give;
+    return order.join(); })()`);
+  check(`files wait for those before: ${order}`, order === "slow.csv,,fast.csv,," && (await status()).includes("folder cannot be read"));
+
   // Errors are those of the tools, with the file and the line.
   const wrong = {
     "wrong.paints.xml": '<paints xmlns="urn:goniochrome:paint:1" version="1">\n <paint name="x">\n  <measurement illuminant="D65" observer="10">\n   <lab geometry="45as15" L="12,5" a="0" b="0"/>\n  </measurement>\n </paint>\n</paints>\n',

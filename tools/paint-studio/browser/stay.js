@@ -100,6 +100,25 @@ drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value,
   await browser.click("#palette .tile");
   await value("(() => { studio.openSession(studio.savedSession()); studio.show(); })()");
   check("a kept paint is the same in a session", JSON.stringify(await paint()) === red);
+  // A session of another library is refused, and stays where it is kept.
+  const refused = await value(`(() => {
+    const { place } = studio, session = studio.savedSession().replaceAll('"of":"', '"of":"another '), text = JSON.stringify({ time: Date.now(), session });
+    localStorage.setItem(place, text);
+    studio.reopen();
+    studio.show();
+    const stays = localStorage.getItem(place) === text;
+    localStorage.removeItem(place);
+    return { stays, said: document.getElementById("status").textContent }; })()`);
+  check(`a session of another library is refused: ${JSON.stringify(refused)}`, refused.stays && refused.said.includes("another library"));
+  check("the design stays", JSON.stringify(await paint()) === red);
+  check("notes of a session are kept", await value(`(() => { studio.openSession(JSON.stringify({ ...JSON.parse(studio.savedSession()), notes: "as seen at noon" })); return JSON.parse(studio.kept()[0].session).notes === "as seen at noon"; })()`));
+  await value("document.getElementById('notes').focus()");
+  await browser.key("z", 2);
+  check("undo in a text is of the text", JSON.stringify(await paint()) === red);
+  // A field shows what the paint has.
+  const gloss = await value(`(() => { const field = document.querySelector("#numbers input[type=number][aria-label=gloss]"); field.focus(); field.value = 500; field.dispatchEvent(new Event("change")); return [field.valueAsNumber, studio.paint.gloss[0][1]]; })()`);
+  check(`a field shows what the paint has: ${gloss}`, gloss.join() === "100,100");
+  await browser.click("#undo");
 
   // The paint that is named beside the design is the one that is shown there.
   const beside = () => value("[document.getElementById('compare').selectedOptions[0].textContent, document.getElementById('side-right').textContent, studio.compared.weights?.paint.name]");
@@ -159,6 +178,11 @@ drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value,
   await value(`(() => { location.hash = "p=${link}"; })()`);
   await browser.until(`JSON.stringify([studio.paint, studio.stageView.view, studio.stage.turn]) === ${JSON.stringify(seen)}`, 10);
 
+  const usual = await value("studio.data.mesh.view.distance"), other = (members) => value(`(() => { const link = JSON.parse(studio.linked()); Object.assign(link, ${members}); studio.openLink(JSON.stringify(link)); return document.getElementById("status").textContent; })()`);
+  await other("{ usual: 1e3 * link.usual, view: { ...link.view, distance: 1e3 * link.view.distance } }");
+  check("a link that was made with another mesh shows this one", (await view()).distance === usual);
+  check("a link in a light that is not there is told", (await other("{ light: 'moon' }")).includes("the light of the link: moon"));
+
   // A screen of Display P3 shows its own colors, here linear .5, .02, .02 of P3 as Rec.2020 has it. The control is a screen of sRGB.
   const onScreen = (screen) => value(`(() => {
     const { stage } = studio, { gl } = stage, texture = stage.floatTexture(1, 1, new Float32Array([0.38184, 0.041957, 0.019419, 1])), pixel = new Uint8Array(4);
@@ -169,6 +193,9 @@ drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value,
   check(`a wide screen gets its own signals: ${wide}, ${narrow}`, [188, 39, 39].every((code, i) => Math.abs(wide[i] - code) <= 1) && narrow[0] > 195);
   await browser.send("Emulation.setEmulatedMedia", { features: [{ name: "color-gamut", value: "p3" }] });
   await value("studio.stageView.begin()");
+  await value("studio.commit({ face: [60, 120, 110] })");
+  check("a loss is that of other screens", (await value("document.getElementById('screen-loss').textContent")).includes("Screens of sRGB show the face"));
+  await value("studio.turn('undo')");
   check("it is taken where the screen has it", (await value("[studio.stage.screen, studio.stage.gl.drawingBufferColorSpace].join()")) === "display-p3,display-p3");
   await browser.send("Emulation.setEmulatedMedia", { features: [{ name: "color-gamut", value: "srgb" }] });
   await value("studio.stageView.begin()");

@@ -12,7 +12,11 @@ class Card {
       this.fill();
       window.print();
     });
-    document.getElementById("film").addEventListener("click", () => this.film().catch((error) => app.say(error.message)));
+    const film = document.getElementById("film");
+    film.addEventListener("click", () => {
+      film.disabled = true;  // a second one would begin in the middle of the first
+      this.film().catch((error) => app.say(error.message)).finally(() => { film.disabled = false; });
+    });
   }
 
   chip(name, lab, css) {

@@ -99,11 +99,11 @@ class NumberControls {
   // A surface has both widths or none: where the other field has 0, it takes the same width.
   commitBrushed(changed) {
     const alphas = ["x", "y"].map((axis) => this.fields["brushed-" + axis].valueAsNumber), width = alphas[changed];
-    if (!Number.isFinite(width)) return this.app.show();
-    const within = clamped(width, 0, 10), other = alphas[1 - changed];
-    const both = [within, within];
+    const within = clamped(width, 0, 10), other = alphas[1 - changed], both = [within, within];
     if (within > 0 && other > 0) both[1 - changed] = clamped(other, 0, 10);
-    return this.app.commit({ anisotropy: both });
+    if (Number.isFinite(width)) this.app.commit({ anisotropy: both });
+    else this.app.show();
+    this.show(this.app.description, true);
   }
 
   // Flakes have a size, a coverage and a spread, or are none. The spread has no slider.
@@ -132,6 +132,7 @@ class NumberControls {
     const value = this.fields[name].valueAsNumber;
     if (Number.isFinite(value)) this.app.commit(this.edit(name, clamped(value, low, high)));
     else this.app.show();
+    this.show(this.app.description, true);
   }
   commitColor(end) {
     const lab = ["L", "a", "b"].map((channel) => this.fields[end + channel].valueAsNumber);
@@ -141,6 +142,7 @@ class NumberControls {
     } else {
       this.app.show();
     }
+    this.show(this.app.description, true);
   }
 
   // How far a medium shows an end off, and a button that takes the nearest color that it shows.
@@ -151,13 +153,14 @@ class NumberControls {
   }
   losses({ screen, print }) {
     const off = (medium, say) => (medium ? ["face", "flop"].filter((end) => medium[end].de00 > 1).map((end) => this.lossOf(end, medium[end], say(words(end), medium[end].de00.toFixed(1)))) : []);
-    return [...off(screen, (end, de00) => told`The screen shows the ${end} ${de00} (CIEDE2000) off.`), ...off(print, (end, de00) => told`A print by ${print.name} shows the ${end} ${de00} (CIEDE2000) off.`)];
+    return [...off(screen, (end, de00) => (this.app.stage.screen === "srgb" ? told`The screen shows the ${end} ${de00} (CIEDE2000) off.` : told`Screens of sRGB show the ${end} ${de00} (CIEDE2000) off; this one shows more colors.`)), ...off(print, (end, de00) => told`A print by ${print.name} shows the ${end} ${de00} (CIEDE2000) off.`)];
   }
 
-  show(description) {
+  // A field that is typed in stays as it is, until `all` are to show what became of it.
+  show(description, all = false) {
     const { appearance, average, gloss, flakes } = description;
     const set = (field, value) => {
-      if (document.activeElement !== field) field.value = value;
+      if (all || document.activeElement !== field) field.value = value;
     };
     for (const end of ["face", "flop"]) {
       ["L", "a", "b"].forEach((channel, i) => set(this.fields[end + channel], rounded(appearance[end][i])));

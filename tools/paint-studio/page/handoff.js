@@ -74,7 +74,7 @@ async function unpackedText(packed) {
 const fileName = (name) => name.replace(/[^A-Za-z0-9_.-]+/g, "_") || "paint";
 
 // Paint XML with notes, as a comment before the first paint, in which two hyphens may not meet; and the notes of such a text.
-const withNotes = (xml, notes) => (notes ? xml.replace(/^ *<paint /m, (start) => `  <!-- Notes: ${notes.replaceAll("--", "&#45;&#45;")} -->\n${start}`) : xml);
+const withNotes = (xml, notes) => (notes ? xml.replace(/^ *<paint /m, (start) => `  <!-- Notes: ${notes.replace(/[\0-\x08\v\f\x0e-\x1f]/g, " ").replaceAll("--", "&#45;&#45;")} -->\n${start}`) : xml);
 const notesOf = (xml) => /<!-- Notes: ([^]*?) -->/.exec(xml)?.[1].replaceAll("&#45;", "-");
 
 class Handoff {

@@ -1,8 +1,8 @@
 // The history of the designer's edits. A state holds the paint that it began with, the edits since then, and the paint that they made. The
-// first is the number `start` of a paint of the library, or `own`, {file, paint}, of a file that was opened. Undo and redo go from state to
+// first is the number `start` of a paint of the library, whose name is `of`, or `own`, {file, paint}, of a file that was opened. Undo and redo go from state to
 // state, without limit.
 
-const saidState = ({ start, own, steps, name, code }) => ({ ...(own ? { own } : { start }), steps, ...(name !== undefined && { name }), ...(code !== undefined && { code }) });
+const saidState = ({ start, of, own, steps, name, code }) => ({ ...(own ? { own } : { start, of }), steps, ...(name !== undefined && { name }), ...(code !== undefined && { code }) });
 
 // The members of a state whose paint has a name, and a code if there is one, of its own.
 const labeled = (paint, name, code) => ({ name, ...(code !== undefined && { code }), paint: { ...paint, name, ...(code !== undefined && { code }) } });

@@ -74,7 +74,10 @@ class App {
     this.engine.ask({ do: "describe", paint: own.paint });
     return { own: { file: own.file, board: own.board, paint: own.paint }, steps: [], paint: own.paint };
   }
-  fresh(number) { return { start: number, steps: [], paint: this.library.paint(number) }; }
+  fresh(number) {
+    const paint = this.library.paint(number);
+    return { start: number, of: paint.name, steps: [], paint };
+  }
   // {file, paint} that a state began with.
   origin({ start, own }) { return own ?? this.library.at(start); }
   // Paints of a file that was opened: the design begins with the first, and all of them are in the palette.
@@ -112,7 +115,7 @@ class App {
       byId("paint-" + what).addEventListener("change", () => this.label(byId("paint-name").value.trim(), byId("paint-code").value.trim()));
     document.addEventListener("focusout", () => { this.history.now.by_key = ""; });
     document.addEventListener("keydown", (event) => {
-      if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+      if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.matches?.("textarea, input[type=text], input[type=search]")) return;
       const key = event.key.toLowerCase();
       if (key !== "z" && key !== "y") return;
       event.preventDefault();
@@ -181,7 +184,7 @@ class App {
       }
       if (JSON.stringify(done.paint) !== JSON.stringify(now.paint)) {
         const name = now.name ?? this.copyName(now.paint.name);
-        this.history.push({ start: now.start, own: now.own, steps: [...now.steps, edit], ...labeled(done.paint, name, now.code), goesOn: true, by_key: what });
+        this.history.push({ start: now.start, of: now.of, own: now.own, steps: [...now.steps, edit], ...labeled(done.paint, name, now.code), goesOn: true, by_key: what });
         this.say(done.clipped.length > 0 ? words("Clipped:") + " " + done.clipped.join("; ") : "");
       }
       return true;
@@ -325,7 +328,7 @@ class App {
   // The state of the paint that the design is compared with; null for none.
   comparedState() {
     const [kind, number] = this.compared.choice.split(" "), { states, now } = this.history;
-    return { none: () => null, start: () => ({ start: now.start, own: now.own, steps: [], paint: this.origin(now).paint }), step: () => states[number] ?? null,
+    return { none: () => null, start: () => ({ start: now.start, of: now.of, own: now.own, steps: [], paint: this.origin(now).paint }), step: () => states[number] ?? null,
              palette: () => this.palette[number] ?? null, library: () => this.fresh(Number(number)) }[kind]();
   }
   compareWith(place) {
@@ -365,15 +368,14 @@ class App {
 
   // The contents of a link: the design, by the library's paint and the edits, and how it is seen.
   linked() {
-    const { start, steps, own, name, code } = saidState(this.history.now), { view, environment, stops, lamp, stage } = this.stageView;
-    return JSON.stringify({ start, of: own ? undefined : this.library.paint(start).name, own, steps, name, code, view, environment, stops, lamp, turn: stage.turn });
+    const { view, environment, stops, lamp, stage } = this.stageView, { environments, mesh } = this.data;
+    return JSON.stringify({ ...saidState(this.history.now), view, usual: mesh.view.distance, light: environments[environment].name, stops, lamp, turn: stage.turn });
   }
   openLink(text) {
-    const link = JSON.parse(text), { view, environment, stops, lamp, turn } = link, state = this.replayed(link);
-    if (!link.own && this.library.paint(link.start).name !== link.of)
-      throw new Error(`This link was made by a page with another library: it starts from "${link.of}".`);
-    this.restore(state);
-    this.stageView.see({ view, environment, stops, lamp, turn });
+    const link = JSON.parse(text);
+    if (!link.view || !link.lamp) throw new Error("This link does not say how the paint is seen.");
+    this.restore(this.replayed(link));
+    this.stageView.see(link);
   }
 
   // The session: the library paints and edits of all states, the palette, and the boards with their pictures and
@@ -384,14 +386,16 @@ class App {
                             ...(withPictures && this.pictures.boards.length > 0 ? { pictures: this.pictures.saved() } : {}) });
   }
   // The state that these edits of a library paint lead to. Throws what a request refuses.
-  replayed({ start, own, steps, name, code }) {
-    const known = own ? typeof own.file === "string" : Number.isInteger(start) && start >= 0 && start < this.library.count;
-    if (!known || !Array.isArray(steps)) throw new Error("This file is no session of a page with this library.");
+  replayed({ start, of, own, steps, name, code }) {
+    const known = (one) => (one.own ? typeof one.own.file === "string" && (one.own.gradient?.ends ?? []).every(known) : Number.isInteger(one.start) && one.start >= 0 && one.start < this.library.count);
+    if (!known({ start, own }) || !Array.isArray(steps)) throw new Error("This file is no session of a page with this library.");
+    for (const one of own ? (own.gradient?.ends ?? []) : [{ start, of }])
+      if (one.of !== undefined && this.library.paint(one.start).name !== one.of) throw new Error(`A page with another library made this: it starts from "${one.of}".`);
     let { paint } = this.origin({ start, own });
     if (own) this.engine.ask({ do: "describe", paint });  // refuses what is no paint
     for (const edit of steps) ({ paint } = this.engine.ask({ do: "edit", paint, edit }));
     if (name !== undefined && typeof name !== "string") throw new Error("This file is no session of a page with this library.");
-    return { start, own, steps, ...(name === undefined ? { paint } : labeled(paint, name, code)) };
+    return { start, of, own, steps, ...(name === undefined ? { paint } : labeled(paint, name, code)) };
   }
   openSession(text) {
     const session = JSON.parse(text), saved = session.history?.states, at = session.history?.at, states = [];
@@ -400,20 +404,22 @@ class App {
     for (const one of saved) {
       const last = states.at(-1);
       if (one.edit === undefined || !last) states.push(this.replayed(one));
-      else states.push({ start: last.start, own: last.own, steps: [...last.steps, one.edit], goesOn: true,
+      else states.push({ start: last.start, of: last.of, own: last.own, steps: [...last.steps, one.edit], goesOn: true,
                          ...labeled(this.engine.ask({ do: "edit", paint: last.paint, edit: one.edit }).paint, one.name ?? last.paint.name, one.code) });
     }
     const palette = (session.palette ?? []).map((one) => this.replayed(one));
+    if (session.parts?.second) this.replayed(session.parts.second);
     this.history = new EditHistory(states, at);
     this.palette = palette;
-    if (session.pictures) this.pictures.restore(session.pictures).catch((error) => this.say(error.message));
-    this.parts.restore(session.parts);
     this.card.notes.value = session.notes ?? "";
+    if (session.pictures || this.pictures.boards.length > 0)
+      this.pictures.restore(session.pictures ?? { made: 0, open: -1, boards: [], droppers: [] }).catch((error) => this.say(error.message));
+    this.parts.restore(session.parts);
   }
   // Each tab keeps a session of its own, and a new tab begins with the last one. The newest eight stay. Browsers may refuse
   // to store anything, or so much as pictures take; the page then works without.
   store() {
-    if (this.pictures.coming) return;  // with those pictures
+    if (this.pictures.coming > 0) return;  // it stores when they are there
     const told = (lost) => {
       if (this.storeRefused !== lost) this.say(`The browser does not keep ${lost}: save the session as a file.`);
       this.storeRefused = lost;
@@ -444,14 +450,17 @@ class App {
     const places = Object.keys(localStorage).filter((place) => place.startsWith(this.key + " "));
     return places.map((place) => ({ place, ...JSON.parse(localStorage.getItem(place)) })).sort((a, b) => b.time - a.time);
   }
+  // A session that cannot be opened stays where it is kept.
   reopen() {
+    let found;
     try {
-      const kept = this.kept(), own = kept.find(({ place }) => place === `${this.key} ${sessionStorage.getItem("paint-studio tab")}`);
-      const { session } = own ?? kept[0] ?? {};
-      if (session) this.openSession(session);
-    } catch {
-      this.history = new EditHistory([this.fresh(this.firstPaint())]);
-      this.palette = [];
+      const kept = this.kept();
+      found = kept.find(({ place }) => place === `${this.key} ${sessionStorage.getItem("paint-studio tab")}`) ?? kept[0];
+      if (found) this.openSession(found.session);
+    } catch (error) {
+      if (!found) return;  // the browser keeps nothing
+      this.takeNumber(crypto.randomUUID());
+      this.say(error.message);
     }
   }
 }

@@ -108,7 +108,7 @@ function unpackRuns(packed, target) {
 
 class Opening {
   constructor(app, module, code) {
-    Object.assign(this, { app, module, code });
+    Object.assign(this, { app, module, code, opened: Promise.resolve() });
     const input = document.getElementById("open-files");
     input.addEventListener("change", () => {
       this.open([...input.files]);
@@ -129,13 +129,22 @@ class Opening {
     document.addEventListener("paste", (event) => this.open([...event.clipboardData.files]));
   }
 
-  // Opens files together: some name others of them.
-  async open(files) {
+  // Opens files after those before.
+  open(files) {
+    if (files.length === 0) return this.opened;
+    return (this.opened = this.opened.then(() => this.openTogether(files)).catch((error) => this.app.say(error.message)));
+  }
+  // Some files name others of them.
+  async openTogether(files) {
     const { app } = this, pictures = files.filter(({ name, type }) => type.startsWith("image/") && !/\.(hdr|exr|pic)$/i.test(name));
     if (pictures.length > 0) await app.pictures.add(pictures);
-    const others = [];
-    for (const file of files.filter((one) => !pictures.includes(one))) others.push([file.name, new Uint8Array(await file.arrayBuffer())]);
-    const said = [];
+    const others = [], said = [];
+    for (const file of files.filter((one) => !pictures.includes(one)))
+      try {
+        others.push([file.name, new Uint8Array(await file.arrayBuffer())]);
+      } catch {
+        said.push(told`${file.name} cannot be read: it is a folder, or too large.`);
+      }
     try {
       for (const [name, bytes] of others) {
         app.engine.give(name, bytes);

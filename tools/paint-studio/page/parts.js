@@ -63,15 +63,23 @@ class Parts {
     this.show();
   }
 
-  // The members of a session: parts that wear something else than their names tell, by name.
+  // The parts, each with its number among those of its name.
+  get numbered() {
+    const counts = new Map();
+    return this.list.map((part) => {
+      const number = counts.get(part.name) ?? 0;
+      counts.set(part.name, number + 1);
+      return [part, number];
+    });
+  }
+  // The members of a session: parts that wear something else than their names tell, by name and number.
   saved() {
-    const worn = this.list.filter((part) => part.row !== part.told).map(({ name, row }) => [name, row]);
+    const worn = this.numbered.filter(([part]) => part.row !== part.told).map(([{ name, row }, number]) => [name, row, number]);
     return worn.length > 0 || this.second ? { worn, second: this.second && saidState(this.second) } : undefined;
   }
   restore({ worn = [], second } = {}) {
-    const rows = new Map(worn);
     this.second = second ? this.app.replayed(second) : null;
-    for (const part of this.list) part.row = rows.get(part.name) ?? part.told;
+    for (const [part, number] of this.numbered) part.row = worn.find(([name, , of = 0]) => name === part.name && of === number)?.[1] ?? part.told;
     this.app.partsChanged();
     this.show();
   }

@@ -16,6 +16,8 @@ class Pictures {
     this.boards = [];  // {name, pictures, zoom}: pictures are {name, canvas, context}; a zoom of 0 fits them into the panel
     this.board = null;
     this.made = 0;  // boards so far, for their names
+    this.coming = 0;  // of sessions, whose pictures are still to be read
+    this.restored = Promise.resolve();
     this.droppers = {};  // of face, flop and gloss: {picture, at, radius} and what was found there
     this.current = null;  // the picture of the board that was used last
     this.place = document.getElementById("picture");
@@ -85,14 +87,15 @@ class Pictures {
              droppers: Object.entries(this.droppers).map(([kind, { picture, ...found }]) => ({ kind, place: places.get(picture), ...found })) };
   }
   // Takes the place of what stands here. A picture that cannot be read leaves its board without it, and is told.
-  async restore(saved) {
-    this.coming = true;
-    try {
-      await this.putBack(saved);
-    } finally {
-      this.coming = false;
+  // Those of a session that is opened meanwhile come after them.
+  restore(saved) {
+    ++this.coming;
+    const before = this.restored.catch(() => {});
+    this.restored = before.then(() => this.putBack(saved)).finally(() => {
+      --this.coming;
       this.app.store();
-    }
+    });
+    return this.restored;
   }
   async putBack({ made: count, open, boards, droppers }) {
     if (!Array.isArray(boards) || !Array.isArray(droppers)) throw new Error("The pictures of this session are damaged.");
@@ -112,6 +115,7 @@ class Pictures {
     for (const { kind, place: [b, i], ...found } of droppers) if (places[b]?.[i]) this.droppers[kind] = { picture: places[b][i], ...found };
     const board = this.boards[open] ?? this.boards.at(-1);
     if (board) this.openBoard(board);
+    else this.show();
   }
   // Takes the picture that was used last away, and a board that has none with it.
   remove() {

@@ -54,6 +54,8 @@ const german = {
   "This place is turned away from {}.": "Diese Stelle ist abgewandt: {}.", "the lamp": "die Lampe", "the brightest light": "das hellste Licht", "gray": "grau", "chroma {}, hue {}°": "Buntheit {}, Farbton {}°",
   "{}° from the mirror direction of {}: L* {}, a* {}, b* {} ({})": "{}° vom Spiegelwinkel ({}): L* {}, a* {}, b* {} ({})",
   "A print by {} shows the {} {} (CIEDE2000) off.": "Ein Druck mit {} verfehlt {} um {} (CIEDE2000).", "take L* {}, a* {}, b* {}": "L* {}, a* {}, b* {} nehmen",
+  "Screens of sRGB show the {} {} (CIEDE2000) off; this one shows more colors.": "Bildschirme mit sRGB verfehlen {} um {} (CIEDE2000); dieser zeigt mehr Farben.",
+  "{} cannot be read: it is a folder, or too large.": "{} kann nicht gelesen werden: ein Ordner, oder zu groß.", "This page does not have the light of the link: {}.": "Diese Seite hat das Licht des Verweises nicht: {}.",
   "The screen shows the {} {} (CIEDE2000) off.": "Der Bildschirm verfehlt {} um {} (CIEDE2000).", "take a* {}, b* {}": "a* {}, b* {} nehmen", "none": "keine",
   "{} parts: told by their names are {}; {} not recognized, which wear the paint.": "{} Teile: nach ihren Namen {}; {} nicht erkannt, sie tragen den Lack.",
   "The design lies outside the library: its nearest paint differs by more than 10 on average.": "Der Entwurf liegt außerhalb der Bibliothek: sein nächster Lack weicht im Mittel um mehr als 10 ab.",

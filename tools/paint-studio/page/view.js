@@ -286,14 +286,16 @@ class StageView {
     return this.stage.pointUnder(this.camera, aspect, x, y);
   }
   // Shows what a link holds.
-  see({ view, environment, stops, lamp, turn }) {
-    if (!(environment in this.app.data.environments) || !view || !lamp) return;
+  see({ view, usual, light, stops, lamp, turn }) {
+    const { environments, mesh } = this.app.data, environment = environments.findIndex(({ name }) => name === light);
+    if (environment < 0) return this.app.say(told`This page does not have the light of the link: ${light}.`);
+    if (usual !== mesh.view.distance) view = { ...mesh.view, azimuth: view.azimuth, elevation: view.elevation };  // of another mesh
     for (const [id, value] of [["environment", environment], ["exposure", stops]]) document.getElementById(id).value = value;
     document.getElementById("exposure-value").textContent = stops;
     Object.assign(this, { view, stops });
     this.choose(String(environment));
     this.turnTo(turn);
-    this.setLamp(lamp);
+    return this.setLamp(lamp);
   }
   // Goes slowly around the mesh until somebody touches the page, where pictures are fast and motion is welcome.
   turnAround() {
