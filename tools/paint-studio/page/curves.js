@@ -42,8 +42,8 @@ class Curves {
       this.showReadings(plot, rows);
     }
     this.hint.textContent = rows.length > 0
-      ? "Drag a reading, or focus it and use the up and down keys. The broken line is what the lobes show."
-      : "This paint is designed: face, flop and travel make its curve. The broken line is what the lobes show.";
+      ? words("Drag a reading, or focus it and use the up and down keys. The broken line is what the lobes show.")
+      : words("This paint is designed: face, flop and travel make its curve. The broken line is what the lobes show.");
   }
 
   // A cross at the color of one angle in every plot: {angle, lab}, or null for none.

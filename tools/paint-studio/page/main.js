@@ -343,12 +343,12 @@ class App {
     const option = (value, text) => made("option", { value, text });
     list.replaceChildren(option("none", words("nothing")), option("start", words("the paint it began with")));
     const { states, at } = this.history, first = Math.max(0, states.length - 40);
-    group("History", states.slice(first).map((state, i) => [first + i, state]).filter(([i]) => i !== at).map(([i, state]) =>
+    group(words("History"), states.slice(first).map((state, i) => [first + i, state]).filter(([i]) => i !== at).map(([i, state]) =>
       option(`step ${i}`, `step ${i}: ${state.paint.name}${state.steps.length > 0 ? ", " + Object.keys(state.steps.at(-1)).join(" ") : ""}`)));
-    group("Palette", this.palette.map((state, i) => option(`palette ${i}`, `${i + 1}: ${state.paint.name}`)));
+    group(words("Palette"), this.palette.map((state, i) => option(`palette ${i}`, `${i + 1}: ${state.paint.name}`)));
     const { choice } = this.compared, number = Number(choice.slice(8));
     const listed = this.library.count <= mostListed ? [...Array(this.library.count).keys()] : choice.startsWith("library") ? [number] : [];
-    group("Library", listed.map((i) => option(`library ${i}`, this.library.paint(i).name)));
+    group(words("Library"), listed.map((i) => option(`library ${i}`, this.library.paint(i).name)));
     list.value = choice;
     if (list.value !== choice) this.compare("none");
     else if (choice !== "none" && JSON.stringify(this.comparedState().paint) !== JSON.stringify(this.comparedWeights?.paint)) this.compare(choice);

@@ -241,7 +241,7 @@ class Pictures {
     }));
     document.getElementById("remove-picture").disabled = !this.current;
     this.marks = {};
-    for (const kind of ["face", "flop", "gloss"]) this.marks[kind] = made("span", { class: `dropper ${kind}`, "aria-hidden": "true", text: kind });
+    for (const kind of ["face", "flop", "gloss"]) this.marks[kind] = made("span", { class: `dropper ${kind}`, "aria-hidden": "true", words: kind });
     this.sheets = new Map();
     if (!this.board) return;
     for (const picture of this.board.pictures) this.sheets.set(picture, made("div", { class: "sheet" }, [picture.canvas]));
@@ -269,8 +269,8 @@ class Pictures {
     }
     const reading = droppers[this.kind];
     document.getElementById("dropper-text").textContent = reading
-      ? `${this.kind}: L* ${reading.lab[0].toFixed(1)}, a* ${reading.lab[1].toFixed(1)}, b* ${reading.lab[2].toFixed(1)}; contrast stands for ${reading.gloss.toFixed(0)} gloss units`
-      : "Point at the picture with a dropper, or focus it and use the arrow keys.";
+      ? told`${words(this.kind)}: L* ${reading.lab[0].toFixed(1)}, a* ${reading.lab[1].toFixed(1)}, b* ${reading.lab[2].toFixed(1)}; contrast stands for ${reading.gloss.toFixed(0)} gloss units`
+      : words("Point at the picture with a dropper, or focus it and use the arrow keys.");
     document.getElementById("pick-command").textContent = parts.length > 0
       ? `paint-pick ${parts.join(" ")}${document.getElementById("retro").checked ? " --retro" : ""} --travel ${rounded(this.app.description?.appearance.travel ?? 60, 1)} -o picked.paints.xml` : "";
   }

@@ -54,6 +54,23 @@ const german = {
   "This place is turned away from {}.": "Diese Stelle ist abgewandt: {}.", "the lamp": "die Lampe", "the brightest light": "das hellste Licht", "gray": "grau", "chroma {}, hue {}°": "Buntheit {}, Farbton {}°",
   "{}° from the mirror direction of {}: L* {}, a* {}, b* {} ({})": "{}° vom Spiegelwinkel ({}): L* {}, a* {}, b* {} ({})",
   "A print by {} shows the {} {} (CIEDE2000) off.": "Ein Druck mit {} verfehlt {} um {} (CIEDE2000).", "take L* {}, a* {}, b* {}": "L* {}, a* {}, b* {} nehmen",
+  "History": "Bisherige Schritte", "Traced views": "Verfolgte Ansichten",
+  "Drag a reading, or focus it and use the up and down keys. The broken line is what the lobes show.":
+    "Ziehen Sie an einem Messwert, oder wählen Sie ihn aus und nehmen Sie die Tasten nach oben und unten. Die gestrichelte Linie ist, was die Keulen zeigen.",
+  "This paint is designed: face, flop and travel make its curve. The broken line is what the lobes show.":
+    "Dieser Lack ist entworfen: Aufsicht, Flop und Farblauf machen seine Kurve. Die gestrichelte Linie ist, was die Keulen zeigen.",
+  "{}: L* {}, a* {}, b* {}; contrast stands for {} gloss units": "{}: L* {}, a* {}, b* {}; der Kontrast steht für {} Glanzeinheiten",
+  "Point at the picture with a dropper, or focus it and use the arrow keys.": "Zeigen Sie mit einer Pipette auf das Bild, oder wählen Sie es aus und nehmen Sie die Pfeiltasten.",
+  "This view was traced: shadows, the floor and the light that parts send to each other are in it. Its camera and its light stay as they are.":
+    "Diese Ansicht wurde verfolgt: Schatten, der Boden und das Licht, das Teile einander senden, sind darin. Ihre Kamera und ihr Licht bleiben, wie sie sind.",
+  "This view was traced: shadows and the light that parts send to each other are in it. Its camera and its light stay as they are.":
+    "Diese Ansicht wurde verfolgt: Schatten und das Licht, das Teile einander senden, sind darin. Ihre Kamera und ihr Licht bleiben, wie sie sind.",
+  "Parts that wore one paint wear several now: bounced light is doubtful.": "Teile, die einen Lack trugen, tragen nun mehrere: zurückgeworfenes Licht ist zweifelhaft.",
+  "Bounced light was traced in other paints and is scaled to this one: off by {} (CIEDE2000, at most in 95 of 100 points).":
+    "Zurückgeworfenes Licht wurde in anderen Lacken verfolgt und ist auf diesen skaliert: es weicht um {} ab (CIEDE2000, höchstens, in 95 von 100 Punkten).",
+  "That is doubtful: trace the view again in this paint, by render-osmesa --aov transport.": "Das ist zweifelhaft: verfolgen Sie die Ansicht neu in diesem Lack, mit render-osmesa --aov transport.",
+  "A paint with a coat took the place of one without it, or the other way round: toward grazing the picture is that of the paint that was traced.":
+    "Ein Lack mit Klarlack steht an der Stelle von einem ohne, oder umgekehrt: zum streifenden Blick hin zeigt das Bild den Lack, der verfolgt wurde.",
   "Screens of sRGB show the {} {} (CIEDE2000) off; this one shows more colors.": "Bildschirme mit sRGB verfehlen {} um {} (CIEDE2000); dieser zeigt mehr Farben.",
   "{} cannot be read: it is a folder, or too large.": "{} kann nicht gelesen werden: ein Ordner, oder zu groß.", "This page does not have the light of the link: {}.": "Diese Seite hat das Licht des Verweises nicht: {}.",
   "The screen shows the {} {} (CIEDE2000) off.": "Der Bildschirm verfehlt {} um {} (CIEDE2000).", "take a* {}, b* {}": "a* {}, b* {} nehmen", "none": "keine",

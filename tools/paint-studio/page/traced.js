@@ -54,15 +54,16 @@ class TracedViews {
 
   // The text about a view beside the picture.
   text(number) {
-    const parts = [`This view was traced: shadows, ${this.list[number].floor ? "the floor " : ""}and the light that parts send to each other are in it. Its camera and its light stay as they are.`];
+    const parts = [this.list[number].floor ? words("This view was traced: shadows, the floor and the light that parts send to each other are in it. Its camera and its light stay as they are.") :
+                   words("This view was traced: shadows and the light that parts send to each other are in it. Its camera and its light stay as they are.")];
     if (this.answer?.scaled) {
       const error = this.answer.bounced_de00_p95;
-      parts.push(error === null ? "Parts that wore one paint wear several now: bounced light is doubtful." :
-        `Bounced light was traced in other paints and is scaled to this one: off by ${error.toFixed(2)} (CIEDE2000, at most in 95 of 100 points).`);
-      if (this.answer.trace_again) parts.push("That is doubtful: trace the view again in this paint, by render-osmesa --aov transport.");
+      parts.push(error === null ? words("Parts that wore one paint wear several now: bounced light is doubtful.") :
+        told`Bounced light was traced in other paints and is scaled to this one: off by ${error.toFixed(2)} (CIEDE2000, at most in 95 of 100 points).`);
+      if (this.answer.trace_again) parts.push(words("That is doubtful: trace the view again in this paint, by render-osmesa --aov transport."));
     }
     if (this.answer?.coat_changed)
-      parts.push("A paint with a coat took the place of one without it, or the other way round: toward grazing the picture is that of the paint that was traced.");
+      parts.push(words("A paint with a coat took the place of one without it, or the other way round: toward grazing the picture is that of the paint that was traced."));
     return parts.join(" ");
   }
 }

@@ -122,7 +122,7 @@ class StageView {
     const byId = (id) => document.getElementById(id), lights = byId("environment"), exposure = byId("exposure");
     this.app.data.environments.forEach((one, i) => lights.append(made("option", { value: i, text: one.name })));
     const views = this.app.data.views.map((one, i) => made("option", { value: `view ${i}`, text: one.name }));
-    if (views.length > 0) lights.append(made("optgroup", { label: "Traced views" }, views));
+    if (views.length > 0) lights.append(made("optgroup", { label: words("Traced views") }, views));
     lights.addEventListener("change", () => this.choose(lights.value));
     exposure.addEventListener("input", () => {
       this.stops = Number(exposure.value);
