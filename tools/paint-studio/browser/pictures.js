@@ -87,7 +87,7 @@ async function main() {
   })()`);
   // A search for shadows finds the same after pictures in light of lamps came between its steps, and after another one that was broken off.
   const search = await browser.evaluate(`(() => {
-    const { stage, parts } = studio, { gl, occlusion } = stage, all = () => { while (occlusion.step()); };
+    const { stage, parts } = studio, { gl, occlusion } = stage, all = () => { while (occlusion.shown === null) occlusion.step(); };  // of the mesh
     const bits = () => {
       const { columns, rows, bits: { framebuffer } } = occlusion.mesh, values = new Uint32Array(4 * columns * rows);
       gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
@@ -113,7 +113,9 @@ async function main() {
     part.row = 0;
     occlusion.begin();
     all();
-    return { lamps: studio.data.environments.some(({ lamps }) => lamps.length > 0), between, other, broken_off: bits() === found };
+    const brokenOff = bits() === found;
+    while (occlusion.step());
+    return { lamps: studio.data.environments.some(({ lamps }) => lamps.length > 0), between, other, broken_off: brokenOff };
   })()`);
   await browser.evaluate("studio.data.environments.forEach((one, i) => { one.ground_light = studio.grounds[i]; })");
   // Layers that were drawn for one paint show another one: that whose wide lobes look elsewhere most, of all that little gloss makes
