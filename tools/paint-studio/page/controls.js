@@ -77,7 +77,7 @@ class NumberControls {
   slider(name, low, high, step, unit) {
     const range = made("input", { type: "range", min: low, max: high, step, "aria-label": name,
                                   oninput: () => this.app.preview(this.edit(name, Number(range.value))),
-                                  onpointerup: () => setTimeout(() => this.app.abandon(), 100),  // where it is back at its place, so that there is no change
+                                  onpointerup: () => setTimeout(() => this.app.abandon(), 100),  // which a slider that ends where it began does not tell by a change
                                   onchange: () => this.app.commit(this.edit(name, Number(range.value)), true) });
     const field = made("input", { type: "number", min: low, max: high, step, "aria-label": name,
                                   onchange: () => this.commitNumber(name, low, high) });
@@ -153,10 +153,11 @@ class NumberControls {
   }
   losses({ screen, print }) {
     const off = (medium, say) => (medium ? ["face", "flop"].filter((end) => medium[end].de00 > 1).map((end) => this.lossOf(end, medium[end], say(words(end), medium[end].de00.toFixed(1)))) : []);
-    return [...off(screen, (end, de00) => (this.app.stage.screen === "srgb" ? told`The screen shows the ${end} ${de00} (CIEDE2000) off.` : told`Screens of sRGB show the ${end} ${de00} (CIEDE2000) off; this one shows more colors.`)), ...off(print, (end, de00) => told`A print by ${print.name} shows the ${end} ${de00} (CIEDE2000) off.`)];
+    const ofScreen = (end, de00) => (this.app.stage.screen === "srgb" ? told`The screen shows the ${end} ${de00} (CIEDE2000) off.` : told`Screens of sRGB show the ${end} ${de00} (CIEDE2000) off; this one shows more colors.`);
+    return [...off(screen, ofScreen), ...off(print, (end, de00) => told`A print by ${print.name} shows the ${end} ${de00} (CIEDE2000) off.`)];
   }
 
-  // A field that is typed in stays as it is, until `all` are to show what became of it.
+  // Shows the numbers of a paint: in all fields, or in those that nobody is typing in.
   show(description, all = false) {
     const { appearance, average, gloss, flakes } = description;
     const set = (field, value) => {

@@ -1,6 +1,6 @@
 // The history of the designer's edits. A state holds the paint that it began with, the edits since then, and the paint that they made. The
-// first is the number `start` of a paint of the library, whose name is `of`, or `own`, {file, paint}, of a file that was opened. Undo and redo go from state to
-// state, without limit.
+// first is the number `start` of a paint of the library, whose name is `of`, or `own`, {file, paint}, of a file that was opened. Undo and
+// redo go from state to state, without limit.
 
 const saidState = ({ start, of, own, steps, name, code }) => ({ ...(own ? { own } : { start, of }), steps, ...(name !== undefined && { name }), ...(code !== undefined && { code }) });
 

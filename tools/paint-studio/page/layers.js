@@ -141,7 +141,7 @@ class GatheredLight {
   draw(gbuffer, weights, environment, list, program, begin, end) {
     const { gl } = this.stage, { held } = this, { at_once, none } = this.layers, buffers = [];
     const keep = new Set(this.needed(weights, true).map(({ slot }) => slot)), slots = new Int32Array(at_once).fill(none), scales = new Float32Array(at_once).fill(1);
-    this.stage.groundShade(environment);
+    this.stage.groundShade(environment);  // before a target is bound
     gl.bindFramebuffer(gl.FRAMEBUFFER, held.framebuffer);
     for (let i = 0; i < at_once; ++i) {
       const layer = list[i], at = gl.COLOR_ATTACHMENT0 + i;

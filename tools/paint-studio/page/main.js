@@ -385,12 +385,17 @@ class App {
                             history: this.history.saved(), palette: this.palette.map(saidState), parts: this.parts.saved(), notes: this.card.notes.value || undefined,
                             ...(withPictures && this.pictures.boards.length > 0 ? { pictures: this.pictures.saved() } : {}) });
   }
+  // Throws unless this library has the paint that a state began with, or those between which a gradient made it.
+  checkOrigin({ start, of, own }) {
+    const known = own ? typeof own.file === "string" : Number.isInteger(start) && start >= 0 && start < this.library.count;
+    if (!known) throw new Error("This file is no session of a page with this library.");
+    if (own) own.gradient?.ends.forEach((end) => this.checkOrigin(end));
+    else if (of !== undefined && this.library.paint(start).name !== of) throw new Error(`A page with another library made this: it starts from "${of}".`);
+  }
   // The state that these edits of a library paint lead to. Throws what a request refuses.
   replayed({ start, of, own, steps, name, code }) {
-    const known = (one) => (one.own ? typeof one.own.file === "string" && (one.own.gradient?.ends ?? []).every(known) : Number.isInteger(one.start) && one.start >= 0 && one.start < this.library.count);
-    if (!known({ start, own }) || !Array.isArray(steps)) throw new Error("This file is no session of a page with this library.");
-    for (const one of own ? (own.gradient?.ends ?? []) : [{ start, of }])
-      if (one.of !== undefined && this.library.paint(one.start).name !== one.of) throw new Error(`A page with another library made this: it starts from "${one.of}".`);
+    this.checkOrigin({ start, of, own });
+    if (!Array.isArray(steps)) throw new Error("This file is no session of a page with this library.");
     let { paint } = this.origin({ start, own });
     if (own) this.engine.ask({ do: "describe", paint });  // refuses what is no paint
     for (const edit of steps) ({ paint } = this.engine.ask({ do: "edit", paint, edit }));
@@ -408,13 +413,13 @@ class App {
                          ...labeled(this.engine.ask({ do: "edit", paint: last.paint, edit: one.edit }).paint, one.name ?? last.paint.name, one.code) });
     }
     const palette = (session.palette ?? []).map((one) => this.replayed(one));
-    if (session.parts?.second) this.replayed(session.parts.second);
+    const second = session.parts?.second ? this.replayed(session.parts.second) : null;
     this.history = new EditHistory(states, at);
     this.palette = palette;
     this.card.notes.value = session.notes ?? "";
     if (session.pictures || this.pictures.boards.length > 0)
       this.pictures.restore(session.pictures ?? { made: 0, open: -1, boards: [], droppers: [] }).catch((error) => this.say(error.message));
-    this.parts.restore(session.parts);
+    this.parts.restore(session.parts?.worn ?? [], second);
   }
   // Each tab keeps a session of its own, and a new tab begins with the last one. The newest eight stay. Browsers may refuse
   // to store anything, or so much as pictures take; the page then works without.

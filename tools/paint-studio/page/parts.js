@@ -77,8 +77,8 @@ class Parts {
     const worn = this.numbered.filter(([part]) => part.row !== part.told).map(([{ name, row }, number]) => [name, row, number]);
     return worn.length > 0 || this.second ? { worn, second: this.second && saidState(this.second) } : undefined;
   }
-  restore({ worn = [], second } = {}) {
-    this.second = second ? this.app.replayed(second) : null;
+  restore(worn, second) {
+    this.second = second;
     for (const [part, number] of this.numbered) part.row = worn.find(([name, , of = 0]) => name === part.name && of === number)?.[1] ?? part.told;
     this.app.partsChanged();
     this.show();

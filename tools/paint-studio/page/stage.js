@@ -252,7 +252,7 @@ class Stage {
     return made.ground;
   }
   // The shadow on the ground: its texture, null where it is not known, and 1 over its reach. In a light that was not the last one it is
-  // drawn first, so whoever is to shade asks for it before a target is bound.
+  // drawn first: whoever shades asks for it before a target is bound.
   groundShade(environment) {
     const packed = this.data.environments[environment].ground_light;
     const shade = packed ? { ...packed, texture: this.groundLight(environment, packed) } : this.occlusion.ground ? this.occlusion.groundLight(environment) : null;
@@ -364,7 +364,7 @@ class Stage {
   // Draws what shade() does into a target: the whole picture, or the tiles that have edges.
   cast({ framebuffer }, gbuffer, weights, environment, begin, end, edges = null) {
     const gl = this.gl, border = borderOf(weights, gbuffer.width);
-    this.groundShade(environment);
+    this.groundShade(environment);  // before a target is bound
     gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
     gl.disable(gl.BLEND);
     gl.bindVertexArray(this.noVertices);
@@ -589,8 +589,8 @@ class Stage {
   }
   // The steps that smooth the picture which was shown last, by the G-buffer of that name, and show it; then, with `sparkles`, those of flakes.
   *smoothSteps(name, camera, weights, environment, stops, samples, overlay, sparkles, budget_ms) {
-    const { gbuffer, sums, border } = this.shown, all = [...new Set(sums)];
-    for (const [i, sum] of all.entries()) yield* this.smooth(name, sum, camera, all.length > 1 ? [weights.left, weights.right][i] : weights, environment, stops, samples, budget_ms);
+    const { gbuffer, sums, border } = this.shown, apart = [...new Set(sums)];  // one, where it has both sides
+    for (const [i, sum] of apart.entries()) yield* this.smooth(name, sum, camera, apart.length > 1 ? [weights.left, weights.right][i] : weights, environment, stops, samples, budget_ms);
     this.showOver(gbuffer, sums, border, weights, environment, stops, overlay);
     if (!sparkles || this.sparkling || !this.sees(gbuffer, weights, environment)) return;
     let flaky = sums;
@@ -623,7 +623,7 @@ class Stage {
   // Draws the mesh once more, so that its program knows the place of each pixel, and adds to a copy of the sum.
   sparkle(gbuffer, sum, weights, { texture, per_m2 }, environment, [x, y, width, height]) {
     const gl = this.gl, target = this.target(`sparkle ${x > 0}`, sum.width, sum.height, this.sumKind, false), program = this.shading(environment, false, "sparkle");
-    this.groundShade(environment);
+    this.groundShade(environment);  // before a target is bound
     gl.bindFramebuffer(gl.READ_FRAMEBUFFER, sum.framebuffer);
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, target.framebuffer);
     gl.blitFramebuffer(x, y, x + width, y + height, x, y, x + width, y + height, gl.COLOR_BUFFER_BIT, gl.NEAREST);

@@ -345,7 +345,7 @@ class StageView {
     this.drawing = undefined;
     clearTimeout(this.still);
     if (this.lost) return;
-    if (moving) this.still = setTimeout(() => this.redraw(), 600);  // a handle that came back to its place says nothing at its end
+    if (moving) this.still = setTimeout(() => this.redraw(), 600);  // a slider that ends where it began tells no change
     this.rest(null);
     const since = this.since = this.asked ?? performance.now();
     this.asked = undefined;
