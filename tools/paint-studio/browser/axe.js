@@ -5,7 +5,7 @@
 const fs = require("node:fs");
 const { check, drive } = require("./drive.js");
 
-drive("axe finds nothing", { width: 1400, height: 900 }, async ({ browser, value, quiet }, axe) => {
+drive("axe finds nothing", { width: 1000, height: 700 }, async ({ browser, value, quiet }, axe) => {
   const run = async (what) => {
     await quiet();
     const found = await value("axe.run(document).then(({ violations }) => violations.map(({ id, nodes }) => id + ': ' + nodes.map(({ html }) => html.slice(0, 120)).join(' ')))");

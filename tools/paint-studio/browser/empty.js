@@ -7,7 +7,7 @@ const fs = require("node:fs");
 const path = require("node:path");
 const { check, drive } = require("./drive.js");
 
-drive("the empty page is whole", { width: 1400, height: 900 }, async ({ browser, folder, value, shot, quiet, give, checkNames }) => {
+drive("the empty page is whole", { width: 1000, height: 700 }, async ({ browser, folder, value, shot, quiet, give, checkNames }) => {
   await quiet();
   await shot("empty");
   check("its parts are told by their names", JSON.stringify(await value("studio.stage.mesh.parts.map(({ name, row }) => [name, row])").then((parts) => [...new Set(parts.map((part) => part.join(" ")))])) === JSON.stringify(["Body 0", "Glass 2", "Roof 0", "Tires 3", "Rims 4"]));

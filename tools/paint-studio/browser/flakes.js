@@ -6,7 +6,7 @@ const fs = require("node:fs");
 const path = require("node:path");
 const { check, drive } = require("./drive.js");
 
-drive("flakes are edited", { width: 1400, height: 900 }, async ({ browser, folder, value, shot, quiet, choose, checkNames }) => {
+drive("flakes are edited", { width: 1000, height: 700 }, async ({ browser, folder, value, shot, quiet, choose, checkNames }) => {
   const field = (name) => value(`document.querySelector('#numbers input[type=number][aria-label="${name}"]').value`), seen = async () => [await field("flake size"), await field("coverage")].join();
   const slide = (name, to) => value(`(() => { const range = document.querySelector('#numbers input[type=range][aria-label="${name}"]'); range.value = ${to};
     for (const kind of ["input", "change"]) range.dispatchEvent(new Event(kind)); })()`);

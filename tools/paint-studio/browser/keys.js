@@ -5,7 +5,7 @@
 "use strict";
 const { check, drive } = require("./drive.js");
 
-drive("the keyboard is enough", { width: 1400, height: 900 }, async ({ browser, folder, value, shot, quiet }) => {
+drive("the keyboard is enough", { width: 1000, height: 700 }, async ({ browser, folder, value, shot, quiet }) => {
   await quiet();
   const focused = () => value(`(() => {
     const one = document.activeElement, box = one.getBoundingClientRect(), style = getComputedStyle(one);

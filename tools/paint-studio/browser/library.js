@@ -5,7 +5,7 @@
 "use strict";
 const { check, drive } = require("./drive.js");
 
-drive("the library answers", { width: 1280, height: 1000 }, async ({ browser, value, shot, quiet }) => {
+drive("the library answers", { width: 1000, height: 700 }, async ({ browser, value, shot, quiet }) => {
   const open_ms = await value("studioOpened_ms");
   await quiet();
   await browser.send("HeapProfiler.collectGarbage");
@@ -33,8 +33,9 @@ drive("the library answers", { width: 1280, height: 1000 }, async ({ browser, va
   const chosen = await value("studio.panel.place");
   await browser.click("#chosen button:nth-of-type(1)");
   check("the design starts from the chosen paint", (await value("studio.history.now.start")) === chosen);
-  await quiet();
+  await value("studio.panel.list.focus()");  // else the key scrolls the panel, which moves while it is clicked
   await browser.key("Home");
+  check("the first paint is chosen", (await value("studio.panel.current")) === 0);
   await value("studio.panel.list.scrollIntoView({ block: 'center' })");
   await browser.click(".paint-row:nth-child(3)");
   await browser.click("#chosen button:nth-of-type(2)");

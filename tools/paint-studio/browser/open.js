@@ -9,7 +9,7 @@ const { check, drive } = require("./drive.js");
 
 const data = process.env.TESTDATA;
 
-drive("files of every kind are opened", { width: 1400, height: 900 }, async ({ browser, folder, value, shot, status, give, quiet, checkNames }, ...paints) => {
+drive("files of every kind are opened", { width: 1000, height: 700 }, async ({ browser, folder, value, shot, status, give, choose, quiet, checkNames }, ...paints) => {
   await quiet();
   const open = async (...files) => {
     await value("studio.say('')");
@@ -27,6 +27,7 @@ drive("files of every kind are opened", { width: 1400, height: 900 }, async ({ b
     const texts = await value(`${states}.map((state) => studio.engine.ask({ do: "write", paint: state.paint, as: "csv" }).text)`);
     fs.writeFileSync(path.join(folder, name + ".opened.csv"), texts.map((text, i) => (i === 0 ? text : text.slice(text.indexOf("\n") + 1))).join(""));
     if (file === paints[0]) await shot("open-paints");
+    await value("(() => { while (studio.palette.length > 0) studio.arrange(0, -1); })()");
   }
 
   // Chromium styles the error that its parser of XML makes, which the page's policy forbids.
@@ -91,6 +92,7 @@ drive("files of every kind are opened", { width: 1400, height: 900 }, async ({ b
   await shot("open-light");
 
   // Meshes by the same readers; each replaces the one before.
+  await choose("environment", "studio");
   const parts = () => value("studio.stage.mesh.parts.map(({ name, row }) => [name, row])");
   const ofBox = await open(path.join(data, "box.obj"));
   check(`the box is there: ${ofBox}`, (await parts()).map(([name]) => name).join() === "White,Red,Green,Gray" && ofBox.includes("told by their names are none; 4 not recognized"));

@@ -4,7 +4,7 @@
 "use strict";
 const { check, drive } = require("./drive.js");
 
-drive("prints are told", { width: 1400, height: 900 }, async ({ browser, value, shot, quiet, choose }) => {
+drive("prints are told", { width: 1000, height: 700 }, async ({ browser, value, shot, quiet, choose }) => {
   const told = () => value("document.getElementById('screen-loss').textContent"), near = (x, y, by) => Math.abs(x - y) <= by;
   await choose("library", "candy_red");
   await value("studio.commit({ face: [50, 20, 10], flop: [40, 10, 5] })");

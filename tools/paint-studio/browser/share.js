@@ -32,7 +32,7 @@ function lookedUp(folder) {
   });
 }
 
-drive("the page speaks and gives away", { width: 1400, height: 900 }, async ({ browser, folder, value, shot, quiet, choose, fill, give, checkNames }, source) => {
+drive("the page speaks and gives away", { width: 1000, height: 700 }, async ({ browser, folder, value, shot, quiet, choose, fill, give, checkNames }, source) => {
   const texts = textsOf(fs.readFileSync(source, "utf8")), ofScripts = lookedUp(path.dirname(source)), missing = [...texts, ...ofScripts, ...tourSteps.map(([, text]) => text), ...Object.values(explained)].filter((text) => !(text in german));
   check(`every text is in the table: ${missing.join(" | ")}`, texts.length > 80 && ofScripts.length > 50 && missing.length === 0);
   await quiet();

@@ -1,5 +1,5 @@
 // Small pictures of paints: the nine variations, the nearest paints of the library, and the palette. They are drawn one
-// by one while the page has nothing else to do, each with the view and the light of the large picture.
+// by one between pictures of the stage, each with the view and the light of the large picture.
 
 class Tiles {
   constructor(app) {
@@ -94,15 +94,15 @@ class Tiles {
   }
 
   go() {
-    if (this.timer === undefined) this.timer = whenIdle(() => this.drawNext());
+    if (this.timer === undefined) this.timer = setTimeout(() => this.drawNext(), idlePause_ms);
   }
   stop() {
-    if (this.timer !== undefined) cancelIdle(this.timer);
+    if (this.timer !== undefined) clearTimeout(this.timer);
     this.timer = undefined;
   }
   async drawNext() {
     this.timer = undefined;
-    if (this.app.stageView.lost || !this.app.stageView.sharp) return;  // they follow the picture
+    if (this.app.stageView.lost || this.app.stageView.comesFirst) return;  // it has them drawn when it is sharp
     while (this.waiting.length > 0 && !this.waiting[0].canvas.isConnected) this.waiting.shift();
     const next = this.waiting.shift(), app = this.app, now = {};
     if (!next) return;

@@ -1,14 +1,11 @@
 // The large picture: its camera, its light, the border between two paints, and when it is drawn. While something moves it
 // has few pixels where the computer is slow; at rest it is drawn in full and then with many samples.
 
-// Calls an action when the page has nothing else to do.
-const whenIdle = (action) => (window.requestIdleCallback ? requestIdleCallback(action, { timeout: 400 }) : setTimeout(action, 30));
-const cancelIdle = (number) => (window.requestIdleCallback ? cancelIdleCallback(number) : clearTimeout(number));
-
 const firstBudget_ms = 30;  // a picture that takes longer is drawn with fewer pixels first
 const slowPicture_ms = 40;  // the light of a view at rest is gathered where a picture takes longer
 const stepBudget_ms = 40;   // of a draw of a better picture, behind which an edit may have to wait
 const idleBudget_ms = 12;   // of a draw of what nobody waits for
+const idlePause_ms = 10;    // between those, in which the page answers
 const scales = [1, 0.7, 0.5, 0.35];  // few, so that what is visible is seldom drawn anew
 
 class StageView {
@@ -59,23 +56,25 @@ class StageView {
     this.app.graphicsCame();
     this.shadow();
   }
-  // Finds the shadow of the mesh on itself while the page has nothing else to do.
+  // True if all else waits for the picture.
+  get comesFirst() { return !this.sharp || (this.lastFrame !== undefined && this.full_ms > 16); }
+  // Finds the shadow of the mesh on itself between pictures.
   shadow() {
     const { stage } = this, go = async () => {
       if (stage !== this.stage || this.lost) return;
-      const waits = !this.sharp || (this.lastFrame !== undefined && this.full_ms > 16);  // the picture comes first
+      const waits = this.comesFirst;
       if (!waits && !stage.occlusion.step()) {
         this.app.tiles.again();
         this.redraw();
         return;
       }
-      await (waits ? new Promise((resolve) => setTimeout(resolve, 100)) : stage.drawn());
-      if (this.search === go) this.shadowing = whenIdle(go);
+      if (!waits) await stage.drawn();
+      if (this.search === go) this.shadowing = setTimeout(go, waits ? 100 : idlePause_ms);
     };
     this.search = go;
     stage.occlusion.begin();
-    cancelIdle(this.shadowing);
-    this.shadowing = whenIdle(go);
+    clearTimeout(this.shadowing);
+    this.shadowing = setTimeout(go, idlePause_ms);
   }
   // Shows another mesh, whose numbers are those bytes.
   takeMesh(mesh, bytes) {
@@ -369,9 +368,12 @@ class StageView {
     }
     if (this.drawGathered(moving)) return;
     const known_ms = this.full_ms || Infinity, first = scales.find((scale) => scale * scale * known_ms <= firstBudget_ms) ?? scales.at(-1);
-    const scale = moving ? Math.min(scales[this.level], first) : first;
+    const scale = moving ? Math.min(scales[this.level], first) : first, begin = performance.now();
     this.stage.draw(scale < 1 ? "first" : "centers", ...this.picture(scale), this.overlay);
-    if (!moving) this.rest(this.finishing(this.sharpening(scale)));
+    if (moving) return;
+    this.rest(this.finishing(this.sharpening(scale)));
+    // A picture that takes longer than the one before, as of another mesh, is measured again.
+    if (scale === 1) this.stage.drawn().then(() => { if (performance.now() - begin > slowPicture_ms) this.full_ms = performance.now() - begin; });
   }
   // Whole cars beside each other in the same view and light: the design, and the paints of app.beside().
   drawCars(moving) {
