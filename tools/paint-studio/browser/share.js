@@ -15,6 +15,11 @@ function textsOf(source) {
   return texts.filter((text) => /[A-Za-z]{3}/.test(text) && !["English", "Deutsch"].includes(text));
 }
 
+// Sentences that the scripts tell and do not look up.
+function toldPlainly(folder) {
+  return fs.readdirSync(folder).filter((name) => name.endsWith(".js")).flatMap((name) => [...fs.readFileSync(path.join(folder, name), "utf8").matchAll(/\b(?:say|Error)\((?:"[A-Z]|`).{0,60}/g)].map(([text]) => text));
+}
+
 // Texts that the scripts look up in the table: words("..."), words: "..." and told`...`, whose values become {}.
 function lookedUp(folder) {
   return fs.readdirSync(folder).filter((name) => name.endsWith(".js") && name !== "texts.js").flatMap((name) => {
@@ -35,6 +40,8 @@ function lookedUp(folder) {
 drive("the page speaks and gives away", { width: 1000, height: 700 }, async ({ browser, folder, value, shot, quiet, choose, fill, give, checkNames }, source) => {
   const texts = textsOf(fs.readFileSync(source, "utf8")), ofScripts = lookedUp(path.dirname(source)), missing = [...texts, ...ofScripts, ...tourSteps.map(([, text]) => text), ...Object.values(explained)].filter((text) => !(text in german));
   check(`every text is in the table: ${missing.join(" | ")}`, texts.length > 80 && ofScripts.length > 50 && missing.length === 0);
+  const plain = toldPlainly(path.dirname(source));
+  check(`every message is looked up: ${plain.join(" | ")}`, plain.length === 0);
   await quiet();
   check("the tour is offered once", /tour/i.test(await value("document.getElementById('status').textContent")));
 
@@ -92,7 +99,7 @@ drive("the page speaks and gives away", { width: 1000, height: 700 }, async ({ b
   await browser.until("window.studio !== undefined && document.documentElement.lang === 'de'");
   await quiet();
   check("the notes are kept", (await value("document.getElementById('notes').value")) === notes);
-  const shown = await value("document.body.innerText"), english = texts.filter((text) => text.length > 12 && german[text] !== text && shown.includes(text));
+  const shown = await value("document.body.innerText"), english = [...texts, ...ofScripts].filter((text) => text.length > 12 && german[text] !== text && shown.includes(text));
   check(`no English text is left: ${english.join(" | ")}`, english.length === 0 && shown.includes("Nächste Lacke"));
   check("classes keep their values", (await value("document.getElementById('paint-class').options[2].value")) === "metallic");
   await shot("share-german");

@@ -28,14 +28,14 @@ class Card {
   fill() {
     const { app } = this, { paint, description, stageView } = app, { face, flop, face_css, flop_css, travel } = description.appearance;
     const curve = chipAngles.map((angle) => [angle, app.engine.ask({ do: "at", paint, angle })]), light = document.getElementById("environment").selectedOptions[0].textContent;
-    const figures = document.getElementById("figures").cloneNode(true), curves = document.getElementById("curves").cloneNode(true);
+    const gloss = (paint.gloss ?? []).map(([angle, units]) => told`${units.toFixed(0)} GU at ${angle}°`), figures = document.getElementById("figures").cloneNode(true), curves = document.getElementById("curves").cloneNode(true);
     for (const one of [figures, curves]) one.removeAttribute("id");
     for (const handle of curves.querySelectorAll(".handle, .sight")) handle.remove();
     document.getElementById("card").replaceChildren(
       made("h1", { text: paint.name + (paint.code ? `, ${paint.code}` : "") }),
       made("img", { src: stageView.canvas.toDataURL("image/png"), alt: `The mesh in ${paint.name}` }),
-      made("p", { text: `Light: ${light}. Travel ${travel.toFixed(0)}°.${paint.gloss?.length > 0 ? ` Gloss ${paint.gloss.map(([angle, units]) => `${units.toFixed(0)} GU at ${angle}°`).join(", ")}.` : ""}` }),
-      made("div", { class: "chips" }, [this.chip("face", face, face_css), ...curve.map(([angle, { lab, css }]) => this.chip(`${angle}°`, lab, css)), this.chip("flop", flop, flop_css)]),
+      made("p", { text: [told`Light: ${light}.`, told`Travel ${travel.toFixed(0)}°.`, ...(gloss.length > 0 ? [told`Gloss ${gloss.join(", ")}.`] : [])].join(" ") }),
+      made("div", { class: "chips" }, [this.chip(words("face"), face, face_css), ...curve.map(([angle, { lab, css }]) => this.chip(`${angle}°`, lab, css)), this.chip(words("flop"), flop, flop_css)]),
       made("div", { class: "row" }, [curves, figures]),
       ...(this.notes.value ? [made("p", { text: this.notes.value })] : []),
       made("pre", { text: document.getElementById("command").textContent }));
@@ -44,8 +44,8 @@ class Card {
   // One turn of the camera as WebM.
   async film() {
     const { app } = this, { stageView } = app, { canvas } = stageView, first = stageView.view, kind = "video/webm";
-    if (!window.MediaRecorder?.isTypeSupported(kind)) throw new Error("This browser makes no WebM films.");
-    if (stageView.traced !== null) throw new Error("The camera of a traced view stays as it is: choose a light.");
+    if (!window.MediaRecorder?.isTypeSupported(kind)) throw new Error(words("This browser makes no WebM films."));
+    if (stageView.traced !== null) throw new Error(words("The camera of a traced view stays as it is: choose a light."));
     const stream = canvas.captureStream(filmRate), recorder = new MediaRecorder(stream, { mimeType: kind, videoBitsPerSecond: 12e6 }), pieces = [];
     recorder.ondataavailable = ({ data }) => pieces.push(data);
     const ended = new Promise((resolve) => { recorder.onstop = resolve; });

@@ -57,7 +57,7 @@ class NumberControls {
       grid.append(made("span", {}, [this.fields[end + "-swatch"], " " + words(end)]));
       ["L", "a", "b"].forEach((channel) => {
         const field = made("input", { type: "number", step: "0.5", min: lowest[channel], max: highest[channel],
-                                      "aria-label": `${channel}* of the ${end}`,
+                                      "aria-label": told`${channel}* of the ${words(end)}`,
                                       onchange: () => this.commitColor(end) });
         this.fields[end + channel] = field;
         grid.append(made("label", {}, [channel + "*", field]));
@@ -89,7 +89,7 @@ class NumberControls {
   // The widths of a brushed surface, as slopes.
   brushed() {
     ["x", "y"].forEach((axis, i) => {
-      const along = i === 0 ? "sideways" : "upward", field = made("input", { type: "number", min: 0, max: 10, step: 0.01, "aria-label": `width of the highlight ${along}`,
+      const along = i === 0 ? "sideways" : "upward", field = made("input", { type: "number", min: 0, max: 10, step: 0.01, "aria-label": told`width of the highlight ${words(along)}`,
                                                                             onchange: () => this.commitBrushed(i) });
       this.fields["brushed-" + axis] = field;
     });

@@ -80,7 +80,7 @@ class Curves {
   reading(plot, geometry, number) {
     const names = ["L*", "a*", "b*"];
     const circle = drawn("circle", { r: 5, class: "handle", tabindex: 0, role: "slider",
-                                     "aria-label": `${names[plot.channel]} at ${geometry}` });
+                                     "aria-label": told`${names[plot.channel]} at ${geometry}` });
     const edit = (value) => {
       const lab = this.rows[number].lab.map((old, i) => (i === plot.channel ? rounded(value) : old));
       return { set: [{ geometry, lab: [Math.max(0, lab[0]), lab[1], lab[2]] }] };

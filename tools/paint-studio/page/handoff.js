@@ -86,8 +86,8 @@ class Handoff {
     press("save-csv", () => this.write("csv", false, ".csv", "text/csv"));
     press("save-cxf", () => this.writeCxf());
     press("save-session", () => save(fileName(app.paint.name) + ".session.json", app.savedSession(), "application/json"));
-    press("copy", () => this.copy(document.getElementById("command").textContent, "The commands"));
-    press("copy-link", () => packedText(app.linked()).then((text) => this.copy(`${location.href.split("#")[0]}#p=${text}`, "The link")));
+    press("copy", () => this.copy(document.getElementById("command").textContent, words("The commands")));
+    press("copy-link", () => packedText(app.linked()).then((text) => this.copy(`${location.href.split("#")[0]}#p=${text}`, words("The link"))));
   }
 
   // The design as CxF, under the code of the nearest paint of the library.
@@ -116,9 +116,9 @@ class Handoff {
       field.select();
       const copied = document.execCommand("copy");
       field.remove();
-      this.app.say(copied ? `${what}: copied.` : `This browser refuses to copy. ${what}: ${text}`);
+      this.app.say(copied ? told`${what}: copied.` : told`This browser refuses to copy. ${what}: ${text}`);
     };
-    if (navigator.clipboard) navigator.clipboard.writeText(text).then(() => this.app.say(`${what}: copied.`), fallback);
+    if (navigator.clipboard) navigator.clipboard.writeText(text).then(() => this.app.say(told`${what}: copied.`), fallback);
     else fallback();
   }
 

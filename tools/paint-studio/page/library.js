@@ -37,7 +37,7 @@ class LibraryPanel {
     this.list.append(this.space);
     const form = document.getElementById("filters");
     for (const [name, text] of Object.entries(metricNames)) {
-      const field = (side) => made("input", { type: "number", step: "any", "data-metric": name, "data-side": side, "aria-label": `${side === "low" ? "lowest" : "highest"} ${text}` });
+      const field = (side) => made("input", { type: "number", step: "any", "data-metric": name, "data-side": side, "aria-label": `${words(side === "low" ? "lowest" : "highest")} ${words(text)}` });
       form.append(made("div", { class: "range" }, [made("span", { words: text }), field("low"), made("span", { words: "to" }), field("high")]));
     }
     const order = document.getElementById("order");
@@ -243,6 +243,6 @@ class Cloud {
     if (best < 0) return;
     const row = this.app.panel.places.indexOf(this.paints[best]);
     if (row >= 0) this.app.panel.choose(row);
-    else this.app.say(`${this.app.library.paint(this.paints[best]).name} does not pass the filter of the list.`);
+    else this.app.say(told`${this.app.library.paint(this.paints[best]).name} does not pass the filter of the list.`);
   }
 }

@@ -51,13 +51,13 @@ class App {
     const words = new URLSearchParams(location.hash.slice(1)), name = words.get("paint"), design = words.get("design"), link = words.get("p");
     if (name === null && design === null && link === null) return;
     location.hash = "";
-    if (link !== null) unpackedText(link).then((text) => this.attempt(() => this.openLink(text)), () => this.say("The address of this page is cut: copy the whole link."));
+    if (link !== null) unpackedText(link).then((text) => this.attempt(() => this.openLink(text)), () => this.say(words("The address of this page is cut: copy the whole link.")));
     if (design !== null) this.attempt(() => this.restore(this.picked(design)));
     if (name === null) return;
     this.attempt(() => {
       this.engine.ask({ do: "filter", text: name });
       const place = this.engine.list("filtered").find((i) => this.library.paint(i).name === name);
-      if (place === undefined) throw new Error(`This library has no paint named ${name}.`);
+      if (place === undefined) throw new Error(told`This library has no paint named ${name}.`);
       this.start(place);
     });
   }
@@ -70,7 +70,7 @@ class App {
     } catch {
       own = null;
     }
-    if (typeof own?.file !== "string" || typeof own.board !== "string") throw new Error("The address of this page holds no paint.");
+    if (typeof own?.file !== "string" || typeof own.board !== "string") throw new Error(words("The address of this page holds no paint."));
     this.engine.ask({ do: "describe", paint: own.paint });
     return { own: { file: own.file, board: own.board, paint: own.paint }, steps: [], paint: own.paint };
   }
@@ -221,7 +221,7 @@ class App {
   showStart({ start, own }) {
     const list = document.getElementById("library");
     list.querySelector("option[data-more]")?.remove();
-    if (own) list.append(made("option", { value: "own", text: `${own.paint.name} of ${own.file}`, "data-more": "" }));
+    if (own) list.append(made("option", { value: "own", text: told`${own.paint.name} of ${own.file}`, "data-more": "" }));
     else if (start >= list.options.length) list.append(made("option", { value: start, text: this.library.paint(start).name, "data-more": "" }));
     list.value = own ? "own" : String(start);
   }
@@ -316,7 +316,7 @@ class App {
   // Paints between the design and the one that it is compared with, into the palette.
   gradient() {
     const field = document.getElementById("gradient-steps"), count = clamped(Math.round(field.valueAsNumber || 3), 1, 24), to = this.comparedState();
-    if (!to) return this.say("Choose a paint to compare with: the gradient leads to it.");
+    if (!to) return this.say(words("Choose a paint to compare with: the gradient leads to it."));
     const from = this.history.now, { list } = this.engine.ask({ do: "gradient", from: from.paint, to: to.paint, count });
     const states = [from, to].map(saidState);
     this.palette.push(...list.map((paint) => ({ own: { file: "gradient.paints.xml", paint, gradient: { ends: states, count } }, steps: [], paint })));
@@ -373,7 +373,7 @@ class App {
   }
   openLink(text) {
     const link = JSON.parse(text);
-    if (!link.view || !link.lamp) throw new Error("This link does not say how the paint is seen.");
+    if (!link.view || !link.lamp) throw new Error(words("This link does not say how the paint is seen."));
     this.restore(this.replayed(link));
     this.stageView.see(link);
   }
@@ -388,24 +388,24 @@ class App {
   // Throws unless this library has the paint that a state began with, or those between which a gradient made it.
   checkOrigin({ start, of, own }) {
     const known = own ? typeof own.file === "string" : Number.isInteger(start) && start >= 0 && start < this.library.count;
-    if (!known) throw new Error("This file is no session of a page with this library.");
+    if (!known) throw new Error(words("This file is no session of a page with this library."));
     if (own) own.gradient?.ends.forEach((end) => this.checkOrigin(end));
-    else if (of !== undefined && this.library.paint(start).name !== of) throw new Error(`A page with another library made this: it starts from "${of}".`);
+    else if (of !== undefined && this.library.paint(start).name !== of) throw new Error(told`A page with another library made this: it starts from "${of}".`);
   }
   // The state that these edits of a library paint lead to. Throws what a request refuses.
   replayed({ start, of, own, steps, name, code }) {
     this.checkOrigin({ start, of, own });
-    if (!Array.isArray(steps)) throw new Error("This file is no session of a page with this library.");
+    if (!Array.isArray(steps)) throw new Error(words("This file is no session of a page with this library."));
     let { paint } = this.origin({ start, own });
     if (own) this.engine.ask({ do: "describe", paint });  // refuses what is no paint
     for (const edit of steps) ({ paint } = this.engine.ask({ do: "edit", paint, edit }));
-    if (name !== undefined && typeof name !== "string") throw new Error("This file is no session of a page with this library.");
+    if (name !== undefined && typeof name !== "string") throw new Error(words("This file is no session of a page with this library."));
     return { start, of, own, steps, ...(name === undefined ? { paint } : labeled(paint, name, code)) };
   }
   openSession(text) {
     const session = JSON.parse(text), saved = session.history?.states, at = session.history?.at, states = [];
     if (session.kind !== "paint-studio session" || !Array.isArray(saved) || !(saved.length > at) || !(at >= 0))
-      throw new Error("This file is no session of a page.");
+      throw new Error(words("This file is no session of a page."));
     for (const one of saved) {
       const last = states.at(-1);
       if (one.edit === undefined || !last) states.push(this.replayed(one));
@@ -425,12 +425,12 @@ class App {
   // to store anything, or so much as pictures take; the page then works without.
   store() {
     if (this.pictures.coming > 0) return;  // it stores when they are there
-    const told = (lost) => {
-      if (this.storeRefused !== lost) this.say(`The browser does not keep ${lost}: save the session as a file.`);
+    const refused = (lost) => {
+      if (this.storeRefused !== lost) this.say(told`The browser does not keep ${lost}: save the session as a file.`);
       this.storeRefused = lost;
     };
     const small = this.pictures.size <= mostKept;
-    if (!small) told("pictures of this size");
+    if (!small) refused(words("pictures of this size"));
     for (const withPictures of small && this.pictures.size > 0 ? [true, false] : [false])
       try {
         if (!this.tab) {
@@ -440,7 +440,7 @@ class App {
         localStorage.setItem(this.place, JSON.stringify({ time: Date.now(), session: this.savedSession(withPictures) }));
         return;
       } catch {
-        told(withPictures ? "pictures of this size" : "this session");
+        refused(withPictures ? words("pictures of this size") : words("this session"));
       }
   }
   get place() { return `${this.key} ${this.tab}`; }
@@ -473,7 +473,7 @@ class App {
 async function begin(code) {
   translatePage();
   try {
-    if (typeof DecompressionStream === "undefined") throw new Error("This browser cannot decompress the data of the page: it takes a newer one.");
+    if (typeof DecompressionStream === "undefined") throw new Error(words("This browser cannot decompress the data of the page: it takes a newer one."));
     const data = JSON.parse(taken("data")), module = await WebAssembly.compile(await inflated("compiled")), engine = await makeEngine(module);
     await inflated("index", (size) => engine.attach(size));
     pageNumbers = await inflated("binary");

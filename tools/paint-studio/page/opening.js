@@ -208,7 +208,7 @@ class Opening {
         URL.revokeObjectURL(address);
         return error === undefined ? resolve({ ...made, seconds: (performance.now() - begin) / 1000 }) : reject(new Error(error));
       };
-      worker.onerror = (event) => reject(new Error(`${name}: the filter stopped: ${event.message}`));
+      worker.onerror = (event) => reject(new Error(told`${name}: the filter stopped: ${event.message}`));
       worker.postMessage({ module: this.module, basis: app.data.basis, name, bytes });
     });
   }

@@ -24,7 +24,7 @@ class Parts {
     this.show();
   }
   chooser(part) {
-    const list = made("select", { "aria-label": `What ${part.name || "the part"} wears`, onchange: () => this.wear(part, Number(list.value)) });
+    const list = made("select", { "aria-label": told`What ${part.name || words("the part")} wears`, onchange: () => this.wear(part, Number(list.value)) });
     list.append(...wornWords.map((text, value) => made("option", { value, words: text })), made("option", { value: hiddenRow, words: "hidden" }));
     list.value = part.row;
     return list;

@@ -40,7 +40,7 @@ class Pictures {
   get size() { return this.all.reduce((sum, { data }) => sum + data.length, 0); }
   get all() { return this.boards.flatMap((board) => board.pictures); }
   addBoard() {
-    this.board = { name: `Board ${++this.made}`, pictures: [], zoom: 0 };
+    this.board = { name: told`Board ${++this.made}`, pictures: [], zoom: 0 };
     this.boards.push(this.board);
     this.current = null;
   }
@@ -61,18 +61,18 @@ class Pictures {
         const bitmap = await createImageBitmap(file);
         const scale = Math.min(1, mostPixels / Math.max(bitmap.width, bitmap.height));
         const canvas = made("canvas", { width: Math.max(1, Math.round(scale * bitmap.width)), height: Math.max(1, Math.round(scale * bitmap.height)), tabindex: 0,
-                                        role: "application", "aria-label": `Picture ${file.name}. Arrow keys move the dropper, with Shift by ten pixels.` });
+                                        role: "application", "aria-label": told`Picture ${file.name}. Arrow keys move the dropper, with Shift by ten pixels.` });
         const context = canvas.getContext("2d", { willReadFrequently: true });
         context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
         bitmap.close();
-        if (scale < 1) this.app.say(`${file.name} was made smaller: its sides have at most ${mostPixels} pixels here.`);
+        if (scale < 1) this.app.say(told`${file.name} was made smaller: its sides have at most ${mostPixels} pixels here.`);
         const picture = { name: file.name, canvas, context, data: scale < 1 ? canvas.toDataURL("image/png") : await dataOf(file) };
         this.listen(picture);
         if (!this.board) this.addBoard();
         this.board.pictures.push(picture);
         this.current = picture;
       } catch {
-        this.app.say(`${file.name} is no picture that this browser reads.`);
+        this.app.say(told`${file.name} is no picture that this browser reads.`);
       }
     }
     this.show();
@@ -98,7 +98,7 @@ class Pictures {
     return this.restored;
   }
   async putBack({ made: count, open, boards, droppers }) {
-    if (!Array.isArray(boards) || !Array.isArray(droppers)) throw new Error("The pictures of this session are damaged.");
+    if (!Array.isArray(boards) || !Array.isArray(droppers)) throw new Error(words("The pictures of this session are damaged."));
     Object.assign(this, { boards: [], board: null, current: null, droppers: {}, made: 0 });
     const places = [];
     for (const { name, zoom, pictures } of boards) {
@@ -187,7 +187,7 @@ class Pictures {
         if (Math.hypot(left + column - x, top + row - y) <= radius && data[at + 3] === 255) signals.push(data[at], data[at + 1], data[at + 2]);
       }
     if (signals.length === 0) {
-      this.app.say("Every pixel below the dropper is transparent: move it.");
+      this.app.say(words("Every pixel below the dropper is transparent: move it."));
       return null;
     }
     const found = this.app.attempt(() => this.app.engine.ask({ do: "dropper", signals }));

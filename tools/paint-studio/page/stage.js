@@ -65,9 +65,9 @@ class Stage {
   // Throws a sentence where the browser cannot draw the page.
   constructor(canvas, data, engine) {
     const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, depth: false, preserveDrawingBuffer: true });
-    if (!gl) throw new Error("This browser has no WebGL 2, with which the picture is drawn.");
+    if (!gl) throw new Error(words("This browser has no WebGL 2, with which the picture is drawn."));
     if (!gl.getExtension("EXT_color_buffer_float"))
-      throw new Error("The graphics of this computer cannot draw float pictures, which the page needs.");
+      throw new Error(words("The graphics of this computer cannot draw float pictures, which the page needs."));
     this.gl = gl;
     this.canvas = canvas;
     this.screen = matchMedia("(color-gamut: p3)").matches && "drawingBufferColorSpace" in gl ? "display-p3" : "srgb";
@@ -78,7 +78,7 @@ class Stage {
     this.mesh = unpackedMesh(data.mesh);
     this.columns = data.finishes.columns;
     if (this.columns > gl.getParameter(gl.MAX_TEXTURE_SIZE))
-      throw new Error("The graphics of this computer cannot hold the weights of this basis.");
+      throw new Error(words("The graphics of this computer cannot hold the weights of this basis."));
     this.finishes = numbersOf(data.finishes.texels, Float32Array).slice();  // the first row is that of the second paint
     this.rows = 1 + data.finishes.rows;
     this.gbufferProgram = this.program(data.programs.gbuffer_vertex, data.programs.gbuffer_fragment);
@@ -798,7 +798,7 @@ class Stage {
     const gbuffer = this.gbuffer("radiance", camera, width, height, [0, 0], environment);
     const key = this.gathered.keyOf(camera, width, height, environment);
     while (this.gathered.gather(key, gbuffer, weights, environment, false));
-    if (!this.gathered.serves(key, weights, environment)) throw new Error("There is no room for the layers of this picture.");
+    if (!this.gathered.serves(key, weights, environment)) throw new Error(words("There is no room for the layers of this picture."));
     return this.valuesOf(this.gathered.shade("radiance", gbuffer, weights, environment));
   }
   valuesOf(sum) {

@@ -37,7 +37,7 @@ class Tiles {
     const step = document.getElementById("variation-step").valueAsNumber, place = document.getElementById("variations");
     if (!(step > 0)) return;
     const list = app.engine.ask({ do: "variations", paint: app.paint, of, step }).list;
-    const tiles = list.map((one) => this.tile(one.paint, one.name, "", () => app.commit(one.edit)));
+    const tiles = list.map((one) => this.tile(one.paint, one.name.replace(/[a-z]+/g, words), "", () => app.commit(one.edit)));
     tiles.splice(Math.ceil(tiles.length / 2), 0, this.tile(app.paint, words("as it is"), "", () => {}, true));
     this.put(place, tiles);
   }
@@ -62,8 +62,8 @@ class Tiles {
     document.getElementById("verdict").textContent = verdicts.join(" ");
     this.put(place, answer.list.map((match) => {
       const differences = Object.entries(match.de_by_geometry).map(([geometry, de]) => `${geometry} ${de.toFixed(1)}`);
-      const note = `${match.code ? match.code + ", " : ""}sum ${match.distance.toFixed(2)}: ${differences.join(", ")}`;
-      const start = made("button", { type: "button", class: "corner", "aria-label": `Start from ${match.name}`, title: "Start from this paint", words: "start", onclick: () => app.start(match.place) });
+      const note = (match.code ? match.code + ", " : "") + told`sum ${match.distance.toFixed(2)}: ${differences.join(", ")}`;
+      const start = made("button", { type: "button", class: "corner", "aria-label": told`Start from ${match.name}`, title: "Start from this paint", words: "start", onclick: () => app.start(match.place) });
       return made("div", { class: "kept" }, [this.tile(app.library.paint(match.place), match.name, note, () => app.compareWith(match.place)), start]);
     }));
   }
@@ -72,7 +72,7 @@ class Tiles {
     const app = this.app, place = document.getElementById("palette");
     this.put(place, app.palette.map((state, number) => {
       const { name } = state.paint, tile = this.tile(state.paint, `${number + 1}: ${name}`, "", () => app.restore(state));
-      const remove = made("button", { type: "button", class: "remove corner", "aria-label": `Remove ${name} from the palette`, title: "Remove", text: "×", onclick: () => app.arrange(number, -1) });
+      const remove = made("button", { type: "button", class: "remove corner", "aria-label": told`Remove ${name} from the palette`, title: "Remove", text: "×", onclick: () => app.arrange(number, -1) });
       return made("div", { class: "kept", draggable: "true", ondragstart: (event) => event.dataTransfer.setData("application/x-kept", String(number)),
                            ondragover: (event) => { if (event.dataTransfer.types.includes("application/x-kept")) event.preventDefault(); },
                            ondrop: (event) => {

@@ -158,17 +158,17 @@ class StageView {
     byId("save-picture").addEventListener("click", () => this.savePicture());
     byId("full-screen").addEventListener("click", () => {
       if (document.fullscreenElement) document.exitFullscreen();
-      else byId("stage-section").requestFullscreen().catch(() => this.app.say("This browser shows no part of a page on the full screen."));
+      else byId("stage-section").requestFullscreen().catch(() => this.app.say(words("This browser shows no part of a page on the full screen.")));
     });
     this.canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
       this.lost = true;
       this.rest(null);
-      this.app.say("The graphics of this computer were reset: the picture comes back when they do. Nothing is lost.");
+      this.app.say(words("The graphics of this computer were reset: the picture comes back when they do. Nothing is lost."));
     });
     this.canvas.addEventListener("webglcontextrestored", () => this.app.attempt(() => {
       this.begin();
-      this.app.say("The graphics are back.");
+      this.app.say(words("The graphics are back."));
     }));
     this.showLamp();
   }

@@ -27,9 +27,9 @@ class Wheel {
     this.column.append(...this.columns);
     this.handles = {};
     for (const end of ["face", "flop"]) {
-      this.handles[end] = this.handle(this.svg, end, "a* and b*", (event) => this.placeOf(event),
+      this.handles[end] = this.handle(this.svg, end, words("a* and b*"), (event) => this.placeOf(event),
                                       { ArrowLeft: [0, -1, 0], ArrowRight: [0, 1, 0], ArrowUp: [0, 0, 1], ArrowDown: [0, 0, -1] });
-      this.handles[end + "L"] = this.handle(this.column, end, "lightness", (event) => this.lightnessOf(event),
+      this.handles[end + "L"] = this.handle(this.column, end, words("lightness"), (event) => this.lightnessOf(event),
                                             { ArrowUp: [1, 0, 0], ArrowDown: [-1, 0, 0] });
     }
   }
@@ -37,7 +37,7 @@ class Wheel {
   // A handle that moves a part of the color of one end; `from` tells the part of an event, as a color with holes.
   handle(svg, end, what, from, keys) {
     const circle = drawn("circle", { r: end === "face" ? 7 : 5.5, class: "handle", tabindex: 0, role: "slider",
-                                     "aria-label": `${what} of the ${end}`, "aria-valuenow": 0 });
+                                     "aria-label": told`${what} of the ${words(end)}`, "aria-valuenow": 0 });
     const edit = (lab) => ({ [end]: lab.map((value) => rounded(value)), ...this.app.controls.residual() });
     const merged = (part) => this.app.description.appearance[end].map((value, i) => part[i] ?? value);
     let last = null, apart = null;  // from where the pointer took the handle to its middle
