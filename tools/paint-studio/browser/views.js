@@ -99,9 +99,16 @@ drive("the views were looked at", { width: 1000, height: 1000 }, async ({ browse
   check("the camera moves again", await value("!document.getElementById('turn').disabled && document.getElementById('traced-text').hidden"));
   await shot("view-4");
 
-  // From an edit to its picture on a view.
   await choose("environment", views[0]);
   await drawn();
+  // Small pictures wait while something moves, and come after that.
+  await value("(() => { Object.assign(studio.stageView, { full_ms: 100 }); studio.tiles.again(); studio.stageView.drawNow(true); })()");
+  await new Promise((resolve) => setTimeout(resolve, 200));
+  check("small pictures wait", await value("studio.tiles.waiting.length > 0 && studio.tiles.timer === undefined"));
+  await value("studio.stageView.drawNow(false)");
+  await browser.until("studio.tiles.waiting.length === 0", 20);
+
+  // From an edit to its picture on a view.
   const times = await value(`(async () => { const app = studio, all = [], shows = [];
     app.tiles.stop();
     for (let i = 0; i < 10; ++i) {

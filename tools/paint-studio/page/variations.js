@@ -102,7 +102,7 @@ class Tiles {
   }
   async drawNext() {
     this.timer = undefined;
-    if (this.app.stageView.lost || this.app.stageView.comesFirst) return;  // it has them drawn when it is sharp
+    if (this.app.stageView.lost || this.app.stageView.comesFirst) return;  // they go on after the picture
     while (this.waiting.length > 0 && !this.waiting[0].canvas.isConnected) this.waiting.shift();
     const next = this.waiting.shift(), app = this.app, now = {};
     if (!next) return;

@@ -360,6 +360,7 @@ class StageView {
     if (this.traced !== null) {
       this.stage.gathered.drop();
       this.drawTraced(moving);
+      if (!moving) this.app.tiles.go();
       return;
     }
     if (this.cars > 1) {
