@@ -41,6 +41,14 @@ needs_browser() {
   [ -x "${CHROMIUM:-/usr/bin/chromium}" ] || skip "Chromium is not installed"
 }
 
+# Runs a script on a page; NAME.json has the figures that it prints.
+figures() {
+  run node "$code/$1.js" "${@:2}"
+  echo "$output"
+  [ "$status" -eq 0 ]
+  grep '^{' <<<"$output" >"$1.json"
+}
+
 # The elementary functions are the project's own, so that nothing differs: see lib/math/elementary.h.
 @test "edits, fits, metrics and nearest paints are those of the tools to the last bit" {
   run node "$code/identity.js" "$module" "$TESTDATA/b5.basis.xml" "${GONIOCHROME_TRIALS:-320}" 7
@@ -57,10 +65,7 @@ needs_browser() {
 @test "the picture is that of render-osmesa, in four paints and two lights" {
   needs_browser
   fit-paint -q -b "$TESTDATA/b5.basis.xml" "$TESTDATA/paints.paints.xml" -o fitted.xml
-  run node "$code/pictures.js" page.html . 640x360 candy_red silver_black_flop blue_to_purple green_to_gold
-  echo "$output"
-  [ "$status" -eq 0 ]
-  grep '^{' <<<"$output" >pictures.json
+  figures pictures page.html . 640x360 candy_red silver_black_flop blue_to_purple green_to_gold
   for light in studio outdoor; do
     white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' page.html |
       jq ".environments[] | select(.name == \"$light\").white")
@@ -79,10 +84,7 @@ needs_browser() {
 @test "a picture from layers of gathered light is that of the shading program" {
   [ -s pictures.json ] || skip "the pictures were not drawn"
   [ "$(jq '.layers | length == 8 and map(.p95 <= 4.9e-4) == [range(8) | true]' pictures.json)" = true ]
-  run node "$code/layers.js" page.html . 640x360 candy_red
-  echo "$output"
-  [ "$status" -eq 0 ]
-  grep '^{' <<<"$output" >layers.json
+  figures layers page.html . 640x360 candy_red
   [ "$(jq '[.moved, .lamp, .little] | map(.p95 <= 4.9e-4) | all' layers.json)" = true ]
   [ "$(jq '.shift > 1e-3 and .control.p95 > 4.9e-4' layers.json)" = true ]
   [ "$(jq '.full and .layers_drawn > 8 and .layer_bytes <= 96e6' layers.json)" = true ]
@@ -95,10 +97,7 @@ needs_browser() {
 @test "the ground lies where render-osmesa lays it, with the shadow of the mesh" {
   needs_browser
   [ -s pictures.json ] || skip "the pictures were not drawn"
-  run node "$code/grounds.js" page.html . 640x360 candy_red
-  echo "$output"
-  [ "$status" -eq 0 ]
-  grep '^{' <<<"$output" >grounds.json
+  figures grounds page.html . 640x360 candy_red
   [ "$(jq '.search | all' grounds.json)" = true ]
   [ "$(jq '.in_turn | map(.again == 0 and .between == 0 and .other > 0.1) | all' grounds.json)" = true ]
   for light in studio outdoor; do
@@ -239,10 +238,8 @@ needs_browser() {
   fit-paint -q -b "$TESTDATA/b5.basis.xml" brushed.paints.xml -o brushed.fitted.xml
   paint-studio -q --mesh "$TESTDATA/speed-shape.obj" --env studio.env.exr --basis "$TESTDATA/b5.basis.xml" \
     "$TESTDATA/paints.paints.xml#silver_fine" brushed.paints.xml -o brushed.html
-  run node "$code/pictures.js" brushed.html . 640x360 candy_red_brushed
-  echo "$output"
-  [ "$status" -eq 0 ]
-  [ "$(grep '^{' <<<"$output" | jq '.layers | map(.p95 <= 4.9e-4) == [true]')" = true ]
+  figures pictures brushed.html . 640x360 candy_red_brushed
+  [ "$(jq '.layers | map(.p95 <= 4.9e-4) == [true]' pictures.json)" = true ]
   white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' brushed.html | jq '.environments[0].white')
   half=$(jq -n "$white / 2")
   draw() {

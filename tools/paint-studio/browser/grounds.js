@@ -1,6 +1,6 @@
 // Writes the radiance that a page shows of a paint on its ground in each of its environments: FOLDER/PAINT-ENVIRONMENT-WHAT.f32, where the ground is
 // groundless, shadeless, unsent (without the light that the mesh sends to it), shaded (as is the mesh by itself), or found (with the shadow that the
-// page finds). Prints whether shadows are the same in whatever turn they are drawn and searched.
+// page finds). Prints whether shadows are the same in whatever order they are drawn and searched.
 //
 //   node grounds.js PAGE.html FOLDER WIDTHxHEIGHT PAINT
 "use strict";

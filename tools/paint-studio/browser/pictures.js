@@ -18,5 +18,5 @@ drive("the pictures are written", {}, async (handles, size, ...paints) => {
     await write(`${paints[0]}-${environment}-lamp`, paints[0], number, `studio.stageView.environment = ${number}; studio.stageView.setLamp({ on: true, azimuth: -25, elevation: 40, stops: -1 });`, "studio.stageView.setLamp({ on: false });");
     await write(`${paints[0]}-${environment}-turned`, paints[0], number, "studio.stageView.turnTo(90);", "studio.stageView.turnTo(0);");
   }
-  console.log(JSON.stringify({ environments, layers }));
+  console.log(JSON.stringify({ layers }));
 });

@@ -3,11 +3,11 @@
 const fs = require("node:fs");
 const path = require("node:path");
 
-// The handles of drive.js on a page that throws no shadows, as the engine gl, with these functions in it: studioPaint(NAME) has the weights of a paint
-// of the library, and apart(OURS, THEIRS, NUMBER) how far a picture is from another one in an environment: of the value of a channel, and a
-// hundredth of white. `write` writes the radiances of a paint in an environment, by its number, as raw floats from the upper left corner, four channels a pixel:
-// FOLDER/NAME.f32.
-async function radiances({ browser, folder, value }, size) {
+// Makes a page throw no shadows, as the engine gl, and gives it two functions: studioPaint(NAME) has the weights of a paint of the library, and
+// apart(OURS, THEIRS, NUMBER) how far a picture is from another one in an environment: of the value of a channel, and a hundredth of white.
+// The `write` that is returned writes the radiance of a paint in an environment, by its number, as FOLDER/NAME.f32: raw floats from the upper
+// left corner, four channels a pixel.
+async function radiances({ folder, value }, size) {
   const [width, height] = size.split("x").map(Number), environments = await value("studio.data.environments.map((one) => one.name)");
   await value("(() => { while (studio.stage.occlusion.step()); studio.stage.occlusion.columns = 0; })()");
   await value(`window.studioPaint = (name) => {
@@ -35,7 +35,7 @@ async function radiances({ browser, folder, value }, size) {
     })()`);
     fs.writeFileSync(path.join(folder, name + ".f32"), Buffer.from(base64, "base64"));
   };
-  return { browser, value, width, height, environments, write };
+  return { value, width, height, environments, write };
 }
 
 module.exports = { radiances };

@@ -102,9 +102,12 @@ drive("the views were looked at", { width: 1000, height: 1000 }, async ({ browse
   await choose("environment", views[0]);
   await drawn();
   // Small pictures wait while something moves, and come after that.
-  await value("(() => { Object.assign(studio.stageView, { full_ms: 100 }); studio.tiles.again(); studio.stageView.drawNow(true); })()");
-  await new Promise((resolve) => setTimeout(resolve, 200));
-  check("small pictures wait", await value("studio.tiles.waiting.length > 0 && studio.tiles.timer === undefined"));
+  check("small pictures wait", await value(`(async () => { const { tiles, stageView } = studio;
+    stageView.full_ms = 100;
+    tiles.again();
+    stageView.drawNow(true);
+    await new Promise((done) => setTimeout(done, 100));
+    return tiles.waiting.length > 0 && tiles.timer === undefined; })()`));
   await value("studio.stageView.drawNow(false)");
   await browser.until("studio.tiles.waiting.length === 0", 20);
 

@@ -79,7 +79,8 @@ class GatheredLight {
     const list = needed.filter((layer) => !this.fits(layer, weights, stride > 1 ? firstTolerance : shiftTolerance));
     if (!others) return list;
     const rest = this.layers.list.filter((layer) => (withLamps || !layer.lamps) && !needed.includes(layer) && !held.drawn.has(layer.slot));
-    return [...list, ...rest.slice(0, Math.max(0, room - Math.max(0, held.drawn.size - 1) - list.length))];
+    const kept = held.drawn.size - (held.drawn.has(this.layers.beside) ? 1 : 0);
+    return [...list, ...rest.slice(0, Math.max(0, room - kept - list.length))];
   }
 
   // Draws so many rows of some of the layers that wait, and returns whether there is more to be drawn. Where the view or the light is another
