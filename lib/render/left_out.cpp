@@ -13,7 +13,7 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr int kRounds = 3, kFrames = 3;  // the two take turns, so that a busy moment meets both
+constexpr int kRounds = 2, kFrames = 2;  // the two take turns, so that a busy moment meets both
 constexpr double kLong_ms = 500;         // slower frames are drawn once
 
 Result<void> draw_fastest(Renderer& renderer, const View& view, Frame& frame, double& least_ms) {

@@ -334,15 +334,12 @@ color::Rgb Gatherer::lobe_over_disc(const paint::Lobe& lobe, const Vec3& r, cons
 
 void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped) {
   const double above = (1 - patch.variance) * dot(point_.normal, patch.direction);
+  if (horizon && !(above > 0)) return;
   const BaseLight base(patch, point_.normal, paint_.coat_index);
   color::Rgb f;
   if (above > 0 && mapped) f = above * mapped_toward(patch.direction);
   if (above > 0 && !mapped) f = base.mean() * paint_.diffuse;
-  if (!horizon) {
-    f += lobes_toward(patch, {std::clamp(cos_o_, 0.0, 1.0), paint_.coat_index}, mapped);
-  } else if (above > 0) {
-    f += lobes_toward(patch, base, mapped);
-  }
+  f += lobes_toward(patch, horizon ? base : BaseLight(std::clamp(cos_o_, 0.0, 1.0), paint_.coat_index), mapped);
   if (above > 0 && model_.coat) {
     const double coat = model_.coat->sent(local(patch.direction), local_viewer_).f_cos;
     f += {coat, coat, coat};
@@ -370,27 +367,29 @@ Vec3 Gatherer::local(const Vec3& direction) const {
 }
 
 color::Rgb Gatherer::lobes_toward(const Patch& patch, const BaseLight& base, bool mapped) const {
-  color::Rgb f;
-  const double cos_half = 0.5 * length(patch.direction + point_.to_viewer);
-  const double fresnel = model_.fresnel ? brdf::fresnel_dielectric(std::min(1.0, cos_half), brdf::kCoatIndex) : 1;
+  color::Rgb flake, gloss;
   for (std::size_t j = 0; j < bells_.size(); ++j) {
     const double power = bells_[j].toward(patch.direction);
-    if (power > 0) f += power * (fresnel * lobes_[j].gloss);
-    if (power > 0 && !mapped) f += power * base.mean() * lobes_[j].directional_diffuse;
+    if (!(power > 0)) continue;
+    gloss += power * lobes_[j].gloss;
+    flake += power * base.mean() * lobes_[j].directional_diffuse;
   }
-  if (!bells_.empty()) return f;
   for (const Mirrored& m : mirrored_) {
+    if (!bells_.empty()) break;
     const LobeLight light(patch, m.direction, point_.normal);
     for (std::size_t j = 0; j < lobes_.size(); ++j) {
       const paint::Lobe& lobe = lobes_[j];
       const BlurredLobe blurred = grain_.blurred(lobe.exponent, patch.variance);
       const color::Rgb power = m.share * light.mean(blurred);
       if (power == color::Rgb{}) break;  // as it is for all that are sharper
-      f += power * (fresnel * lobe.gloss);
-      if (!mapped) f += power * base.mean(light.more_cosine(blurred, base)) * lobe.directional_diffuse;
+      gloss += power * lobe.gloss;
+      flake += power * base.mean(light.more_cosine(blurred, base)) * lobe.directional_diffuse;
     }
   }
-  return f;
+  if (mapped) flake = {};
+  if (gloss == color::Rgb{} || !model_.fresnel) return flake + gloss;
+  const double cos_half = 0.5 * length(patch.direction + point_.to_viewer);
+  return flake + brdf::fresnel_dielectric(std::min(1.0, cos_half), brdf::kCoatIndex) * gloss;
 }
 
 TextureGatherer::TextureGatherer(const TexturedPoint& point, const color::ReflectionOperator* reflection,

@@ -51,6 +51,10 @@ class BaseLight {
   BaseLight(double cosine, double coat_index) : mean_(cosine * brdf::coat_transmission(cosine, coat_index)) {}
   BaseLight(const Patch& patch, const Vec3& normal, double coat_index) : cosine_(dot(normal, patch.direction)) {
     if (!(cosine_ > 0)) return;
+    if (patch.variance == 0) {
+      mean_ = cosine_ * brdf::coat_transmission(std::min(cosine_, 1.0), coat_index);
+      return;
+    }
     const brdf::CoatedCosine at = brdf::coated_cosine(std::min(cosine_, 1.0), coat_index);
     mean_ = at.value + patch.variance * (0.5 * at.bend * (1 - cosine_ * cosine_) - at.slope * cosine_);
     slope_ = at.slope;
