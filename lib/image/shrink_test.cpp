@@ -25,5 +25,14 @@ TEST(Shrink, ByOneKeepsThePicture) {
   EXPECT_EQ(same.data, picture.data);
 }
 
+TEST(Enlarged, IsLinearBetweenCentersAndEvenBeyondThem) {
+  const Image picture{2, 2, 1, {0, 4, 8, 12}, {"A"}};
+  const Image large = enlarged(picture, 4, 2);
+  EXPECT_EQ(large.channel_names, picture.channel_names);
+  EXPECT_EQ(large.data, (std::vector<float>{0, 1, 3, 4, 8, 9, 11, 12}));
+  EXPECT_EQ(enlarged(picture, 2, 2).data, picture.data);
+  EXPECT_EQ(enlarged(picture, 1, 1).data, (std::vector<float>{6}));
+}
+
 }  // namespace
 }  // namespace goniochrome::image::shrink_test

@@ -83,6 +83,7 @@ struct FoundMaps {
   bool sums_stopped = false;            // whether nobody sees it, so that they are left out
   // The errors of the maps that are drawn, with their sums, at each point: CIEDE2000. Empty where none was measured.
   std::vector<double> errors_de00;
+  double ms = 0;  // to find them
   double de00_p95() const { return errors_de00.empty() ? 0 : math::percentile_95(errors_de00); }
 };
 

@@ -407,6 +407,7 @@ std::vector<std::string> Renderer::remarks() const {
 
 void Renderer::set_effort(Effort effort) {
   state_->effort_asked = std::move(effort);
+  state_->deadline.reset();
 }
 
 std::string Renderer::opengl() const {

@@ -77,7 +77,7 @@ class Renderer {
   Result<void> draw(const View& view, Frame& frame);
   Result<Frame> draw(const Camera& camera, int width, int height, int samples, bool with_centers = false);
 
-  // For all pictures from now on, by engines that draw by random samples.
+  // For all pictures from now on, by engines that draw by random samples. The time limit of the next one begins anew.
   void set_effort(Effort effort);
 
   // The mesh as it will be seen, before anything is shaded.

@@ -245,11 +245,12 @@ void add_report(cli::ToolSpec& spec) {
       {"plan[]: effect, needed, reason, de00_p95, decision, truth_de00_p95",
        "what each effect changes; the truth with --check and --explain"},
       {"plan_de00_p95, plan_ms, plan_quick",
-       "what all that is left out of maps changes, the time of the plan, and whether rays end after 5 s"},
+       "what is left out of maps changes, the plan's time, and whether rays end after 5 s"},
       {"filtering: was_kept, time_s", "with an image as --env: whether an earlier run filtered it, else the time"},
       {"maps: de00_p95, points", "errors of prefiltered maps in open light"},
       {"rays: noise_de00_p95, error_de00_p95, samples, free_share, reached, ms",
        "errors of rays, and with those of maps; samples of a point"},
+      {"enlarged_from: width, height", "pixels drawn"},
       {"engine, engine_reason", "what shaded the picture: gl, cpu, integral, path or transport"},
       {"transport: points, columns, bytes_per_point", "visible pixels, columns of light, memory of a pixel"},
       {"transport: noise_de00_p95, noise_de00_mean, shown_noise_de00_p95, samples_mean, open_share, trace_s, reached",
@@ -267,16 +268,16 @@ void add_report(cli::ToolSpec& spec) {
       {"pictures[]: name, status, message, file, sheet, cell, time_ms, bounced_de00_p95",
        "of several paints each, done or failed; places are counted from 1"},
       {"failed, files, pictures_per_s, picture_ms", "of several paints; picture_ms has p50, p99 and max"},
-      {"gbuffer_ms, frame_ms", "time to find what one sample shows, and to draw all samples"},
+      {"gbuffer_ms, frame_ms", "time to find what one sample shows, and to draw all"},
       {"triangles, mesh: longest_side, unit_m", "of the mesh; unit_m are the meters that its unit is taken for"},
-      {"parts[]: name, material, paint", "parts of the mesh and what they wear"},
+      {"parts[]: name, material, paint", "what parts wear"},
       {"textures[]: part, file, projection, width", "what --texture laid where"},
       {"exposure_stops, view, white_luminance",
        "exposure, display and view of a PNG, and the brightest that a white diffuser can be"},
-      {"repairs: normals_made, degenerate_dropped, polygons_split, triangles_turned", "what was mended in the mesh"},
+      {"repairs: normals_made, degenerate_dropped, polygons_split, triangles_turned", "of the mesh"},
       {"error: de00_p95_low, de00_p95_high", "its range of one standard error; null: too few pixels"},
       {"error: de00_mean, de00_p95, de00_max, checked_pixels, worst_x, worst_y, time_s, source, against",
-       "of --check; the source is the image that the reference used"},
+       "of --check; source: the image of the reference"},
       {"error: standard_error, fit", "95th percentiles of the noise of the truth, and of what fits miss of readings"},
       {"error: prefilter, occlusion, bounce, noise, worth",
        "95th percentiles of what each cause alone changes, and each effect of rays in the truth"},
@@ -312,12 +313,12 @@ cli::ToolSpec tool_spec(Options& o) {
   add_engines(spec, o);
   add_checking(spec, o);
   add_output(spec, o);
-  cli::add_common_options(
-      spec, o.common,
-      {.explain = true,
-       .time_limit = "each picture by the engine path, rays, and --aov transport",
-       .stopped = "the exit status is 4 where --tolerance was given and missed. Every pixel is drawn regardless",
-       .seed = "the pixels to check, and the samples of the engine path"});
+  cli::add_common_options(spec, o.common,
+                          {.explain = true,
+                           .time_limit = "each picture by the engine path, rays, and --aov transport",
+                           .stopped = "the exit status is 4 where --tolerance was given and missed. A picture with "
+                                      "rays has as many pixels as there is time for, enlarged",
+                           .seed = "the pixels to check, and the samples of the engine path"});
   add_examples(spec);
   add_report(spec);
   add_gone(spec);

@@ -8,6 +8,7 @@
 #include "base/paths.h"
 #include "base/text.h"
 #include "display/display.h"
+#include "in_time.h"
 #include "paint_views.h"
 #include "picture_file.h"
 #include "plan_text.h"
@@ -81,6 +82,7 @@ class Shooting {
   Result<void> look(render::Renderer& renderer);
   Result<render::Plan> load(render::Renderer& renderer, const DressedMesh& dress);
   Result<void> draw(render::Renderer& renderer, const Shot& shot, bool first);
+  Result<void> draw_in_time(render::Renderer& renderer, const Shot& shot, bool first, render::Frame& frame);
   Result<cli::Verdict> shade_transport(const std::optional<display::Display>& display);
   Result<void> write(const Shot& shot, const std::optional<display::Display>& display);
   Result<cli::Verdict> check_picture();
@@ -97,8 +99,9 @@ class Shooting {
   Exposure exposure_;
   render::Plan plan_;
   render::Frame frame_;
-  bool stopped_ = false;     // before the noise was within the tolerance that was asked for
-  bool all_reached_ = true;  // whether that of the pictures by an engine with noise is, asked for or not
+  std::optional<TimedPictures> timed_;  // none: not yet, or pictures take the time that they need
+  bool stopped_ = false;                // before the noise was within the tolerance that was asked for
+  bool all_reached_ = true;             // whether that of the pictures by an engine with noise is, asked for or not
 };
 
 // The scene with the floor of its picture, wherever that is drawn.
@@ -185,9 +188,27 @@ Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool f
       wear(stage_.dresses[i], options_, stage_);
       renderer.load_paints(stage_.scene);
     }
-    GONIO_TRY(renderer.draw(view(shot, 1), i == 0 ? frame_ : other));
+    GONIO_TRY(draw_in_time(renderer, shot, first && i == 0, i == 0 ? frame_ : other));
     if (first) tell_findings(i == 0 ? frame_ : other);
     if (i == 1) put_right_half(other, frame_);
+  }
+  return {};
+}
+
+// A time limit is kept where rays correct a picture; other pictures are drawn whole.
+Result<void> Shooting::draw_in_time(render::Renderer& renderer, const Shot& shot, bool first, render::Frame& frame) {
+  const bool is_timed = session_.common().time_limit_s > 0 && plan_.effects.rays.any() && !request_.transport;
+  if (!is_timed) return renderer.draw(view(shot, 1), frame);
+  if (!timed_) timed_.emplace(stage_.mesh, effort_of(options_, request_, session_));
+  const auto seen = shots_.size() == 1 ? looks_.front() : nullptr;
+  GONIO_TRY(timed_->draw(renderer, view(shot, 1), first ? session_.elapsed_s() : 0, seen, frame));
+  if (const std::optional<PictureSize>& size = timed_->enlarged_from(); first && size) {
+    session_.results()["enlarged_from"] = {{"width", size->width}, {"height", size->height}};
+    session_.warn(
+        fmt::format("--time-limit {} is too short for {} x {} pixels: the picture is enlarged from {} x {}, of which "
+                    "errors are told",
+                    shortest(session_.common().time_limit_s), request_.size.width, request_.size.height, size->width,
+                    size->height));
   }
   return {};
 }
@@ -269,7 +290,8 @@ void Shooting::tell_rays() {
                                 {"free_share", rays.free_share},
                                 {"reached", rays.reached},
                                 {"ms", rays.ms}};
-  const bool late = session_.common().time_limit_s > 0 && session_.common().tolerance_given && !rays.reached;
+  const bool late = session_.common().time_limit_s > 0 && session_.common().tolerance_given &&
+                    (!rays.reached || (timed_ && timed_->enlarged_from()));
   stopped_ |= late;
   constexpr double kWorthTelling = 0.5;
   const double tolerance = session_.common().tolerance, maps = frame_.maps.de00_p95();

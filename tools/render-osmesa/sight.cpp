@@ -38,8 +38,7 @@ void tell_visibility(const render::Gbuffer& gbuffer, const mesh::Mesh& mesh, cli
 
 }  // namespace
 
-Result<render::Renderer> make_renderer(const Options& options, const Request& request, const Stage& stage,
-                                       cli::Session& session) {
+render::Effort effort_of(const Options& options, const Request& request, cli::Session& session) {
   render::Effort effort;
   effort.bounces = options.bounces;
   effort.time_limit_s = request.quick ? kQuick_s : session.common().time_limit_s;
@@ -47,8 +46,13 @@ Result<render::Renderer> make_renderer(const Options& options, const Request& re
   effort.progress = [&session](double noise, double seconds) {
     session.progress(fmt::format("noise {:.2f} dE00 after {:.1f} s", noise, seconds));
   };
+  return effort;
+}
+
+Result<render::Renderer> make_renderer(const Options& options, const Request& request, const Stage& stage,
+                                       cli::Session& session) {
   const auto ready = [&](render::Renderer renderer) {
-    renderer.set_effort(std::move(effort));
+    renderer.set_effort(effort_of(options, request, session));
     if (stage.rays) renderer.set_rays(*stage.rays);
     return Result<render::Renderer>(std::move(renderer));
   };

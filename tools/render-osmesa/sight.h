@@ -12,6 +12,9 @@ namespace goniochrome::tool {
 // A picture of which nothing is asked ends after these seconds.
 constexpr double kQuick_s = 5;
 
+// How much trouble engines take that draw by random samples.
+render::Effort effort_of(const Options& options, const Request& request, cli::Session& session);
+
 // The renderer, with OpenGL for engines that need it. Error: there is none.
 Result<render::Renderer> make_renderer(const Options& options, const Request& request, const Stage& stage,
                                        cli::Session& session);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/clock.h"
 #include "render/exact.h"
 #include "render/integral/integral_engine.h"
 #include "render/internal/seen.h"
@@ -24,6 +25,7 @@ constexpr double kOfBlocks = 0.2;
 }  // namespace
 
 FoundMaps MapAudit::found(const std::shared_ptr<const Gbuffer>& seen, int samples) const {
+  const Stopwatch clock;
   std::vector<VisiblePoint> points = probe_points(probe_pixels({seen}, kAudited), scene, samples);
   std::erase_if(points,
                 [&](const VisiblePoint& point) { return is_pane(scene, static_cast<std::size_t>(point.part)); });
@@ -45,6 +47,7 @@ FoundMaps MapAudit::found(const std::shared_ptr<const Gbuffer>& seen, int sample
   if (texels != nullptr)
     found.errors_de00 = differences(
         shown, exact_radiance(points, scene, effects_of(scene), {*texels, spread_for(kOfBlocks * tolerance_de00)}));
+  found.ms = 1000 * clock.elapsed_s();
   return found;
 }
 
