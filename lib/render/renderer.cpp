@@ -96,7 +96,9 @@ struct Renderer::State : Sight {
   Result<void> meet(const Scene& whole_scene);
   Result<void> add_seen_through(int sample, float gain, image::Image& picture);
   void correct(int first, int count, image::Image& picture, CorrectionNoise& noise);
-  Backdrop backdrop() const { return {effects.background, scene.background_color, ray_setup->environment}; }
+  MeshSurroundings surroundings() const {
+    return {*transport, {effects.background, scene.background_color, ray_setup->environment}, effects.rays};
+  }
   Result<RaySetup> ray_context(const Scene& whole_scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers);
   Result<void> trace(const Scene& whole_scene, bool rough_coats);
   Scene completed(const Scene& scene) const;
@@ -266,7 +268,7 @@ Result<void> Renderer::State::take(int first, int count, image::Image& picture) 
     if (summed() != nullptr) summed()->add(*samples.back(), gain, picture);
     if (effects.panes) GONIO_TRY(add_seen_through(i, gain, picture));
   }
-  if (effects.rays.floor && transport) add_surroundings(*transport, samples, backdrop(), effects.rays, gain, picture);
+  if (effects.rays.floor && transport) surroundings().add(samples, gain, picture);
   return {};
 }
 
@@ -296,7 +298,7 @@ Result<void> Renderer::State::add_seen_through(int sample, float gain, image::Im
     if (!effects.rays.floor || !transport) continue;
     std::fill(shown.data.begin(), shown.data.end(), 0.0F);
     const Gbuffer* one = &behind.gbuffer;
-    add_surroundings(*transport, {&one, 1}, backdrop(), effects.rays, 1, shown);
+    surroundings().add({&one, 1}, 1, shown);
     add_behind(behind, shown, gain, picture);
   }
   return {};
@@ -321,6 +323,13 @@ void Renderer::State::correct(int first, int count, image::Image& picture, Corre
   std::vector<std::shared_ptr<const Gbuffer>> seen;
   std::vector<const Gbuffer*> samples;
   for (int i = first; i < first + count; ++i) samples.push_back(seen.emplace_back(gbuffer(i)).get());
+  if (effects.rays.floor) {
+    request.beside_mesh = [around = surroundings(), &samples](int x, int y) {
+      color::Rgb sum;
+      for (const Gbuffer* sample : samples) sum += around.at(*sample, x, y).value_or(color::Rgb{});
+      return (1.0 / static_cast<double>(samples.size())) * sum;
+    };
+  }
   noise.add(add_correction(*transport, samples, request, before, picture), band.first_kept - band.first,
             band.last_kept - band.first);
 }
@@ -579,8 +588,7 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   }
   if (s.effects.rays.floor && s.transport)
     frame.rays.found.back().de00_p95 =
-        std::max(frame.rays.found.back().de00_p95,
-                 floor_change(*s.transport, *frame.gbuffer, s.backdrop(), s.effects.rays, s.white_luminance));
+        std::max(frame.rays.found.back().de00_p95, s.surroundings().floor_change(*frame.gbuffer, s.white_luminance));
   if (s.effects.sparkle && s.engine->info().is_planned && !frame.gbuffer->triangles.empty())
     Sparkle(s.scene, s.effects).add(*frame.gbuffer, s.effects.rays.any() ? s.ray_mesh.get() : nullptr, frame.picture);
   if (s.maps_found) frame.maps = *s.maps_found;

@@ -91,6 +91,27 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
   [ -s limited.exr ]
 }
 
+@test "a time limit that is too short for all pixels draws fewer, and says so" {
+  shot="${scene/48x36/480x270} --effects auto,+rays"
+  run render-osmesa $shot --time-limit 0.01 --aov normal -o short.exr --report r.json
+  [ "$status" -eq 0 ]
+  [[ $output == *"warning: --time-limit 0.01 is too short for 480 x 270 pixels: the picture is enlarged from 160 x 90"* ]]
+  jq -e '.results.enlarged_from == {width: 160, height: 90} and .results.rays.samples > 0' r.json
+  # An asked tolerance is missed, whatever the small picture errs by.
+  run render-osmesa -q $shot --time-limit 0.01 --tolerance 90 -o missed.exr
+  [ "$status" -eq 4 ]
+  # Pictures of a sequence have as many pixels as its first.
+  render-osmesa -q $shot --time-limit 0.01 --turntable 2 -o turn.exr
+  # With time for all, every pixel is drawn. Buffers have all of them in either case.
+  render-osmesa -q $shot --time-limit 60 --tolerance 8 --aov normal -o whole.exr --report r.json
+  jq -e '.results | has("enlarged_from") | not' r.json
+  oiiotool short.exr --ch normal.X,normal.Y,normal.Z whole.exr --ch normal.X,normal.Y,normal.Z --diff
+  # The small picture is the whole one without its details: the means are the same.
+  mean() { oiiotool "$1" --ch R,G,B --printstats | awk '/Stats Avg/ { print $3 }'; }
+  awk -v a="$(mean short.exr)" -v b="$(mean whole.exr)" 'BEGIN { exit !(a > 0 && a / b < 1.05 && b / a < 1.05) }'
+  for picture in short.exr turn-0001.exr turn-0002.exr; do oiiotool --info "$picture" | grep -q '480 x  270'; done
+}
+
 @test "a picture of which nothing is asked costs no more than is said, and what is asked for is not cut" {
   run render-osmesa $scene --explain -o out.exr --report r.json
   [ "$status" -eq 0 ]
@@ -104,6 +125,15 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
   done
 }
 
+@test "few points of a surface stand out from those beside them" {
+  # Walls of which the box takes about half of the light: whether its rest is summed is decided alike by neighbors.
+  render-osmesa -q ${scene/48x36/240x180} --effects auto,+rays --tolerance 4 -o box.exr
+  oiiotool box.exr --ch R,G,B -o box3.exr --median 3x3 -o median.exr
+  run oiiotool box3.exr median.exr --warn 0.02 --fail 0.02 --diff
+  count=$(sed -nE 's/^ *([0-9]+) pixels .* over 0.02/\1/p' <<<"$output" | tail -1)
+  [ "$count" -lt 860 ]
+}
+
 @test "the mesh stands on the floor of the environment where that is the background" {
   render-osmesa -q $scene --tolerance 2 -o out.exr --report r.json
   [ "$(of needed floor)" = false ]
@@ -113,11 +143,12 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
     [ "$(of decision floor)" = drawn ]
     awk -v worth="$(of de00_p95 floor)" 'BEGIN { exit !(worth > 1) }'
   done
-  # The floor is near that of the engine path: their mean difference is small against the floor's own share.
+  # Beside the box the floor is that of the engine path: their mean difference is small against the floor's own share.
   render-osmesa -q $scene --engine path --tolerance 1 --background env -o path.exr
   render-osmesa -q $scene --tolerance 2 --background env --floor none -o none.exr
   for picture in cpu gl none; do
-    oiiotool path.exr --ch R,G,B $picture.exr --ch R,G,B --absdiff --stats | awk '/Stats Avg/ { print $4 }' >$picture.txt
+    oiiotool path.exr --ch R,G,B $picture.exr --ch R,G,B --absdiff --cut 10x24+38+12 --printstats |
+      awk '/Stats Avg/ { print $4 }' >$picture.txt
   done
   awk -v a="$(cat cpu.txt)" -v b="$(cat gl.txt)" -v c="$(cat none.txt)" 'BEGIN { exit !(a < 0.35 * c && b < 0.35 * c) }'
 }

@@ -67,7 +67,7 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
   floor gl auto,-rays gl
   jq -e '.results.plan[] | select(.effect == "texture-filter") | .needed and .decision == "drawn" and .de00_p95 > 5' with.json
   jq -e '.results.plan[] | select(.effect == "texture-filter") | .decision == "forced off"' without.json
-  spread() { oiiotool "$1.exr" --ch R --cut 16x16+16+16 --stats | sed -n 's/.*Stats StdDev: *\([0-9.]*\).*/\1/p'; }
+  spread() { oiiotool "$1.exr" --ch R --cut 16x16+16+16 --printstats | sed -n 's/.*Stats StdDev: *\([0-9.]*\).*/\1/p'; }
   awk -v with="$(spread with)" -v without="$(spread without)" 'BEGIN { exit !(with < 0.2 * without) }'
   oiiotool with.exr gl.exr --fail 0.002 --diff
 }

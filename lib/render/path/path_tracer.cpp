@@ -118,30 +118,48 @@ class Picture {
     return fours;
   }
 
-  // True where the mesh takes most of the light about a point on its part; at an edge, about it or in its own pixel.
-  bool is_hidden(std::size_t i) const {
-    // A pane shows what is behind it as well, of which the sum knows nothing.
-    for (const Gbuffer* sample : seen_)
-      if (transport_.meets_pane({sample->triangles[place(points_[i])]})) return false;
+  // Visits the points about one on its part or, at an edge, all about it.
+  template <class Visit>
+  void visit_alike(std::size_t i, const Visit& visit) const {
     const bool even = is_even(i);
     const auto part_of = [this](std::size_t k) { return first_seen_.at(points_[k].x, points_[k].y)[3]; };
-    const auto taken_at = [this](std::size_t k) { return -(first_shares(k).direct + first_shares(k).from_floor).y; };
-    double base = 0, taken = 0;
     // Far enough that several points are sampled there: by one or two it would be decided by chance.
-    const int reach = std::max(PixelPoints::kReach, spacing_);
-    by_pixel_.visit_within(reach, points_[i].x, points_[i].y, [&](std::size_t k) {
-      if (is_unknown(k) || (even && !(is_even(k) && part_of(k) == part_of(i)))) return;
-      base += base_at(points_[k]).y, taken += taken_at(k);
+    by_pixel_.visit_within(std::max(PixelPoints::kReach, spacing_), points_[i].x, points_[i].y, [&](std::size_t k) {
+      if (!even || (is_even(k) && part_of(k) == part_of(i))) visit(k);
     });
-    return taken > kMostlyHidden * base || (!even && taken_at(i) > kMostlyHidden * base_at(points_[i]).y);
   }
 
-  // Hidden points begin anew, by other numbers than those that decided it.
+  // A sum takes the place of the light of the mesh alone, which must be known. A pane shows what is behind it as well,
+  // of which the sum knows nothing.
+  bool can_be_summed(std::size_t i) const {
+    const auto meets_pane = [&](const Gbuffer* sample) {
+      return transport_.meets_pane({sample->triangles[place(points_[i])]});
+    };
+    return !states_[i].certain && (points_[i].coverage == 1 || request_.beside_mesh) &&
+           std::ranges::none_of(seen_, meets_pane);
+  }
+
+  // True where the mesh takes most of the light about a point; at an edge, about it or in its own pixel.
+  bool is_hidden(std::size_t i) const {
+    const auto taken_at = [this](std::size_t k) { return -(first_shares(k).direct + first_shares(k).from_floor).y; };
+    double base = 0, taken = 0;
+    visit_alike(i, [&](std::size_t k) {
+      if (!is_unknown(k)) base += base_at(points_[k]).y, taken += taken_at(k);
+    });
+    return taken > kMostlyHidden * base || (!is_even(i) && taken_at(i) > kMostlyHidden * base_at(points_[i]).y);
+  }
+
+  // Hidden points begin anew, by other numbers than those that decided it. Most of the points about one decide again:
+  // filters would leave out one that is not like its neighbors.
   void sum_where_hidden() {
     std::vector<int> more(points_.size(), 0);
-    each_point([&](std::size_t i) { states_[i].hidden = !states_[i].certain && is_hidden(i); });
+    std::vector<char> hidden(points_.size());
+    each_point([&](std::size_t i) { hidden[i] = can_be_summed(i) && is_hidden(i) ? 1 : 0; });
     each_point([&](std::size_t i) {
       PointState& state = states_[i];
+      int most = hidden[i];
+      if (is_even(i)) visit_alike(i, [&](std::size_t k) { most += 2 * hidden[k] - 1; });
+      state.hidden = most > 0 && can_be_summed(i);
       if (!state.hidden) return;
       state.looked = false;
       if (request_.reconstruct) shown_[i] = kNotShown;
@@ -267,7 +285,7 @@ class Picture {
     by_pixel_.visit_around(point.x, point.y, [&](std::size_t i) {
       if (is_unknown(i)) return;
       sum.shares += first_shares(i);
-      if (base_ != nullptr) sum.base += base_at(points_[i]);
+      sum.base += base_at(points_[i]);
       ++count;
     });
     return {(1.0 / count) * sum.shares, (1.0 / count) * sum.base};
@@ -279,7 +297,7 @@ class Picture {
     for (std::size_t i = step / 2; i < points_.size(); i += step) {
       while (i < points_.size() && is_unknown(i)) ++i;
       if (i == points_.size()) break;
-      own.push_back({first_shares(i), base_ != nullptr ? base_at(points_[i]) : color::Rgb{}});
+      own.push_back({first_shares(i), base_at(points_[i])});
       smooth.push_back(mean_around(points_[i]));
     }
     found_ = found_shares(own, smooth, request_.stop_de00, request_.white_luminance);
@@ -300,8 +318,7 @@ class Picture {
       Halves kept;
       for (std::size_t k = 0; k < Round::kSequences; ++k)
         drawn[k] = sum_of(first_[state.sampled][k], drawn_), kept[k] = sum_of(first_[state.sampled][k], stopped);
-      const color::Rgb shown = (base_ != nullptr ? base_at(points_[i]) : color::Rgb{}) + first_shares(i).sum(),
-                       error = 0.5 * (kept[0] - kept[1]);
+      const color::Rgb shown = base_at(points_[i]) + first_shares(i).sum(), error = 0.5 * (kept[0] - kept[1]);
       state.all_shares =
           seen_difference(shown, shown + error, request_.white_luminance) > kSpeck * request_.tolerance_de00;
       if (state.all_shares) return;
@@ -335,7 +352,7 @@ class Picture {
   }
 
   bool are_alike(std::size_t i, const Look& a, const Look& b) const {
-    const color::Rgb base = base_ != nullptr && !states_[i].hidden ? base_at(points_[i]) : color::Rgb{};
+    const color::Rgb base = states_[i].hidden ? color::Rgb{} : base_at(points_[i]);
     const color::Rgb one = a.at.deterministic(), other = b.at.deterministic();
     return one == other ||
            seen_difference(base + one, base + other, request_.white_luminance) <= kAlike * request_.tolerance_de00;
@@ -365,7 +382,7 @@ class Picture {
       show(i, spot, share);
       if (!at.certain()) state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);
     }
-    if (first_time && state.hidden) state.deterministic += -1.0 * base_at(points_[i]);
+    if (first_time && state.hidden) state.deterministic += -1.0 * base_of_mesh(points_[i]);
     state.certain = state.uncertain == 0;
     if (state.certain || fours == 0) return;
     const int uncertain = std::popcount(state.uncertain);
@@ -438,7 +455,7 @@ class Picture {
     std::vector<Halves> halves(points_.size());
     std::vector<color::Rgb> beside(points_.size());
     each_point([&](std::size_t i) {
-      beside[i] = (base_ != nullptr ? base_at(points_[i]) : color::Rgb{}) + states_[i].deterministic;
+      beside[i] = base_at(points_[i]) + states_[i].deterministic;
       for (std::size_t k = 0; k < 2; ++k) {
         halves[i][k] = sums(i).halves()[k] + kept(i)[k];
         if (is_unknown(i)) halves[i][k] = kUnknown;
@@ -494,14 +511,17 @@ class Picture {
   // The fours of a point. Where its neighbors tell its light, it has as many as they got at first.
   int counted(std::size_t i) const { return is_unknown(i) ? kFirstFours : sums(i).fours(); }
 
-  double noise_of(std::size_t i, color::Rgb radiance, const Covariance& covariance) const {
-    if (base_ != nullptr) radiance += base_at(points_[i]);
-    return noise_de00(radiance, covariance, request_.white_luminance);
+  double noise_of(std::size_t i, const color::Rgb& radiance, const Covariance& covariance) const {
+    return noise_de00(base_at(points_[i]) + radiance, covariance, request_.white_luminance);
   }
 
   color::Rgb base_at(const PathPoint& point) const {
+    if (base_ == nullptr) return {};
     const float* rgb = base_->pixel(point.x, point.y);
     return {rgb[0], rgb[1], rgb[2]};
+  }
+  color::Rgb base_of_mesh(const PathPoint& point) const {
+    return point.coverage == 1 ? base_at(point) : base_at(point) - request_.beside_mesh(point.x, point.y);
   }
 
   // The noise that may be left where other errors take up the tolerance.

@@ -30,6 +30,8 @@ struct PathRequest {
   int most_samples = 1 << 16;  // of a pixel
   double white_luminance = 1;  // what noise is seen before
   std::uint64_t seed = 1;
+  // Tells what a pixel shows beside the mesh, as the mean over its samples; null: not known.
+  std::function<color::Rgb(int x, int y)> beside_mesh = {};
   // The number of samples of a pixel, as sample_shifts() has them; with 1 the pixel centers are seen. Paths are spread
   // over them.
   int pixel_samples = 1;

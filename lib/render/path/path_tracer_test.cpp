@@ -357,6 +357,45 @@ TEST(PathPicture, EdgesInTheDarkShowTheLightThatIsLeft) {
   EXPECT_GT(too_dark(picture_of(true, true, 64, nullptr)), 0) << "the control: what is taken away";
 }
 
+// Where the light that is left is summed, a pixel at an edge keeps what it shows beside the mesh.
+TEST(PathPicture, EdgesInTheDarkKeepWhatIsBesideThem) {
+  const auto stage = ball_in_a_cup();
+  constexpr int kWidth = 48, kHeight = 36;
+  constexpr double kBackground = 2;
+  Camera camera = from_above();
+  camera.fov_deg *= 2;
+  const std::vector<Gbuffer> samples = four_samples(*stage, camera, kWidth, kHeight);
+  PathRequest request;
+  request.options.bounces = 2, request.tolerance_de00 = 0, request.most_samples = 1024;
+  const std::vector<PathPoint> truth = path_picture(*stage->transport, pointers(samples), nullptr, request).points;
+  request.options.correction = true;
+  const std::vector<PathPoint> change = path_picture(*stage->transport, pointers(samples), nullptr, request).points;
+  image::Image base = without(change, truth, kWidth, kHeight), background = image::even_image(kWidth, kHeight, 1);
+  for (const PathPoint& point : truth) {
+    *background.pixel(point.x, point.y) = static_cast<float>(kBackground * (1 - point.coverage));
+    for (int c = 0; c < 3; ++c) base.pixel(point.x, point.y)[c] += *background.pixel(point.x, point.y);
+  }
+  request.reconstruct = true, request.most_samples = 64;
+  const auto lost = [&](const std::function<color::Rgb(int, int)>& beside_mesh) {
+    request.beside_mesh = beside_mesh;
+    const std::vector<PathPoint> drawn = path_picture(*stage->transport, pointers(samples), &base, request).points;
+    int count = 0;
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+      const double beside = *background.pixel(drawn[i].x, drawn[i].y);
+      count += base.pixel(drawn[i].x, drawn[i].y)[1] + drawn[i].radiance.y < 0.9 * beside;
+    }
+    return count;
+  };
+  EXPECT_EQ(lost([&](int x, int y) {
+              const double light = *background.pixel(x, y);
+              return color::Rgb{light, light, light};
+            }),
+            0);
+  EXPECT_EQ(lost(nullptr), 0) << "what is not known is not summed";
+  EXPECT_GT(lost([](int, int) { return color::Rgb{}; }), 0)
+      << "the control: what is beside the mesh counts as its light";
+}
+
 // A first round that leaves out points of smooth pieces takes fewer samples, and neighbors tell the points that were
 // left out: each has an error, and what is told of the picture is its error. The truth is a picture that is not
 // smoothed.

@@ -22,8 +22,7 @@ color::Rgb Backdrop::at(const rays::Float3& direction) const {
   return environment->blended(rays::vec3(direction));
 }
 
-double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Backdrop& backdrop,
-                    const RayEffects& effects, double white_luminance) {
+double MeshSurroundings::floor_change(const Gbuffer& gbuffer, double white_luminance) const {
   constexpr std::size_t kPoints = 1024;
   std::vector<double> de00;
   for (const RayPoint& point : floor_points(transport.rays(), gbuffer, kPoints))
@@ -49,24 +48,23 @@ void CorrectionNoise::add(const PathPicture& one, int first, int last) {
   take_in(free_share, one.free_share), take_in(samples, one.samples_mean);
 }
 
-void add_surroundings(const Transport& transport, PixelSamples samples, const Backdrop& backdrop,
-                      const RayEffects& effects, float gain, image::Image& picture) {
+std::optional<color::Rgb> MeshSurroundings::at(const Gbuffer& g, int x, int y) const {
+  if (g.part(x, y) >= 0) return std::nullopt;
   const rays::RayScene& scene = transport.rays();
+  const rays::Float3 eye = scene.local(g.rays.eye), direction = -rays::float3(g.to_viewer(x, y));
+  const rays::Hit hit = floor_hit(scene, eye, direction);
+  if (hit.any()) return transport.shaded_ground(scene.spot(hit, eye, direction)).shown(effects);
+  if (backdrop.background == Background::kNone) return std::nullopt;
+  return backdrop.at(direction);
+}
+
+void MeshSurroundings::add(PixelSamples samples, float gain, image::Image& picture) const {
   const Gbuffer& first = *samples.front();
-  const rays::Float3 eye = scene.local(first.rays.eye);
-  const auto shown = [&](const Gbuffer& g, int x, int y) -> std::optional<color::Rgb> {
-    if (g.part(x, y) >= 0) return std::nullopt;
-    const rays::Float3 direction = -rays::float3(g.to_viewer(x, y));
-    const rays::Hit hit = floor_hit(scene, eye, direction);
-    if (hit.any()) return transport.shaded_ground(scene.spot(hit, eye, direction)).shown(effects);
-    if (backdrop.background == Background::kNone) return std::nullopt;
-    return backdrop.at(direction);
-  };
   for_pixels(first.width, first.height, [&](int x, int y) {
     float* pixel = &picture.data[first.index(x, y) * static_cast<std::size_t>(picture.channels)];
     for (const Gbuffer* sample : samples) {
       if (!sample->wants(x, y)) return;
-      const std::optional<color::Rgb> light = shown(*sample, x, y);
+      const std::optional<color::Rgb> light = at(*sample, x, y);
       if (!light) continue;
       if (picture.channels > 3) pixel[3] += gain;
       for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>((*light)[c]);

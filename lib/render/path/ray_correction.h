@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "image/image.h"
 #include "render/effects.h"
@@ -41,14 +42,19 @@ struct Backdrop {
   color::Rgb at(const rays::Float3& direction) const;
 };
 
-// The change of the background by the floor, at 95 of 100 pixels that show it: CIEDE2000 to the backdrop.
-double floor_change(const Transport& transport, const Gbuffer& gbuffer, const Backdrop& backdrop,
-                    const RayEffects& effects, double white_luminance);
+// A picture shows these beside the mesh: the floor, whose ground is shaded, or, above the horizon, the background.
+struct MeshSurroundings {
+  const Transport& transport;
+  Backdrop backdrop;
+  RayEffects effects;
 
-// Adds `gain` times what each of these samples of the pixels shows beside the mesh: the floor, whose ground is shaded,
-// or, above the horizon, the background. Where these points are the floor, it adds their coverage.
-void add_surroundings(const Transport& transport, PixelSamples samples, const Backdrop& backdrop,
-                      const RayEffects& effects, float gain, image::Image& picture);
+  // The light of a pixel; nothing where that shows the mesh, or no background.
+  std::optional<color::Rgb> at(const Gbuffer& gbuffer, int x, int y) const;
+  // Adds `gain` times that light at each of these samples of the pixels, and its coverage.
+  void add(PixelSamples samples, float gain, image::Image& picture) const;
+  // The change of the background by the floor, at 95 of 100 pixels that show it: CIEDE2000 to the backdrop.
+  double floor_change(const Gbuffer& gbuffer, double white_luminance) const;
+};
 
 // Adds the correction, the mean over these samples of each pixel, to the first three channels of the picture, which
 // holds radiance times coverage.

@@ -32,7 +32,7 @@ image::Image beside_mesh(const Stage& stage, const Transport& transport,
   picture.data.assign(std::size_t{3} * kWidth * kHeight, 0);
   const Backdrop backdrop{Background::kEnvironment, {}, &*stage.environment};
   for (const auto& group : groups)
-    add_surroundings(transport, group, backdrop, {true, true, true, true}, 0.25F, picture);
+    MeshSurroundings{transport, backdrop, {true, true, true, true}}.add(group, 0.25F, picture);
   return picture;
 }
 
