@@ -43,7 +43,9 @@ told() {
   cmp lib.svg "$TESTDATA/paints.paints.xml"
   told 2 "--output and --cloud" colorsnap -l lib.xml "$TESTDATA/paints.paints.xml" --cloud out.svg -o out.svg
   told 2 "--error-map and --output" fit-sbrdf "$TESTDATA/capture/photos.csv" --error-map out.exr -o out.exr
-  [ ! -e near.tsv ] && [ ! -e out.svg ] && [ ! -e out.exr ]
+  [ ! -e near.tsv ]
+  [ ! -e out.svg ]
+  [ ! -e out.exr ]
 }
 
 @test "a paint that there is not is told with the one that may be meant" {
@@ -91,7 +93,8 @@ told() {
   told 3 "studio.env.exr: is prefiltered already: give the image that it was made from, $TESTDATA/studio.exr" \
     prefilter-envmap -e 4 studio.env.exr -o twice.env.exr
   told 3 'studio.env.exr: is a prefiltered environment' relight --from D65 --to A studio.env.exr -o evening.exr
-  [ ! -e twice.env.exr ] && [ ! -e evening.exr ]
+  [ ! -e twice.env.exr ]
+  [ ! -e evening.exr ]
 }
 
 @test "a table of points is read as spreadsheets save it" {

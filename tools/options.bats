@@ -75,7 +75,8 @@ options() {
   [ "$(paint-convert -q "$library#candy_red" | names)" = candy_red ]
   [ "$(paint-edit -q --hue-shift 1 "$library#candy_red" | names)" = candy_red ]
   silvers=$(paint-convert -q "$library#silver_*" | names)
-  [[ "$silvers" == *" "* ]] && [[ "$silvers" != *candy* ]]
+  [[ "$silvers" == *" "* ]]
+  [[ "$silvers" != *candy* ]]
   [ "$(fit-paint -q --basis "$top/testdata/b7.basis.xml" "$library#silver_*" -o fitted.xml && names <fitted.xml)" = "$silvers" ]
   [ "$(paint-stats -q "$library#silver_*" | tail -n +2 | cut -f1 | paste -sd' ')" = "$silvers" ]
   [ "$(goniogeom-index -q --worst "$library#candy_red,silver_*" 2>/dev/null | tail -n +2 | wc -l)" -eq $((1 + $(wc -w <<<"$silvers"))) ]

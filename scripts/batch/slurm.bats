@@ -35,7 +35,8 @@ teardown() {
   wait "$workflow"
   same_as_undisturbed farmed
   pictures farmed | comm -23 drawn - >drawn_again
-  [ -s drawn ] && [ ! -s drawn_again ]
+  [ -s drawn ]
+  [ ! -s drawn_again ]
   shards=$(find farmed/shards -name done.json | wc -l)
   [ "$(count finished farmed)" -eq "$shards" ]
   # Only shards whose job was killed begin again: at most the two killed above, and two that the controller has forgotten.

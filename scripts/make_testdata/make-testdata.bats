@@ -31,5 +31,6 @@ described() { oiiotool --info -v "$1" | sed 1,2d; }
   run oiiotool --info "$BATS_TEST_TMPDIR/large/wood.sbrdf.exr"
   [[ $output == *"256 x  256, 12 channel"* ]]
   run "$BATS_TEST_DIRNAME/../make-testdata" --out "$BATS_TEST_TMPDIR/large" --only wood.sbrdf.exr --size 100
-  [ "$status" -eq 2 ] && [[ $output == *"--size 100 is not a multiple of 128"* ]]
+  [ "$status" -eq 2 ]
+  [[ $output == *"--size 100 is not a multiple of 128"* ]]
 }

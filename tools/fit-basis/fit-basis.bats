@@ -17,7 +17,9 @@ quick=(--lobes 2 --starts 1)
   run fit-basis --lobes 1..3 --starts 1 --each set- --table sets.csv --plot sets.svg --report r.json \
     "$TESTDATA/paints.paints.xml" -o b.basis.xml
   [ "$status" -eq 0 ]
-  [ -e set-1.basis.xml ] && [ -e set-2.basis.xml ] && [ -e set-3.basis.xml ]
+  [ -e set-1.basis.xml ]
+  [ -e set-2.basis.xml ]
+  [ -e set-3.basis.xml ]
   [ "$(wc -l <sets.csv)" -eq 4 ]
   # Three lobes of the sample library are all but regular in log space.
   awk -F, 'NR == 1 { exit !($5 == "log_regularity") } ' sets.csv
@@ -35,7 +37,8 @@ quick=(--lobes 2 --starts 1)
   for threads in 1 2 7; do
     fit-basis --lobes 2 --starts 4 --seed 9 --threads $threads --quiet "$TESTDATA/paints.paints.xml" -o $threads.xml
   done
-  diff 1.xml 2.xml && diff 1.xml 7.xml
+  diff 1.xml 2.xml
+  diff 1.xml 7.xml
 }
 
 @test "a large library is searched on paints that represent it" {

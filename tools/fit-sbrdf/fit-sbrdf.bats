@@ -111,7 +111,8 @@ EOF
   }
   corners '"0,0,24,0,24,16,0,16"'
   run fit-sbrdf -n 1 --width 2 --texels 24x16 --explain -o map.sbrdf.exr p.csv
-  [ "$status" -eq 0 ] && [[ "$output" = *"1 photographs are rectified from their corners"* ]]
+  [ "$status" -eq 0 ]
+  [[ "$output" = *"1 photographs are rectified from their corners"* ]]
   corners '"2,2,8,5,14,8,0,16"'
   refused "stripes-03.png: the upper right corner is on the line through its neighbors" --texels 24x16 p.csv
   corners '"24,0,0,0,24,16,0,16"'
@@ -138,7 +139,7 @@ EOF
   paint-sbrdf -q tilted.sbrdf.exr --size 12x8 -o laid.sbrdf.exr
   for map in map up tilted laid; do draw $map; done
   idiff -q -fail 0.001 -warn 1 map.exr up.exr
-  ! idiff -q -fail 0.02 -warn 1 map.exr tilted.exr
+  ! idiff -q -fail 0.02 -warn 1 map.exr tilted.exr || false
   idiff -q -fail 0.02 -failpercent 5 -warn 1 tilted.exr laid.exr
 }
 

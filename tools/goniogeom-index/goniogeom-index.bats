@@ -258,7 +258,9 @@ column() { sed -n 2p | cut -f "$1"; }
     print "</spectrum>" }'; }
   {
     echo "$head<paint name=\"turning\"><measurement illuminant=\"D65\" observer=\"10\"><lab geometry=\"45as15\" L=\"50\" a=\"0\" b=\"0\"/>"
-    spectrum 45as15 0 1 && spectrum 45as45 0.3 1 && spectrum 45as110 0.9 1
+    spectrum 45as15 0 1
+    spectrum 45as45 0.3 1
+    spectrum 45as110 0.9 1
     echo "</measurement></paint><paint name=\"gray\" class=\"solid\">$gray</paint></paints>"
   } >spectra.xml
   run --separate-stderr goniogeom-index spectra.xml --views 0 --light 45 --illuminant D65,A

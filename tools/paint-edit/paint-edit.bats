@@ -48,8 +48,8 @@ names() { xmllint --xpath "//*[local-name()='paint']/@name" "$1" | sed -E 's/.*"
   run paint-edit one.paints.xml --hue-shift 90 -o out.paints.xml
   [ "$status" -eq 0 ]
   [[ $output == *"paints: 1 read, 1 edited, 1 written; dropped because they no longer hold: lobes"* ]]
-  ! grep -q '<lobe' out.paints.xml
-  ! grep -q instrument out.paints.xml
+  ! grep -q '<lobe' out.paints.xml || false
+  ! grep -q instrument out.paints.xml || false
   printf '%.6f %.6f\n' "$(attribute out.paints.xml one "$(child appearance)$(child face)/@a")" \
     "$(attribute out.paints.xml one "$(child appearance)$(child face)/@b")" >got
   grep -qx -- '-20.000000 40.000000' got
@@ -131,7 +131,7 @@ names() { xmllint --xpath "//*[local-name()='paint']/@name" "$1" | sed -E 's/.*"
   [ "$(names out.paints.xml) $(attribute out.paints.xml two /@code) $(attribute out.paints.xml two /@class)" = "two X2 pearl" ]
   grep -q '<lobe' out.paints.xml # the color did not move
   paint-edit out.paints.xml --quiet --anisotropy 0,0 -o round.paints.xml
-  ! grep -q '<anisotropy' round.paints.xml
+  ! grep -q '<anisotropy' round.paints.xml || false
   paint-edit out.paints.xml --quiet --flakes 40,0.2 --report r.json -o coarse.paints.xml
   grep -q '<flakes diameter_um="40" coverage="0.2" spread_deg="0.5"/>' coarse.paints.xml
   jq -e '.results.changes[0].after.flakes == [40, 0.2, 0.5]' r.json
@@ -141,7 +141,7 @@ names() { xmllint --xpath "//*[local-name()='paint']/@name" "$1" | sed -E 's/.*"
   paint-edit fitted.paints.xml --quiet --flop-shift 1,0,0 -o moved.paints.xml
   grep -q '<flakes diameter_um="40" coverage="0.2" spread_deg="0.5"/>' moved.paints.xml
   paint-edit moved.paints.xml --quiet --flakes 0,0 -o none.paints.xml
-  ! grep -q '<flakes' none.paints.xml
+  ! grep -q '<flakes' none.paints.xml || false
   run paint-edit "$library" --rename two -o all.paints.xml
   [ "$status" -eq 2 ]
   [[ $output == *"--rename is for one paint"* ]]
@@ -153,7 +153,7 @@ names() { xmllint --xpath "//*[local-name()='paint']/@name" "$1" | sed -E 's/.*"
   [ "$status" -eq 0 ]
   [[ $output == *"one: clipped: flop: L* -20.00 to 0"* ]]
   [[ $output == *"one: clipped: flop: chroma 10.00 to 0, as black has none"* ]]
-  ! grep -qE ' L="0" a="[^0]' out.paints.xml
+  ! grep -qE ' L="0" a="[^0]' out.paints.xml || false
   [ "$(attribute out.paints.xml one "$(child measurement)$(child lab)[1]/@a")" = 40 ]
 }
 

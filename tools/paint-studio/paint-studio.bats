@@ -60,7 +60,7 @@ make_page() { paint-studio --mesh "$mesh" --env small.env.exr --basis small.basi
   [[ "$policy" =~ "default-src 'none'" ]]
   [[ ! "$policy" =~ unsafe-inline ]]
   [[ ! "$policy" =~ "'unsafe-eval'" ]]
-  ! grep -oE '(src|href)="[^"]*"' page.html
+  ! grep -oE '(src|href)="[^"]*"' page.html || false
   # The hashes in the policy are those of the script and the style.
   for tag in script style; do
     hash=$(awk "/^<$tag>/ { inside = 1; sub(/^<$tag>/, \"\") } inside { if (/<\\/$tag>/) { sub(/<\\/$tag>.*/, \"\"); printf \"%s\", \$0; exit } print }" page.html |
@@ -84,8 +84,8 @@ print(base64.b64encode(hashlib.sha256(sys.stdin.buffer.read()).digest()).decode(
   run make_page hostile.paints.xml --title '<script>' -o page.html
   [ "$status" -eq 0 ]
   [[ "$output" =~ "1 paints have a color map, which the page does not draw" ]]
-  ! grep -q 'onerror=alert(1)>' page.html || ! grep -q '<img' page.html
-  ! grep -q '<title><script>' page.html
+  ! grep -q 'onerror=alert(1)>' page.html || ! grep -q '<img' page.html || false
+  ! grep -q '<title><script>' page.html || false
   [ "$(grep -o '</script>' page.html | wc -l)" -eq 6 ]
   # The paints are JSON, and hold the name as it is.
   sed -n 's|^<script type="application/json" id="paints">\(.*\)</script>$|\1|p' page.html >paint.json

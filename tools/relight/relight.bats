@@ -35,7 +35,8 @@ sensors() { printf 'nm,r,g,b\n400,0,0,2\n450,0,.5,2\n500,.2,1,.5\n550,.8,2,0\n60
 @test "standard input goes to standard output" {
   relight -q --from D65 --to A <"$sky" >a.exr
   relight -q --from D65 --to A - -o - <"$sky" >b.exr
-  [ -s a.exr ] && [ -s b.exr ]
+  [ -s a.exr ]
+  [ -s b.exr ]
 }
 
 @test "a light that cannot be divided by is refused with its condition number" {
@@ -162,7 +163,7 @@ sensors() { printf 'nm,r,g,b\n400,0,0,2\n450,0,.5,2\n500,.2,1,.5\n550,.8,2,0\n60
   # By position, blue was red.
   sed 1d rgb.csv | awk -F, -v OFS=, '{ print $1, $4, $3, $2 }' >nameless.csv
   relight -q --estimate nameless.csv -o nameless.json
-  ! cmp -s rgb.json nameless.json
+  ! cmp -s rgb.json nameless.json || false
   awk -F, -v OFS=, 'NR > 1 { $1 += 500 } 1' rgb.csv >infrared.csv
   run --separate-stderr relight --estimate infrared.csv
   [ "$status" -eq 3 ]

@@ -42,7 +42,8 @@ far() { oiiotool "$1" --ch R,G,B "$2" --ch R,G,B --absdiff --printstats | awk '/
   [ "$status" -eq 0 ]
   [[ "$output" =~ ", by OSMesa" ]] || skip "OSMesa: not installed"
   [ "$(jq -r .results.opengl_library o.json)" = OSMesa ]
-  [ "$(jq .results.opengl r.json)" = "$(jq .results.opengl o.json)" ] && [ -z "$(far egl.exr osmesa.exr)" ]
+  [ "$(jq .results.opengl r.json)" = "$(jq .results.opengl o.json)" ]
+  [ -z "$(far egl.exr osmesa.exr)" ]
   render-osmesa -q $view --engine gl --light -60,50 -o control.exr
   [ -n "$(far egl.exr control.exr)" ]
 }

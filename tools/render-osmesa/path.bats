@@ -76,7 +76,7 @@ refused() { # STATUS TEXT ARGUMENTS...
   render-osmesa -q $table --env sky.env.exr --engine path --tolerance 1 --threads 3 -o c.exr
   oiiotool b.exr c.exr --diff >/dev/null
   render-osmesa -q $table --env sky.env.exr --engine path --tolerance 1 --seed 2 -o d.exr
-  ! oiiotool b.exr d.exr --diff >/dev/null 2>&1
+  ! oiiotool b.exr d.exr --diff >/dev/null 2>&1 || false
 }
 
 @test "a time limit ends it with status 4 and the best picture so far" {
@@ -113,7 +113,7 @@ refused() { # STATUS TEXT ARGUMENTS...
   [ "$(pixel none.exr 5 40)" = "$(pixel none.exr 60 40)" ]
   read -r dark _ _ alpha <<<"$(pixel black.exr 5 40)"
   holds "$dark == 0 && $alpha == 1"
-  ! oiiotool shadow.exr deep.exr --diff >/dev/null 2>&1
+  ! oiiotool shadow.exr deep.exr --diff >/dev/null 2>&1 || false
 }
 
 @test "a lamp is all the light there is, and auto takes the engine for it" {
@@ -167,7 +167,7 @@ refused() { # STATUS TEXT ARGUMENTS...
   prefilter-envmap -q sun.exr --exponents 3 --size 8 -o sun.env.exr
   render-osmesa -q $table --env sun.env.exr --background env --engine path --time-limit 5 --report r.json -o a.exr || [ $? -eq 4 ]
   [[ "$(result "['noise_de00_p95']")" =~ ^[0-9.e-]+$ ]]
-  ! mean a.exr | grep -qiE 'nan|inf'
+  ! mean a.exr | grep -qiE 'nan|inf' || false
   printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >one.obj
   render-osmesa -q --mesh one.obj --paint paints.xml#gray --env even.env.exr --engine path --size 32x24 --samples 4 --background env --tolerance 2 -o a.exr
   sed 's/^v 1 1 1$/v nan 1 1/' table.obj >nan.obj

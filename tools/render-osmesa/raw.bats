@@ -32,7 +32,8 @@ same() { [ "$(oiiotool "$1" "$2" --diff | tail -1)" = PASS ]; }
   [ "$status" -eq 0 ]
   [[ ! "$output" =~ filtered ]]
   jq -e '.results.filtering.was_kept' second.json
-  same usual.exr first.exr && same first.exr second.exr
+  same usual.exr first.exr
+  same first.exr second.exr
   # Another paint of the basis, and the same image under another name, find the same maps; other lobes do not.
   cp small.exr other.exr
   render-osmesa -q $view -p fitted.xml#silver_fine --env other.exr -o silver.exr
@@ -47,7 +48,7 @@ same() { [ "$(oiiotool "$1" "$2" --diff | tail -1)" = PASS ]; }
   run $draw -o second.exr
   [[ "$output" =~ "filtered by 9 lobes" ]]
   [ "$(kept)" -eq 2 ]
-  ! same first.exr second.exr
+  ! same first.exr second.exr || false
 }
 
 @test "runs at the same time all end well, and leave one file" {
@@ -67,7 +68,8 @@ same() { [ "$(oiiotool "$1" "$2" --diff | tail -1)" = PASS ]; }
   printf garbage >"$cache"/*.env.exr
   run $draw --no-cache -o c.exr
   [[ "$output" =~ "filtered by 9 lobes" ]]
-  same a.exr b.exr && same a.exr c.exr
+  same a.exr b.exr
+  same a.exr c.exr
 }
 
 @test "a damaged file of the cache is made again" {

@@ -150,7 +150,8 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   part=$(sed -n 's/^[og] //p' "$shape" | head -1)
   prefilter-envmap -q small.exr -e 4,16 -o blunt.env.exr
   run render-osmesa -q --mesh "$shape" --env blunt.env.exr $small --texture "$part=$texture" -o blunt.exr
-  [ "$status" -eq 3 ] && [ ! -e blunt.exr ]
+  [ "$status" -eq 3 ]
+  [ ! -e blunt.exr ]
   [[ "$output" =~ "a texture has lobes of exponents from "[0-9.]+" to "([0-9.]+)", but the maps of the environment reach from 1 to 16" ]]
   [[ "$output" == *"\`prefilter-envmap small.exr --exponents 1,4,16,${BASH_REMATCH[1]} -o ENV.env.exr\`"* ]]
   # The command that it names makes what is missing.

@@ -98,7 +98,7 @@ near() {
   render-osmesa -q --mesh "$shape" $light $small -o shape.png
   file shape.png | grep -q 'PNG image data, 96 x 54, 8-bit/color RGB'
   render-osmesa -q --mesh "$shape" $light $small --view 'aces sdr' -o aces.png
-  ! cmp -s shape.png aces.png
+  ! cmp -s shape.png aces.png || false
   run render-osmesa --mesh "$shape" $light $small --view filmic -o no.png
   [ "$status" -eq 2 ]
   [[ "$output" =~ 'there are "Paint", "Un-tone-mapped", "ACES SDR"' ]]
@@ -427,5 +427,5 @@ XML
   render-osmesa -q --mesh "$shape" $light $small --camera 40,15,1,30 -o told.exr
   render-osmesa -q --mesh "$shape" $light $small --camera 40,15,1,60 -o wide.exr
   oiiotool usual.exr told.exr --diff
-  ! oiiotool usual.exr wide.exr --diff
+  ! oiiotool usual.exr wide.exr --diff || false
 }

@@ -84,7 +84,8 @@ mean() { oiiotool "$1" --ch R,G,B --printstats | sed -nE 's/.*Stats Avg: ([^ ]+)
   run --separate-stderr render-osmesa $box --emit Walls=A --emit Lid=1,1,1 --tolerance 2 -o a.exr
   [[ "$stderr" == *'--emit Lid is three numbers'* ]]
   run --separate-stderr render-osmesa $box --emit Walls=A --emit Lid=1,1,1 --spectral on --tolerance 2 -o none.exr
-  [ "$status" -eq 3 ] && [ ! -e none.exr ]
+  [ "$status" -eq 3 ]
+  [ ! -e none.exr ]
   [[ "$stderr" == *'--spectral on needs spectra of all: --emit Lid is three numbers'* ]]
 }
 
@@ -145,5 +146,6 @@ mean() { oiiotool "$1" --ch R,G,B --printstats | sed -nE 's/.*Stats Avg: ([^ ]+)
   refused 2 'is given twice' --light 30,40,1,1,1,D65
   refused 2 '--spectral' --light 30,40,D65 --spectral on --engine cpu
   run --separate-stderr render-osmesa $box --light 30,40,D65 --engine cpu -o cpu.exr
-  [ "$status" -eq 0 ] && [[ "$stderr" == *'light has three channels'* ]]
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *'light has three channels'* ]]
 }

@@ -53,7 +53,9 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
   run render-osmesa --mesh cube.obj --texture Cube=four.sbrdf.exr,project=box $lit -o named.exr
   [[ "$output" != *"has no texture coordinates"* ]]
   run render-osmesa --mesh cube.obj --texture Cube=four.sbrdf.exr,project=uv $lit -o none.exr
-  [ "$status" -eq 3 ] && [[ "$output" == *"give project=box"* ]] && [ ! -e none.exr ]
+  [ "$status" -eq 3 ]
+  [[ "$output" == *"give project=box"* ]]
+  [ ! -e none.exr ]
 }
 
 @test "pixels that cover many texels show their mean, whichever engine draws" {
@@ -159,7 +161,9 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
   render-osmesa -q --mesh square.obj --paint p.xml --texture Square=red.sbrdf.exr ${lit/auto/auto,-texture} --camera 0,0,0.9 -o mean.exr
   oiiotool --dumpdata:empty=0 mean.exr | awk '/Pixel \(16, 16\)/ { exit !($(NF-3) > 0.05 && $(NF-1) > 0.05) }'
   run render-osmesa --mesh square.obj --part Square=glass --texture Square=red.sbrdf.exr $lit -o none.exr
-  [ "$status" -eq 2 ] && [[ "$output" == *"glass, which has no place for a texture"* ]] && [ ! -e none.exr ]
+  [ "$status" -eq 2 ]
+  [[ "$output" == *"glass, which has no place for a texture"* ]]
+  [ ! -e none.exr ]
 }
 
 @test "words that are wrong are usage errors" {
@@ -181,5 +185,6 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
 LIST
   # shellcheck disable=SC2086
   run render-osmesa --mesh square.obj --texture Square=four.sbrdf.exr,scale=2 $lit -o none.exr
-  [ "$status" -eq 2 ] && [[ "$output" == *"name a projection"* ]]
+  [ "$status" -eq 2 ]
+  [[ "$output" == *"name a projection"* ]]
 }
