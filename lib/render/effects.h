@@ -96,8 +96,9 @@ inline bool is_shifted(const Effects& effects, double exponent) {
   return effects.horizon && exponent <= kWidestShared;
 }
 struct WeightTable {
-  int lobes = 0, segments = 1, slots = 0, parts = 0;
-  std::vector<float> rgba;  // ((part * segments + segment) * slots + slot) * 8
+  int lobes = 0, segments = 1, slots = 0;
+  std::vector<int> rows;    // of each part: neighbors that wear the same share one
+  std::vector<float> rgba;  // ((row * segments + segment) * slots + slot) * 8
 
   static int diffuse_slot() { return 0; }
   static int lobe_slot(std::size_t lobe) { return 1 + static_cast<int>(lobe); }
@@ -108,10 +109,10 @@ struct WeightTable {
   int gloss_slot(std::size_t lobe) const { return directional_diffuse_slot(lobe) + 1; }
   int shift_slot(std::size_t lobe) const { return 4 + 3 * lobes + static_cast<int>(lobe / 4); }  // channel lobe % 4
   int lamp_mirror_slot() const { return 4 + 3 * lobes + (lobes + 3) / 4; }
-  const float* at(int part, int segment, int slot) const {
-    return &rgba[(static_cast<std::size_t>(part * segments + segment) * static_cast<std::size_t>(slots) +
-                  static_cast<std::size_t>(slot)) *
-                 8];
+  int row_count() const { return rows.empty() ? 0 : rows.back() + 1; }
+  std::size_t row_floats() const { return static_cast<std::size_t>(segments) * static_cast<std::size_t>(slots) * 8; }
+  const float* at(int row, int segment, int slot) const {
+    return &rgba[static_cast<std::size_t>(row) * row_floats() + static_cast<std::size_t>(segment * slots + slot) * 8];
   }
 };
 // The table's sizes, without its weights.

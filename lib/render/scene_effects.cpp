@@ -279,19 +279,19 @@ std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects&
 
 WeightTable weight_table(const Scene& scene, const Effects& effects, const std::vector<bool>& stretched) {
   WeightTable table = slots_of(effects);
-  table.parts = static_cast<int>(scene.paints.size());
-  const std::size_t row = static_cast<std::size_t>(table.slots) * 8,
-                    part_size = row * static_cast<std::size_t>(table.segments);
-  table.rgba.assign(part_size * scene.paints.size(), 0.0F);
   const auto is_stretched = [&](std::size_t part) { return !stretched.empty() && stretched[part]; };
   const auto is_like_last = [&](std::size_t part) {
-    return part > 0 && same_wear(scene, part, part - 1) && is_stretched(part) == is_stretched(part - 1);
+    return same_wear(scene, part, part - 1) && is_stretched(part) == is_stretched(part - 1);
   };
-  parallel_each(scene.paints.size(), 1, [&](std::size_t part) {
-    if (!is_like_last(part)) fill_part(scene, effects, part, is_stretched(part), table, &table.rgba[part * part_size]);
+  std::vector<std::size_t> first;  // part of each row
+  for (std::size_t part = 0; part < scene.paints.size(); ++part) {
+    if (part == 0 || !is_like_last(part)) first.push_back(part);
+    table.rows.push_back(static_cast<int>(first.size()) - 1);
+  }
+  table.rgba.assign(table.row_floats() * first.size(), 0.0F);
+  parallel_each(first.size(), 1, [&](std::size_t row) {
+    fill_part(scene, effects, first[row], is_stretched(first[row]), table, &table.rgba[row * table.row_floats()]);
   });
-  for (std::size_t part = 0; part < scene.paints.size(); ++part)
-    if (is_like_last(part)) std::copy_n(&table.rgba[(part - 1) * part_size], part_size, &table.rgba[part * part_size]);
   return table;
 }
 
@@ -301,21 +301,22 @@ std::vector<int> gaining_parts(const Scene& scene) {
   effects.tilt_level = 0, effects.horizon = !effects.lobes.empty();
   const WeightTable table = weight_table(scene, effects);
   const int first = static_cast<int>(std::sqrt(kSteepCosine) * table.segments);
-  const auto gains = [&](int part, int segment, int channel) {
+  const auto gains = [&](int row, int segment, int channel) {
     double share = 0;  // of even light, at the end of the segment; the slots from light_slot() on are those of lamps
     for (int slot = 0; slot < table.light_slot(); ++slot) {
-      const float* w = table.at(part, segment, slot);
+      const float* w = table.at(row, segment, slot);
       share += w[channel] + w[4 + channel];
     }
     return share > kMost;
   };
   std::vector<int> parts;
-  for (int part = 0; part < table.parts; ++part) {
+  for (int part = 0; part < static_cast<int>(table.rows.size()); ++part) {
     const PartSurface* surface = scene.layer != nullptr ? &scene.layer->surface(part) : nullptr;
     if (surface != nullptr && (surface->hides_paint() || surface->color_map != nullptr)) continue;
     bool any = false;
     for (int segment = first; segment < table.segments; ++segment)
-      for (int channel = 0; channel < 3; ++channel) any = any || gains(part, segment, channel);
+      for (int channel = 0; channel < 3; ++channel)
+        any = any || gains(table.rows[static_cast<std::size_t>(part)], segment, channel);
     if (any) parts.push_back(part);
   }
   return parts;

@@ -154,11 +154,12 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
   shading_.shift_offset = shading_.light_offset + 8 * static_cast<std::size_t>(light_slots > 0 ? light_slots + 1 : 0);
   const std::size_t shift_floats = (2 * stacks_.size() + kBlock - 1) / kBlock * kBlock;
   shading_.segment_floats = shading_.shift_offset + shift_floats;
-  weights_.assign(shading_.segment_floats * static_cast<std::size_t>(table.segments * table.parts), 0.0F);
-  shown_blocks_.assign(static_cast<std::size_t>(table.parts), 0);
+  weights_.assign(shading_.segment_floats * static_cast<std::size_t>(table.segments * table.row_count()), 0.0F);
+  std::vector<std::uint64_t> shown(static_cast<std::size_t>(table.row_count())), lit(shown.size());
   float* to = weights_.data();
-  for (int row = 0; row < table.parts * table.segments; ++row) {
-    const auto texel = [&](int slot) { return table.at(row / table.segments, row % table.segments, slot); };
+  for (int segment = 0; segment < table.row_count() * table.segments; ++segment) {
+    const auto row = static_cast<std::size_t>(segment / table.segments);
+    const auto texel = [&](int slot) { return table.at(static_cast<int>(row), segment % table.segments, slot); };
     for (const Stack& stack : stacks_) {
       for (std::size_t i = 0; i < stack.shape.slots.size(); ++i) {
         float* ends = to + 2 * kBlock * (i / 2) + 4 * (i % 2);
@@ -169,7 +170,7 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
     for (std::size_t block = 0; block < blocks; ++block) {
       const float* of = to - 2 * kBlock * (blocks - block);
       if (std::any_of(of, of + 2 * kBlock, [](float weight) { return weight != 0; }))
-        shown_blocks_[static_cast<std::size_t>(row / table.segments)] |= std::uint64_t{1} << block;
+        shown[row] |= std::uint64_t{1} << block;
     }
     for (int slot = 0; slot < light_slots; ++slot, to += 8) std::copy_n(texel(table.light_slot() + slot), 8, to);
     if (light_slots > 0) std::copy_n(texel(table.lamp_mirror_slot()), 8, to), to += 8;
@@ -180,18 +181,19 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
       to[2 * k] = shift[0], to[2 * k + 1] = shift[4];
     }
     to += shift_floats;
+    for (std::size_t j = 0; light_slots > 0 && j < effects.lobes.size(); ++j)
+      for (const int slot : {table.directional_diffuse_slot(j), table.gloss_slot(j)})
+        if (std::any_of(texel(slot), texel(slot) + 8, [](float weight) { return weight != 0; }))
+          lit[row] |= std::uint64_t{1} << j;
   }
-  shading_.weights = weights_.data();
-  shading_.shown_blocks = shown_blocks_.data();
-  lit_lobes_.assign(static_cast<std::size_t>(table.parts), 0);
-  for (int row = 0; light_slots > 0 && row < table.parts * table.segments; ++row)
-    for (std::size_t j = 0; j < effects.lobes.size(); ++j)
-      for (const int slot : {table.directional_diffuse_slot(j), table.gloss_slot(j)}) {
-        const float* ends = table.at(row / table.segments, row % table.segments, slot);
-        if (std::any_of(ends, ends + 8, [](float weight) { return weight != 0; }))
-          lit_lobes_[static_cast<std::size_t>(row / table.segments)] |= std::uint64_t{1} << j;
-      }
-  shading_.lit_lobes = lit_lobes_.data();
+  rows_ = table.rows;
+  shown_blocks_.clear(), lit_lobes_.clear();
+  for (const int row : rows_) {
+    shown_blocks_.push_back(shown[static_cast<std::size_t>(row)]);
+    lit_lobes_.push_back(lit[static_cast<std::size_t>(row)]);
+  }
+  shading_.weights = weights_.data(), shading_.rows = rows_.data();
+  shading_.shown_blocks = shown_blocks_.data(), shading_.lit_lobes = lit_lobes_.data();
   bare_.clear();
   for (const paint::LobeFit& paint : scene.paints) {
     bare_.push_back(paint.diffuse == color::Rgb{} && paint.lobes.empty() && paint.views.empty() && paint.tilts.empty());

@@ -70,7 +70,7 @@ class CpuEngine : public Engine {
   Stack background_map_;
   ProductColumns product_{};
   std::vector<float> weights_, lights_, exponents_, tilts_;
-  std::vector<int> first_tilt_;
+  std::vector<int> rows_, first_tilt_;
   std::vector<std::uint64_t> lit_lobes_, shown_blocks_;
   std::vector<bool> bare_;  // parts whose paint shows nothing, as it lies under a texture
   CpuShading shading_;

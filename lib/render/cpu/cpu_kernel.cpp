@@ -50,7 +50,7 @@ struct Frame {
 
   HWY_INLINE Direction r(std::size_t i) const { return loaded(rx, ry, rz, i); }
   const float* weights(const CpuShading& s, const PointArrays& points, int i) const {
-    return s.weights + static_cast<std::size_t>(points.part[i] * s.segments + segment[i]) * s.segment_floats;
+    return s.weights + static_cast<std::size_t>(s.rows[points.part[i]] * s.segments + segment[i]) * s.segment_floats;
   }
 };
 

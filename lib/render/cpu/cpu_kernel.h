@@ -29,7 +29,8 @@ struct CpuShading {
   bool shifted[kMostClasses] = {};
   const float* product = nullptr;  // product_columns()
   int segments = 1;
-  const float* weights = nullptr;
+  const int* rows = nullptr;       // of each part, in the weights
+  const float* weights = nullptr;  // row by row
   std::size_t segment_floats = 0;
   const std::uint64_t* shown_blocks = nullptr;  // of each part, bits: the blocks of all classes with any weight
   // Within a segment: of the light slots, after which the mirror's for lamps stands, and of the shifts.

@@ -89,7 +89,12 @@ void GlEngine::set_lamps() {
 void GlEngine::load_paints(const Scene& scene) {
   const WeightTable table = weight_table(scene, effects_);
   gl_->DeleteTextures(1, &weights_);
-  weights_ = gl_->float_texture(2 * table.slots * table.segments, table.parts, table.rgba.data());
+  std::vector<float> weights;  // part by part
+  for (const int row : table.rows) {
+    const float* of_row = table.at(row, 0, 0);
+    weights.insert(weights.end(), of_row, of_row + table.row_floats());
+  }
+  weights_ = gl_->float_texture(2 * table.slots * table.segments, static_cast<int>(table.rows.size()), weights.data());
   gl_->DeleteTextures(1, &tilts_);
   tilts_ = 0;
   if (effects_.anisotropy) {
