@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
+#include <vector>
 
 #include "render/cpu/cpu_engine.h"
 #include "render/picture_error.h"
@@ -51,6 +53,22 @@ TEST(Engines, HaveNamesOfTheirOwnAndASentence) {
   EXPECT_EQ(engine_choices().size(), engines().size() + 1);
   EXPECT_EQ(engine_choices().front(), "auto");
   EXPECT_THAT(engine_named("vulkan").error().message, HasSubstr("there is no engine \"vulkan\": there are cpu, gl"));
+}
+
+TEST(WeightTable, PartsInARowThatWearTheSameShareARow) {
+  World world;
+  const paint::LobeFit one = world.scene.paints.front(), other = matt({0.5, 0.1, 0.1});
+  world.scene.paints = {one, one, other, other, one};
+  const Effects effects = effects_of(world.scene);
+  const WeightTable table = weight_table(world.scene, effects);
+  EXPECT_EQ(table.rows, (std::vector<int>{0, 0, 1, 1, 2}));
+  EXPECT_EQ(table.rgba.size(), 3 * table.row_floats());
+  for (std::size_t part = 0; part < table.rows.size(); ++part) {
+    Scene alone = world.scene;
+    alone.paints = {world.scene.paints[part]};
+    const WeightTable own = weight_table(alone, effects);
+    EXPECT_TRUE(std::equal(own.rgba.begin(), own.rgba.end(), table.at(table.rows[part], 0, 0))) << part;
+  }
 }
 
 // The closed form is what the reference integrates: even light leaves each engine its own approximation of the horizon,
