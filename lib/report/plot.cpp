@@ -22,7 +22,7 @@ constexpr double kLetter = 6.6;  // mean width of a letter at 12 px
 // Where the values of an axis lie in the picture.
 class Scale {
  public:
-  Scale(const Axis& axis, const std::vector<Series>& series, const std::vector<double> Series::*values, double from,
+  Scale(const Axis& axis, const std::vector<Series>& series, const std::vector<double> Series::* values, double from,
         double to)
       : given_(axis.ticks), logarithmic_(axis.logarithmic), from_(from), to_(to) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -47,7 +47,9 @@ class Scale {
   // Leaves some space around the data, and makes room if all values are equal.
   void widen(double& low, double& high) const {
     if (logarithmic_) {
-      const double factor = high > low ? std::exp(0.04 * (std::log(high) - std::log(low))) : 2;
+      // Logarithms of numbers that are nearer to each other may be equal.
+      constexpr double kLeastSpan = 1e-9;
+      const double span = std::log(high) - std::log(low), factor = span > kLeastSpan ? std::exp(0.04 * span) : 2;
       low = std::max(low / factor, std::numeric_limits<double>::denorm_min());
       high = std::min(high * factor, std::numeric_limits<double>::max());
     } else {

@@ -40,6 +40,8 @@ TEST(Plot, ValuesThatCannotBeDrawnBreakTheLineAndNothingElse) {
   EXPECT_EQ(text.find("inf"), std::string::npos);
   plot.series = {{"nothing", {}, {}}, {"one point", {2}, {2}}};
   EXPECT_EQ(svg(plot).find("nan"), std::string::npos);
+  plot.series = {{"one logarithm", {1, 2}, {9e299, std::nextafter(9e299, 1e300)}}};
+  EXPECT_EQ(svg(plot).find("nan"), std::string::npos);
 }
 
 TEST(Plot, PowersOfTenAreShort) {
