@@ -3,10 +3,7 @@
 # that fails before `&&`; oiiotool prints no statistics of a result by --stats.
 #
 #   cases_test.sh [FOLDER...]     [scripts tools]
-set -euo pipefail
-top=$(cd "$(dirname "$0")/.." && pwd)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+source "$(dirname "$0")/offenders.sh"
 
 # offenders FOLDER...: these lines, with their files and numbers.
 offenders() {
@@ -26,16 +23,6 @@ cat >"$folder/a.bats" <<'END'
   oiiotool a.exr --ch R --stats
   oiiotool --stats a.exr
 END
-[ "$(offenders "$folder" | cut -d: -f2 | tr '\n' ' ')" = '1 3 6 ' ] || {
-  echo 'the control is wrong:'
-  offenders "$folder"
-  exit 1
-}
-
-cd "$top"
-found=$(offenders "${@:-scripts}" $([ $# -gt 0 ] || echo tools))
-[ -z "$found" ] || {
-  echo "$found"
-  echo "$(wc -l <<<"$found") lines assert nothing"
-  exit 1
-}
+check_control 2 ' ' '1 3 6 '
+[ $# -gt 0 ] || set -- scripts tools
+report 'lines assert nothing' "$@"

@@ -2,10 +2,7 @@
 # Lists the comments in lib and tools that begin without a subject: with What, Whether, Of, As, That, or The same.
 #
 #   comments_test.sh [FOLDER...]     [lib tools]
-set -euo pipefail
-top=$(cd "$(dirname "$0")/.." && pwd)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+source "$(dirname "$0")/offenders.sh"
 
 # offenders FOLDER...: the first line of each such comment, with its file and line.
 offenders() {
@@ -23,16 +20,6 @@ offenders() {
 # The control: what begins a comment is found, and what goes on with one is not.
 printf '// What it is.\nint a;  // Whether it is.\n// A line\n// Of two.\nint b;\n  // The same again.\n// Offsets of it.\n' >"$folder/a.h"
 printf '# As it was.\n# What goes on.\necho %s That one\n' '#' >"$folder/a.sh"
-[ "$(offenders "$folder" | cut -d: -f2- | tr '\n' ';')" = '1: What it is.;2: Whether it is.;6: The same again.;1: As it was.;3: That one;' ] || {
-  echo 'the control is wrong:'
-  offenders "$folder"
-  exit 1
-}
-
-cd "$top"
-found=$(offenders "${@:-lib}" $([ $# -gt 0 ] || echo tools))
-[ -z "$found" ] || {
-  echo "$found"
-  echo "$(wc -l <<<"$found") comments begin without a subject"
-  exit 1
-}
+check_control 2- ';' '1: What it is.;2: Whether it is.;6: The same again.;1: As it was.;3: That one;'
+[ $# -gt 0 ] || set -- lib tools
+report 'comments begin without a subject' "$@"

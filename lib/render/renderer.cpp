@@ -323,13 +323,8 @@ void Renderer::State::correct(int first, int count, image::Image& picture, Corre
   std::vector<std::shared_ptr<const Gbuffer>> seen;
   std::vector<const Gbuffer*> samples;
   for (int i = first; i < first + count; ++i) samples.push_back(seen.emplace_back(gbuffer(i)).get());
-  if (effects.rays.floor) {
-    request.beside_mesh = [around = surroundings(), &samples](int x, int y) {
-      color::Rgb sum;
-      for (const Gbuffer* sample : samples) sum += around.at(*sample, x, y).value_or(color::Rgb{});
-      return (1.0 / static_cast<double>(samples.size())) * sum;
-    };
-  }
+  if (effects.rays.floor)
+    request.beside_mesh = [around = surroundings(), &samples](int x, int y) { return around.mean(samples, x, y); };
   noise.add(add_correction(*transport, samples, request, before, picture), band.first_kept - band.first,
             band.last_kept - band.first);
 }

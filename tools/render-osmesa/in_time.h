@@ -15,8 +15,8 @@ class TimedPictures {
   // They show this mesh, and the limit is that of the effort.
   TimedPictures(const mesh::Mesh& mesh, render::Effort effort) : mesh_(mesh), effort_(std::move(effort)) {}
 
-  // Draws a picture that began so many seconds ago. `seen`: its G-buffer, if that is known. The first picture decides
-  // for all that follow.
+  // Draws a picture that began so many seconds ago. `seen`: its G-buffer, if that is known. All pictures have as many
+  // pixels as there was time for in the first.
   Result<void> draw(render::Renderer& renderer, const render::View& view, double spent_s,
                     std::shared_ptr<const render::Gbuffer> seen, render::Frame& frame);
   // The size of the last picture, which was enlarged; none where all pixels were drawn.

@@ -205,8 +205,8 @@ Result<void> Shooting::draw_in_time(render::Renderer& renderer, const Shot& shot
   if (const std::optional<PictureSize>& size = timed_->enlarged_from(); first && size) {
     session_.results()["enlarged_from"] = {{"width", size->width}, {"height", size->height}};
     session_.warn(
-        fmt::format("--time-limit {} is too short for {} x {} pixels: the picture is enlarged from {} x {}, of which "
-                    "errors are told",
+        fmt::format("--time-limit {} is too short for {} x {} pixels: the picture is enlarged from {} x {}, whose "
+                    "errors alone are told",
                     shortest(session_.common().time_limit_s), request_.size.width, request_.size.height, size->width,
                     size->height));
   }

@@ -19,7 +19,7 @@ constexpr int kMostBlocks = 32;  // of all maps met by the mirror direction toge
 constexpr int kMostLobes = 2 * kMostBlocks;
 static_assert(kMostLobes <= 64, "CpuShading::lit_lobes has a bit for each");
 
-// Data that the kernel shades with. Weights of a part and segment: for each class of maps in order, for each block, 8
+// Data that the kernel shades with. Weights of a row and segment: for each class of maps in order, for each block, 8
 // floats a and 8 floats b (W = a + b t). Then, for each light slot, 4 floats a and 4 floats
 // b. Then, for each class, a and b of the shift s of its direction, r + s n.
 struct CpuShading {

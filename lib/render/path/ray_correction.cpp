@@ -58,6 +58,12 @@ std::optional<color::Rgb> MeshSurroundings::at(const Gbuffer& g, int x, int y) c
   return backdrop.at(direction);
 }
 
+color::Rgb MeshSurroundings::mean(PixelSamples samples, int x, int y) const {
+  color::Rgb sum;
+  for (const Gbuffer* sample : samples) sum += at(*sample, x, y).value_or(color::Rgb{});
+  return (1.0 / static_cast<double>(samples.size())) * sum;
+}
+
 void MeshSurroundings::add(PixelSamples samples, float gain, image::Image& picture) const {
   const Gbuffer& first = *samples.front();
   for_pixels(first.width, first.height, [&](int x, int y) {

@@ -50,6 +50,8 @@ struct MeshSurroundings {
 
   // The light of a pixel; nothing where that shows the mesh, or no background.
   std::optional<color::Rgb> at(const Gbuffer& gbuffer, int x, int y) const;
+  // The mean of that light over these samples of a pixel.
+  color::Rgb mean(PixelSamples samples, int x, int y) const;
   // Adds `gain` times that light at each of these samples of the pixels, and its coverage.
   void add(PixelSamples samples, float gain, image::Image& picture) const;
   // The change of the background by the floor, at 95 of 100 pixels that show it: CIEDE2000 to the backdrop.
