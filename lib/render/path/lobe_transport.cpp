@@ -366,7 +366,12 @@ class Tracing {
           halves[n][half] += color::product(matrices[k], sampled(i, half, k).sum());
       }
     });
-    return reconstruction(shown_, halves, beside, request_.white_luminance, filters());
+    return reconstruction(shown_, halves, beside, request_.white_luminance, sample_counts(), filters());
+  }
+  std::vector<float> sample_counts() const {
+    std::vector<float> counts(kept_.size());
+    each_kept([&](std::size_t n, std::size_t i) { counts[n] = static_cast<float>(batches_[i]); });
+    return counts;
   }
   // Rays alone are a reference, and are shown as they were sampled.
   Filters filters() const { return open_ != nullptr ? Filters::kChosen : Filters::kNone; }
@@ -419,7 +424,7 @@ class Tracing {
       }
       for (std::size_t half = 0; half < 2; ++half) halves[n][half] = weight * sampled(i, half, k).sum();
     });
-    return reconstruction(shown_, halves, beside, request_.white_luminance, filters());
+    return reconstruction(shown_, halves, beside, request_.white_luminance, sample_counts(), filters());
   }
 
   // Smooths the bounced light of a column and of the one before it, by the filters of both.

@@ -454,14 +454,16 @@ class Picture {
   void reconstruct() {
     std::vector<Halves> halves(points_.size());
     std::vector<color::Rgb> beside(points_.size());
+    std::vector<float> samples(points_.size());
     each_point([&](std::size_t i) {
+      samples[i] = static_cast<float>(sums(i).fours());
       beside[i] = base_at(points_[i]) + states_[i].deterministic;
       for (std::size_t k = 0; k < 2; ++k) {
         halves[i][k] = sums(i).halves()[k] + kept(i)[k];
         if (is_unknown(i)) halves[i][k] = kUnknown;
       }
     });
-    const Reconstruction found = reconstruction(shown_, halves, beside, request_.white_luminance);
+    const Reconstruction found = reconstruction(shown_, halves, beside, request_.white_luminance, samples);
     each_point([&](std::size_t i) {
       const bool certain = states_[i].certain && sums(i).fours() == 0;
       points_[i].radiance = states_[i].deterministic + (certain ? halves[i][0] : found.light[i]);

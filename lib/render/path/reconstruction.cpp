@@ -283,8 +283,10 @@ double squared_bias(const SeenHalves& reference, const SeenHalves& filtered) {
 
 // Errors of all choices.
 using Values = std::array<float, kChoices>;
-// Variances, and then squared biases.
+// Variances, and then squared biases. The samples have none; their place takes the variance of a single one, since
+// neighbors may have more or fewer of them.
 using Errors = std::array<float, 2 * kChoices>;
+constexpr std::size_t kOfOneSample = kChoices;
 static_assert(kChoices == kHalvesChannels);
 
 // The reference of the wider filters is the smallest one, whose noise is less than that of the samples.
@@ -362,7 +364,8 @@ void take_neighborhood_means(const std::vector<ShownPoint>& points, std::vector<
 
 // Measures all choices. The visibility of an error is taken at filtered light, which has less noise than its samples.
 Measured measured(const std::vector<ShownPoint>& points, const Predictions& predicted,
-                  const std::vector<color::Rgb>& beside, double white_luminance) {
+                  const std::vector<color::Rgb>& beside, double white_luminance, const std::vector<float>& samples) {
+  const auto count = [&](std::size_t n) { return samples.empty() ? 1 : samples[n]; };
   Measured result;
   result.apart.resize(points.size()), result.variances.resize(points.size()), result.means.resize(points.size());
   each_point(points.size(), [&](std::size_t n) {
@@ -387,6 +390,7 @@ Measured measured(const std::vector<ShownPoint>& points, const Predictions& pred
       const Vec3 twice = one[0] + one[1] - reference[0] - reference[1];
       apart[k] = is_known ? static_cast<float>(0.25 * square(twice)) : 0;
     }
+    errors[kOfOneSample] = errors[0] * count(n);
   });
   take_neighborhood_means(points, result.means);
   each_point(points.size(), [&](std::size_t n) {
@@ -394,6 +398,8 @@ Measured measured(const std::vector<ShownPoint>& points, const Predictions& pred
     float& smallest = mean[kChoices + 1];
     const float believed = kMostOfNext * std::max(0.0F, mean[kChoices + 2]);
     smallest = std::min(smallest, std::max(believed, smallest - kOfSamples * mean[0]));
+    if (count(n) > 0) mean[0] = mean[kOfOneSample] / count(n);
+    mean[kOfOneSample] = 0;
   });
   return result;
 }
@@ -414,9 +420,10 @@ float squared_error(const Measured& measured, std::size_t n, std::size_t choice)
 }  // namespace
 
 Reconstruction reconstruction(const std::vector<ShownPoint>& points, const std::vector<Halves>& halves,
-                              const std::vector<color::Rgb>& beside, double white_luminance, Filters filters) {
+                              const std::vector<color::Rgb>& beside, double white_luminance,
+                              const std::vector<float>& samples, Filters filters) {
   const Predictions predicted = all_predictions(points, halves);
-  const Measured errors = measured(points, predicted, beside, white_luminance);
+  const Measured errors = measured(points, predicted, beside, white_luminance, samples);
   Reconstruction result;
   result.light.resize(points.size()), result.error_de00.resize(points.size());
   result.spike_de00.resize(points.size()), result.shares.resize(points.size());
@@ -428,6 +435,8 @@ Reconstruction reconstruction(const std::vector<ShownPoint>& points, const std::
       error.fill(HUGE_VALF);
       if (!std::isnan(predicted[0][n][0])) error[0] = std::max(errors.means[n][0], 1e-6F);
     }
+    // Between samples the smallest filter, which sees few of them, follows their noise.
+    if (std::isnan(predicted[0][n][0]) && std::isfinite(error[2])) error[1] = HUGE_VALF;
     const float own = errors.variances[n][0];
     if (filters == Filters::kChosen && own > kLargePart * errors.means[n][0]) result.spike_de00[n] = std::sqrt(own);
     const float least = *std::ranges::min_element(error);

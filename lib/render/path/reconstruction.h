@@ -51,10 +51,11 @@ struct Reconstruction {
 enum class Filters { kChosen, kNone };
 
 // `beside` is what each point shows beside the light that is reconstructed; with it, errors are seen before a white of
-// this luminance. Points come row by row, at most one for each pixel. Bit-identical for any number of threads.
+// this luminance. `samples`: how many each point has, or nothing where all have as many. Points come row by row, at
+// most one for each pixel. Bit-identical for any number of threads.
 Reconstruction reconstruction(const std::vector<ShownPoint>& points, const std::vector<Halves>& halves,
                               const std::vector<color::Rgb>& beside, double white_luminance,
-                              Filters filters = Filters::kChosen);
+                              const std::vector<float>& samples = {}, Filters filters = Filters::kChosen);
 
 // Smooths two lights of each point by filters that reconstruction() chose for other light there.
 std::vector<Halves> smoothed(const std::vector<ShownPoint>& points, const std::vector<Halves>& lights,

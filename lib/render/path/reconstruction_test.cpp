@@ -98,6 +98,38 @@ TEST(Reconstruction, SmoothLightHasAThirdOfTheErrorOfItsSamples) {
   }
 }
 
+// Light that no filter smooths, with 64 times the samples in the lower half of the picture: beside the border their
+// error is their own, and not that of the few above. Numbers that are not told are the control.
+TEST(Reconstruction, SamplesErrByTheirNumberWhateverNeighborsHave) {
+  std::mt19937 numbers(11);
+  std::uniform_real_distribution<double> any(-0.1, 0.1);
+  std::vector<double> pattern(static_cast<std::size_t>(kWidth * kHeight));
+  for (double& value : pattern) value = any(numbers);
+  const auto rough = [&](const ShownPoint& point) {
+    return pattern[static_cast<std::size_t>(kWidth * point.y + point.x)] * color::Rgb{1, 1, 1};
+  };
+  Stage stage = sheet(rough, 0.05);
+  std::vector<float> samples;
+  for (std::size_t n = 0; n < stage.points.size(); ++n) {
+    const bool has_many = 2 * stage.points[n].y >= kHeight;
+    samples.push_back(has_many ? 64 : 1);
+    for (color::Rgb& half : stage.halves[n])
+      if (has_many) half = stage.truth[n] + 0.125 * (half - stage.truth[n]);
+  }
+  const auto told_of_found = [&](const Reconstruction& found) {
+    double told = 0, error = 0;
+    for (std::size_t n = 0; n < stage.points.size(); ++n) {
+      if (2 * stage.points[n].y < kHeight || 2 * stage.points[n].y > kHeight + 12) continue;
+      told += std::pow(found.error_de00[n], 2), error += std::pow(de00(stage, n, found.light[n]), 2);
+    }
+    return std::sqrt(told / error);
+  };
+  const double of_numbers = told_of_found(reconstruction(stage.points, stage.halves, stage.beside, 1, samples));
+  EXPECT_GT(of_numbers, 0.8);
+  EXPECT_LT(of_numbers, 2);
+  EXPECT_GT(told_of_found(stage.reconstructed()), 3) << "control";
+}
+
 // Errors are measured from the halves alone. What is told of a bias is never negative, so that more is told than there
 // is where light is flat: 2.8 times where all noise of samples counts as the bias of the smallest filter. Less must not
 // be told.
