@@ -31,6 +31,7 @@ struct Effort {
   int bounces = kUsualBounces;  // How many surfaces of the mesh may pass light on before it reaches what is seen.
   double time_limit_s = 0;      // of one picture; 0: none
   std::uint64_t seed = 1;
+  bool smooth = false;  // Light is smoothed along surfaces, and the noise is the error that is measured then.
   // Told after each round of samples: the noise of the picture so far (CIEDE2000, 95th percentile), and the seconds.
   std::function<void(double noise_de00, double seconds)> progress = {};
   static constexpr int kUsualBounces = 4;

@@ -54,7 +54,9 @@ Result<void> TimedPictures::draw(render::Renderer& renderer, const render::View&
   enlarged_from_.reset();
   if (shrink_ == 1) return {};
   enlarged_from_ = {frame.picture.width, frame.picture.height};
-  for (image::Image* picture : {&frame.picture, &frame.centers, &frame.open_centers})
+  std::vector<image::Image*> pictures = {&frame.picture, &frame.centers, &frame.open_centers};
+  if (frame.noise) pictures.push_back(&frame.noise->de00);
+  for (image::Image* picture : pictures)
     if (!picture->data.empty()) *picture = image::enlarged(*picture, view.width, view.height);
   if (seen == nullptr) {
     GONIO_ASSIGN(seen, renderer.look(mesh_, view));

@@ -147,12 +147,10 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "What is approximate keeps to it; --check measures it:\n- Lobes and look-ups are left out where all together "
           "change less; --explain prints the table.\n- Rays are traced until errors of maps and rays together are "
           "within it, and the engine path to all of it as one standard deviation.\n- The engine integral sums blocks "
-          "as coarse as it allows.\nWithout --tolerance, --time-limit and --check, a picture takes seconds: rays end "
-          "after 5 s, or 8 samples of each point.");
+          "as coarse as it allows.\nWithout --tolerance, --time-limit and --check, a picture takes seconds: rays and "
+          "smoothed paths end after 5 s, rays also with 8 samples of each point.");
   spec.option("tilts", "N|ERROR", "16", &o.tilts, "tilted normals that draw a brushed paint, or their error")
-      .more(
-          "ERROR, below 1, is relative to the peak of a lobe; --explain says how many normals it takes. The time of "
-          "shading grows with their number.");
+      .more("ERROR, below 1, is relative to the peak of a lobe; --explain says how many normals it takes.");
   spec.option("bounces", "N", "8", &o.bounces, "surfaces that may pass light on to what is seen")
       .from(0, 4096)
       .more(
@@ -167,7 +165,8 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
   spec.option("engine", "NAME", "path", &o.engine, "what shades the picture")
       .one_of(std::move(choices))
       .more(
-          "auto takes cpu, or path where the scene needs it. Rays add what the mesh does to light to pictures of all "
+          "auto takes cpu or, where the scene needs it, path, smoothed. Rays add what the mesh does to light to "
+          "pictures of all "
           "but path." +
           engine_items() +
           "\n- gpu is gl on the first GPU with OpenGL 3.3.\nPictures of cpu and gl are the same; they differ from the "

@@ -64,6 +64,26 @@ refused() { # STATUS TEXT ARGUMENTS...
   return 1
 }
 
+@test "paths that nobody asked for by name are smoothed, and end by themselves" {
+  local floor="$table --env sky.env.exr --floor paints.xml#gray"
+  render-osmesa -q $floor --report r.json -o a.exr
+  [ "$(result "['engine']")" = path ]
+  [ "$(result "['plan_quick']")" = True ]
+  render-osmesa -q $floor --tolerance 1 --report r.json -o a.exr
+  [ "$(result "['noise_reached']")" = True ]
+  local smooth=$(result "['samples_mean']")
+  render-osmesa -q $floor --tolerance 1 --engine path --report r.json -o b.exr
+  [ "$(result "['plan_quick']")" = False ]
+  holds "$(result "['samples_mean']") > 1.3 * $smooth"
+}
+
+@test "a time limit is kept with smoothed paths, whose errors have all pixels" {
+  render-osmesa -q --mesh table.obj --paint paints.xml#gray --env sky.env.exr --floor paints.xml#gray --time-limit 0.01 \
+    --aov error --report r.json -o a.exr
+  [ "$(result "['enlarged_from']['width']")" = 160 ]
+  oiiotool a.exr --ch error --printstats | grep -q 'Stats Max: [0-9.]*[1-9]'
+}
+
 @test "the noise is within the tolerance, and the report and the EXR tell it" {
   render-osmesa -q $table --env sky.env.exr --engine path --tolerance 1 --aov error,part --report r.json -o a.exr
   [ "$(result "['engine']")" = path ]

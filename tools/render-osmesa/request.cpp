@@ -70,7 +70,8 @@ Result<Request> request_of(const Options& options) {
                         : places && !wants_rays    ? "light place:..."
                                                    : "floor";
   const auto tracer = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->traces_rays; });
-  const std::string engine = options.engine == "auto" && (wants_rays || places) ? (*tracer)->name : options.engine;
+  request.smooths_paths = options.engine == "auto" && (wants_rays || places);
+  const std::string engine = request.smooths_paths ? (*tracer)->name : options.engine;
   if (engine != "auto") {
     GONIO_ASSIGN(request.engine, render::engine_named(engine));
     request.plan.engine = engine;

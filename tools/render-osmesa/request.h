@@ -32,6 +32,7 @@ struct Request {
   bool quick = false;  // nobody asked how accurate the picture is to be, nor how long it may take
   const render::EngineInfo* engine = nullptr;  // null: the plan chooses
   bool traces() const { return engine != nullptr && engine->traces_rays; }
+  bool smooths_paths = false;  // The scene needs the engine that traces rays, and nobody asked for it by name.
   FloorRequest floor;
   bool floor_named = false;  // whether it is asked for by name
   std::vector<Emission> emissions;

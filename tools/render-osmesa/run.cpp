@@ -72,6 +72,7 @@ class Shooting {
     const auto engine = render::engine_named(plan_.engine);
     return engine.ok() && (*engine)->traces_rays;
   }
+  bool is_enlarged() const { return timed_ && timed_->enlarged_from(); }
   render::Scene over_floor(bool wanted) const;
   void leave_out_hidden_floor();
   bool is_quick() const;
@@ -149,7 +150,7 @@ void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
   results["plan_quick"] = request_.quick;
   results["plan_ms"] = plan.time_ms;
   session_.explain(plan_table(plan));
-  if (request_.quick && plan.effects.rays.any())
+  if (request_.quick && (plan.effects.rays.any() || request_.traces()))
     session_.explain(fmt::format("no tolerance, time limit or check is asked for: rays end after {:g} s\n", kQuick_s));
   if (request_.plan.effects.forced_on("sparkle").value_or(false))
     for (const render::PlanItem& item : plan.items)
@@ -195,9 +196,10 @@ Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool f
   return {};
 }
 
-// A time limit is kept where rays correct a picture; other pictures are drawn whole.
+// A time limit is kept where rays correct a picture or its paths are smoothed; other pictures are drawn whole.
 Result<void> Shooting::draw_in_time(render::Renderer& renderer, const Shot& shot, bool first, render::Frame& frame) {
-  const bool is_timed = session_.common().time_limit_s > 0 && plan_.effects.rays.any() && !request_.transport;
+  const bool is_timed =
+      session_.common().time_limit_s > 0 && !request_.transport && (plan_.effects.rays.any() || request_.smooths_paths);
   if (!is_timed) return renderer.draw(view(shot, 1), frame);
   if (!timed_) timed_.emplace(stage_.mesh, effort_of(options_, request_, session_));
   const auto seen = shots_.size() == 1 ? looks_.front() : nullptr;
@@ -290,8 +292,8 @@ void Shooting::tell_rays() {
                                 {"free_share", rays.free_share},
                                 {"reached", rays.reached},
                                 {"ms", rays.ms}};
-  const bool late = session_.common().time_limit_s > 0 && session_.common().tolerance_given &&
-                    (!rays.reached || (timed_ && timed_->enlarged_from()));
+  const bool late =
+      session_.common().time_limit_s > 0 && session_.common().tolerance_given && (!rays.reached || is_enlarged());
   stopped_ |= late;
   constexpr double kWorthTelling = 0.5;
   const double tolerance = session_.common().tolerance, maps = frame_.maps.de00_p95();
@@ -304,7 +306,7 @@ void Shooting::tell_rays() {
 bool Shooting::is_quick() const {
   const cli::CommonOptions& common = session_.common();
   return !common.tolerance_given && !(common.time_limit_s > 0) && options_.check == 0 && !request_.transport &&
-         !request_.traces();
+         (!request_.traces() || request_.smooths_paths);
 }
 
 void Shooting::tell_noise() {
@@ -312,7 +314,7 @@ void Shooting::tell_noise() {
   const render::Noise& noise = *frame_.noise;
   all_reached_ = all_reached_ && noise.reached;
   const bool by_time_alone = session_.common().time_limit_s > 0 && !session_.common().tolerance_given;
-  const bool late = !noise.reached && !request_.quick && !by_time_alone;
+  const bool late = (!noise.reached || is_enlarged()) && !request_.quick && !by_time_alone;
   stopped_ |= late;
   Json& results = session_.results();
   results["noise_de00_p95"] = json_number(noise.de00_p95);

@@ -43,6 +43,7 @@ render::Effort effort_of(const Options& options, const Request& request, cli::Se
   effort.bounces = options.bounces;
   effort.time_limit_s = request.quick ? kQuick_s : session.common().time_limit_s;
   effort.seed = session.common().seed;
+  effort.smooth = request.smooths_paths;
   effort.progress = [&session](double noise, double seconds) {
     session.progress(fmt::format("noise {:.2f} dE00 after {:.1f} s", noise, seconds));
   };

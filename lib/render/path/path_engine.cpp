@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "render/panes.h"
-#include "render/path/ray_correction.h"
 #include "render/path/visible_white.h"
 #include "render/scene_effects.h"
 
@@ -17,8 +17,10 @@ namespace goniochrome::render {
 
 namespace {
 
-// The least time that is left of a time limit when the search for bright places is done.
+// The least time that a band has, whatever is left of the time limit.
 constexpr double kLeastTime_s = 1e-3;
+// The search for bright places takes up to 2 s. Within 5 s a room had the same error without it.
+constexpr double kWorthSearch_s = 10;
 
 }  // namespace
 
@@ -57,7 +59,7 @@ Result<void> PathEngine::can_shade(const Scene& scene) const {
 Result<void> PathEngine::load(const Scene& scene, const Effects& effects) {
   scene_ = scene, effects_ = effects;
   white_luminance_ = diffuse_white(scene.env, scene.lights).luminance;
-  transport_.reset();
+  transport_.reset(), aimed_.reset();
   PathScene path = path_scene_of(scene_, sight_.traced_mesh());
   path.tilt_tolerance = effects.tilt_tolerance;
   GONIO_ASSIGN(Transport transport, Transport::create(path));
@@ -130,13 +132,14 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   const std::shared_ptr<const Gbuffer> seen = sight.gbuffer(0);
   const Gbuffer g = visible_surface(transport_->eye(), seen->rays, seen->width, seen->height);
   const Effort effort = sight.effort();
-  const Stopwatch clock;
-  transport_->draw_toward(transport_->find_bright_places(effort.bounces, effort.seed));
-  const double search_s = clock.elapsed_s();
+  const Deadline deadline(effort.time_limit_s);
+  if (const std::pair<int, std::uint64_t> wanted(effort.bounces, effort.seed);
+      aimed_ != wanted && !(deadline.limit_s() > 0 && deadline.limit_s() < kWorthSearch_s))
+    transport_->draw_toward(transport_->find_bright_places(effort.bounces, effort.seed)), aimed_ = wanted;
   PathRequest request;
+  request.reconstruct = effort.smooth;
   request.options.bounces = effort.bounces;
   request.tolerance_de00 = effects_.tolerance_de00;
-  if (effort.time_limit_s > 0) request.time_limit_s = std::max(effort.time_limit_s - search_s, kLeastTime_s);
   request.seed = effort.seed;
   request.progress = effort.progress;
   request.white_luminance = white_luminance_;
@@ -144,23 +147,49 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
     request.white_luminance = visible_white(*transport_, g, effort.bounces, effort.seed);
   if (!(request.white_luminance > 0)) request.white_luminance = 1;
   request.pixel_samples = samples;
-  const PathPicture picture = path_picture(*transport_, g, nullptr, request);
   rgba = image::even_image(g.width, g.height, 4);
-  const bool with_panes = has_panes(scene_);
-  if (effects_.background != Background::kNone || with_panes) draw_background(g.rays, samples, rgba);
-  Noise noise{picture.noise_p95_de00,  picture.noise_mean_de00,
-              picture.samples_mean,    picture.time_s,
-              picture.reached,         transport_->bright_places() != nullptr ? transport_->bright_places()->gain() : 1,
-              request.white_luminance, {}};
-  noise.de00 = image::even_image(g.width, g.height, 1, {"error"});
-  for (const PathPoint& point : picture.points) {
-    float* pixel = rgba.pixel(point.x, point.y);
-    for (int c = 0; c < 3; ++c) pixel[c] += static_cast<float>(point.radiance[c]);
-    if (effects_.background == Background::kNone && !with_panes) pixel[3] = point.coverage;
-    *noise.de00.pixel(point.x, point.y) = static_cast<float>(point.noise_de00);
+  if (effects_.background != Background::kNone || has_panes(scene_)) draw_background(g.rays, samples, rgba);
+  noise_ = Noise{.places_gain = transport_->bright_places() != nullptr ? transport_->bright_places()->gain() : 1,
+                 .white_luminance = request.white_luminance,
+                 .de00 = image::even_image(g.width, g.height, 1, {"error"})};
+  CorrectionNoise drawn;
+  for (const Band& band : effort.smooth ? bands_of(g, samples, true) : std::vector{whole_band(g.height)}) {
+    if (deadline.limit_s() > 0)
+      request.time_limit_s = std::max(kLeastTime_s, deadline.left_s()) / (band.count - band.number);
+    if (drawn.points > 0) request.before = &drawn.drawn;
+    draw_band(g, band, request, drawn, rgba);
   }
-  noise_ = std::move(noise);
+  std::vector<double> errors = std::move(drawn.drawn.mesh);
+  errors.insert(errors.end(), drawn.drawn.floor.begin(), drawn.drawn.floor.end());
+  noise_->de00_p95 = drawn.de00_p95;
+  noise_->de00_mean = std::accumulate(errors.begin(), errors.end(), 0.0) / std::max<double>(1, errors.size());
+  noise_->samples_mean = drawn.samples, noise_->time_s = 1e-3 * drawn.ms, noise_->reached = drawn.reached;
   return {};
+}
+
+void PathEngine::draw_band(const Gbuffer& whole, const Band& band, PathRequest request, CorrectionNoise& drawn,
+                           image::Image& rgba) {
+  const Gbuffer centers = rows_of(whole, band);
+  std::vector<Gbuffer> surfaces;
+  std::vector<const Gbuffer*> seen = {&centers};
+  if (request.reconstruct && request.pixel_samples > 1) {
+    surfaces = sampled_surface(transport_->eye(), centers, sample_shifts(request.pixel_samples)).samples;
+    seen.clear();
+    for (const Gbuffer& surface : surfaces) seen.push_back(&surface);
+  }
+  request.seed += static_cast<std::uint64_t>(band.first);
+  request.first_points /= static_cast<std::size_t>(band.count);
+  const PathPicture picture = path_picture(*transport_, seen, nullptr, request);
+  drawn.add(picture, band.first_kept - band.first, band.last_kept - band.first);
+  const bool covers = effects_.background == Background::kNone && !has_panes(scene_);
+  for (const PathPoint& point : picture.points) {
+    const int y = band.first + point.y;
+    if (y < band.first_kept || y >= band.last_kept) continue;
+    float* pixel = rgba.pixel(point.x, y);
+    for (int c = 0; c < 3; ++c) pixel[c] += static_cast<float>(point.radiance[c]);
+    if (covers) pixel[3] = point.coverage;
+    *noise_->de00.pixel(point.x, y) = static_cast<float>(point.noise_de00);
+  }
 }
 
 }  // namespace goniochrome::render

@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "render/engine.h"
+#include "render/internal/bands.h"
+#include "render/path/ray_correction.h"
 #include "render/path/transport.h"
 
 namespace goniochrome::render {
@@ -38,13 +40,17 @@ class PathEngine : public Engine {
  private:
   // With Background::kNone what the scene covers of each pixel, alone.
   void draw_background(const Rays& rays, int samples, image::Image& rgba) const;
+  // Draws the kept rows of a band, after those that are drawn.
+  void draw_band(const Gbuffer& whole, const Band& band, PathRequest request, CorrectionNoise& drawn,
+                 image::Image& rgba);
 
   const Sight& sight_;
   Scene scene_;
   Effects effects_;
   double white_luminance_ = 1;
   std::optional<Transport> transport_;
-  std::optional<Error> failure_;  // of load_paints(), which cannot tell it
+  std::optional<std::pair<int, std::uint64_t>> aimed_;  // the bounces and the seed of its bright places; none: not yet
+  std::optional<Error> failure_;                        // of load_paints(), which cannot tell it
   std::optional<Noise> noise_;
 };
 

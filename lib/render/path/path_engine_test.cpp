@@ -213,6 +213,32 @@ TEST(PathEngine, SaysHowNoisyItsPictureIs) {
   EXPECT_NEAR(std::sqrt(squares / expected), 1, 0.35);
 }
 
+// A ball on a painted floor under a small bright light: smoothed pictures are as near to the truth as others, and their
+// error is the one that is told. The samples of the others are the control.
+TEST(PathEngine, SmoothedItNeedsFewSamplesForTheErrorThatItTells) {
+  const auto light = [](int column, int row) {
+    return row == 4 && column == 7 ? color::Rgb{60, 50, 40} : color::Rgb{1, 1, 1};
+  };
+  World world(environment_of(32, 16, light), matt({0.5, 0.4, 0.3}));
+  world.scene.ground = {.kind = Ground::Kind::kPaint, .height = -1, .paint = matt({0.3, 0.3, 0.4})};
+  world.view.width = world.view.height = 96, world.view.samples = 4;
+  const Frame plain = world.drawn(1), smooth = world.drawn(1, {.smooth = true}), truth = world.drawn(0.25);
+  EXPECT_TRUE(smooth.noise->reached);
+  EXPECT_LT(smooth.noise->samples_mean, 0.5 * plain.noise->samples_mean);
+  const auto p95 = [&](const Frame& frame) {
+    std::vector<double> apart;
+    for (int y = 0; y < 96; ++y)
+      for (int x = 0; x < 96; ++x)
+        if (truth.picture.pixel(x, y)[3] == 1)
+          apart.push_back(
+              seen_difference(at(frame.picture, x, y), at(truth.picture, x, y), truth.noise->white_luminance));
+    EXPECT_GT(apart.size(), 5000U);
+    return percentile_95(std::move(apart));
+  };
+  EXPECT_LT(p95(smooth), 1.25 * smooth.noise->de00_p95);
+  EXPECT_LT(p95(smooth), p95(plain));
+}
+
 TEST(PathEngine, StopsAtItsTimeLimitWithThePictureSoFar) {
   World world(two_halves({1, 1, 1}, {0.2, 0.2, 0.2}), matt({0.5, 0.4, 0.3}));
   world.lay_ground(-1, 2);

@@ -51,7 +51,7 @@ void clear(std::size_t at, Gbuffer& g) {
   std::fill_n(&g.data[4 * at], 4, 0.0F), g.triangles[at] = kNoTriangle;
 }
 
-// Finds the mesh at all samples of these pixels.
+// Finds the surface at all samples of these pixels.
 void look_at(const rays::RayScene& scene, const std::vector<std::size_t>& pixels, std::vector<Gbuffer>& samples) {
   const rays::Float3 eye = scene.local(samples.front().rays.eye);
   const std::size_t count = samples.size(), all = count * pixels.size();
@@ -73,8 +73,7 @@ void look_at(const rays::RayScene& scene, const std::vector<std::size_t>& pixels
       Gbuffer& g = samples[(first + i) % count];
       const std::size_t at = pixels[(first + i) / count];
       clear(at, g);
-      if (hits[i].any() && hits[i].triangle != rays::kFloor)
-        put(scene, hits[i], eye, {fan.x[i], fan.y[i], fan.z[i]}, at, g);
+      if (hits[i].any()) put(scene, hits[i], eye, {fan.x[i], fan.y[i], fan.z[i]}, at, g);
     }
   });
 }
