@@ -35,14 +35,14 @@ void add_missing(const std::string& at, const std::string& quantity, Comparison&
   comparison.missing.push_back({at, quantity, std::numeric_limits<double>::quiet_NaN()});
 }
 
-// The mean of each difference, and the one of the largest size.
+// The mean of each difference, and the one of the largest size; NaN where a geometry has no value.
 void summarize(Comparison& comparison, std::size_t formulas) {
   AngleDifference &mean = comparison.mean, &largest = comparison.largest;
   mean.by_formula.assign(formulas, 0), largest.by_formula.assign(formulas, 0);
   const auto count = static_cast<double>(comparison.angles.size());
   const auto take = [&](double value, double& sum, double& most) {
     sum += value / count;
-    if (!(std::abs(value) <= std::abs(most))) most = value;
+    if (std::isnan(value) || std::abs(value) > std::abs(most)) most = value;
   };
   for (const AngleDifference& angle : comparison.angles) {
     for (const auto& [name, member] : kLabDifferences) take(angle.lab.*member, mean.lab.*member, largest.lab.*member);
@@ -90,8 +90,10 @@ void add_missing_rows(const Subject& standard, const Subject& sample, const Comp
       add_missing(place, quantity_of(formula), comparison);
 }
 
-// The place of a texture: its geometry, or the whole paint.
+// The place of a texture: its geometry, by its name if it has one, or the whole paint.
 std::string texture_place(const paint::TextureReading& texture) {
+  if (const auto geometry = paint::parse_geometry(texture.geometry); geometry.ok())
+    return paint::geometry_name(*geometry);
   return texture.geometry.empty() ? kWhole : texture.geometry;
 }
 
@@ -128,9 +130,10 @@ void add_textures(const paint::Measurement& standard, const paint::Measurement& 
   }
 }
 
-Result<void> add_metamerism(const paint::Paint& standard, const paint::Paint& sample, const CompareOptions& options,
+Result<void> add_metamerism(const Subject& standard_subject, const paint::Paint& sample, const CompareOptions& options,
                             Comparison& comparison) {
   if (options.illuminants.empty()) return {};
+  const paint::Paint& standard = standard_subject.paint;
   if (!has_spectra(standard) || !has_spectra(sample)) {
     comparison.remarks.emplace_back("metamerism is not told: it needs the spectra of standard and sample");
     return {};
@@ -141,9 +144,9 @@ Result<void> add_metamerism(const paint::Paint& standard, const paint::Paint& sa
                  paint::metamerism(*sample.measurement, *standard.measurement, light, test, options.formulas.front()));
     for (const paint::DifferenceAt& difference : found)
       comparison.others.push_back({paint::geometry_name(difference.geometry), "metamerism_" + name, difference.value});
-    for (const paint::SpectrumReading& spectrum : standard.measurement->spectra)
-      if (std::ranges::find(found, spectrum.geometry, &paint::DifferenceAt::geometry) == found.end())
-        add_missing(paint::geometry_name(spectrum.geometry), "metamerism_" + name, comparison);
+    for (const paint::LabReading& row : standard_subject.rows)
+      if (std::ranges::find(found, row.geometry, &paint::DifferenceAt::geometry) == found.end())
+        add_missing(paint::geometry_name(row.geometry), "metamerism_" + name, comparison);
   }
   return {};
 }
@@ -169,7 +172,7 @@ Result<Comparison> compare_in_one_light(const Subject& standard, const Subject& 
   if (standard.paint.measurement && sample.paint.measurement)
     add_textures(*standard.paint.measurement, *sample.paint.measurement, comparison);
   if (standard.paint.measurement) add_missing_textures(*standard.paint.measurement, comparison);
-  GONIO_TRY(add_metamerism(standard.paint, sample.paint, options, comparison));
+  GONIO_TRY(add_metamerism(standard, sample.paint, options, comparison));
   return Result(std::move(comparison));
 }
 

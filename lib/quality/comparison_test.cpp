@@ -98,6 +98,24 @@ TEST(Comparison, OfAPaintWithItselfIsZeroEverywhere) {
     EXPECT_EQ(d.value, 0) << d.quantity;
 }
 
+// DIN 6175-2 has no value in the mirror direction.
+TEST(Comparison, HasNoMeanAndNoLargestOfWhatAGeometryLacks) {
+  const auto standard = paint_of("standard", {{-15, {80, 20, 30}}, {0, {120, 20, 30}}, {15, {50, 20, 30}}});
+  const auto sample = paint_of("sample", {{-15, {50, 20, 30}}, {0, {120, 20, 30}}, {15, {50, 20, 30}}});
+  const Comparison c = compared(standard, sample, {{{Kind::kDin6175}}, {}});
+  EXPECT_TRUE(std::isnan(c.mean.by_formula[0]));
+  EXPECT_TRUE(std::isnan(c.largest.by_formula[0]));
+  EXPECT_EQ(c.largest.lab.dL, -30);
+}
+
+TEST(Comparison, OfMetamerismMissesTheGeometriesThatHaveNoSpectra) {
+  auto paint = kStandard;
+  paint.measurement->spectra = {{{.aspecular_deg = 45}, 400, 10, std::vector<double>(31, 0.25)}};
+  const Comparison c = compared(paint, paint, {{{}}, {"A"}});
+  EXPECT_EQ(std::ranges::count(c.missing, "metamerism_A", &Deviation::quantity), 2);
+  EXPECT_EQ(other(c, "metamerism_A"), 0);
+}
+
 TEST(Comparison, OfBlackHasFiniteDifferences) {
   const auto black = paint_of("black", {{15, {0, 0, 0}}, {45, {0, 0, 0}}});
   const auto dark = paint_of("dark", {{15, {1, 0.1, 0}}, {45, {0.5, 0, -0.1}}});

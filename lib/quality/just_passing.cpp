@@ -36,10 +36,10 @@ class AngleLimits {
     for (const color::DifferenceFormula& formula : options_.formulas)
       angle.by_formula.push_back(
           color::difference(formula, standard_.lab, sample, paint::aspecular_angle_deg(standard_.geometry)));
-    return sample.L >= 0 && std::ranges::all_of(limits_, [&](const Limit* limit) {
-             const auto value = quantity_at(limit->quantity, angle, options_);
-             return !value || !((limit->low && *value < *limit->low) || (limit->high && *value > *limit->high));
-           });
+    return std::ranges::all_of(limits_, [&](const Limit* limit) {
+      const auto value = quantity_at(limit->quantity, angle, options_);
+      return !value || !((limit->low && *value < *limit->low) || (limit->high && *value > *limit->high));
+    });
   }
 
   // The largest distance that the limits allow in a direction; nothing if no limit bounds it.
@@ -91,7 +91,8 @@ Result<std::vector<paint::Paint>> just_passing(const paint::Paint& standard, con
     made.measurement = paint::Measurement{paint::condition_of(standard), "", rows};
     for (std::size_t i = 0; i < rows.size(); ++i) {
       color::Lab& lab = made.measurement->rows[i].lab;
-      const double r = reaches[i].value_or(least);
+      const double black = direction.L < 0 ? std::max(lab.L, 0.0) / -direction.L : kFarthest;
+      const double r = std::min(reaches[i].value_or(least), black);
       lab = {lab.L + r * direction.L, lab.a + r * direction.a, lab.b + r * direction.b};
     }
   }

@@ -31,6 +31,22 @@ void LimitMaker::add(const Comparison& comparison, const CompareOptions& options
         columns_.try_emplace({deviation.at, deviation.quantity}, Column{columns_.size(), {}}).first->second;
     if (std::isfinite(deviation.value)) column.values.push_back(deviation.value);
   }
+  for (const Deviation& missing : comparison.missing)
+    columns_.try_emplace({missing.at, missing.quantity}, Column{columns_.size(), {}});
+}
+
+std::vector<std::string> LimitMaker::dropped() const {
+  const auto lacks = [&](const Key& key) {
+    const auto found = columns_.find(key);
+    return found != columns_.end() && found->second.values.size() < panels_;
+  };
+  std::vector<std::string> names;
+  for (const auto& [key, column] : columns_) {
+    const auto& [at, quantity] = key;
+    if (!lacks(key) || (quantity != "dL" && lacks({at, "dL"}))) continue;
+    names.push_back(at == kWhole ? quantity : quantity == "dL" ? at : fmt::format("{} at {}", quantity, at));
+  }
+  return names;
 }
 
 Result<std::vector<LimitMaker::Spread>> LimitMaker::spreads() const {

@@ -18,6 +18,8 @@ class LimitMaker {
   static constexpr std::size_t kFewestPanels = 3;
 
   void add(const Comparison& comparison, const CompareOptions& options);
+  // Geometries, and single quantities elsewhere, that have no limit since a panel lacks them: "45as110", "gloss60".
+  std::vector<std::string> dropped() const;
   // Error: fewer than kFewestPanels were added.
   Result<std::vector<Limit>> by_spread(double k) const;
   // With the least k by which at least `share` (0..1) of the panels keep all limits at once.

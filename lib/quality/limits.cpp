@@ -39,6 +39,8 @@ Result<void> check_quantity(const Limit& limit) {
         "there is no quantity \"{}\": use dL, da, db, dC, dH, dE, dE_FORMULA, {}, metamerism_ILLUMINANT or "
         "texture:NAME",
         shown(name), joined({kWholeQuantities.begin(), kWholeQuantities.end()}, ", "));
+  if (limit.at == kWhole && (angle || is_difference(name) || name.starts_with("metamerism_")))
+    return input_error("{} belongs to a geometry: write one, or *, in place of {}", name, kWhole);
   if ((limit.at == kMean || limit.at == kLargest) && !is_difference(name))
     return input_error("{} is for dE alone, and not for {}", limit.at, name);
   if (whole && limit.at != "*" && limit.at != kWhole)
@@ -58,12 +60,18 @@ Result<Limit> limit_in(std::vector<std::string> cells) {
   while (cells.size() > 4 && cells.back().empty()) cells.pop_back();
   if (cells.size() != 4) return input_error("has {} cells: write {}", cells.size(), kHead);
   Limit limit{cells[0], cells[1]};
-  if (!is_one_of(std::array{"*", kMean, kLargest, kWhole}, limit.at) && !limit.quantity.starts_with("texture:")) {
+  if (!is_one_of(std::array{"*", kMean, kLargest, kWhole}, limit.at)) {
     const auto geometry = paint::parse_geometry(limit.at);
-    if (!geometry.ok()) return input_error("{}", geometry.error().message);
-    limit.at = paint::geometry_name(*geometry);
+    if (geometry.ok())
+      limit.at = paint::geometry_name(*geometry);
+    else if (!limit.quantity.starts_with("texture:"))
+      return input_error("{}", geometry.error().message);
   }
   GONIO_TRY(check_quantity(limit));
+  if (limit.quantity.starts_with("dE_")) {
+    GONIO_ASSIGN(const color::DifferenceFormula formula, color::parse_formula(limit.quantity.substr(3)));
+    limit.quantity = quantity_of(formula);
+  }
   GONIO_ASSIGN(limit.low, bound_in(cells[2], "low"));
   GONIO_ASSIGN(limit.high, bound_in(cells[3], "high"));
   if (!limit.low && !limit.high) return input_error("has neither low nor high: give one of them");
@@ -230,6 +238,12 @@ Judged judged(const Comparison& comparison, const CompareOptions& options, const
   if (limits.empty()) return result;
   const std::vector<Deviation> all = deviations(comparison, options);
   const std::string first_formula = quantity_of(options.formulas.front());
+  std::vector<Deviation> missing = comparison.missing;
+  for (const Deviation& d : all)
+    if (std::isnan(d.value) && std::ranges::none_of(missing, [&](const Deviation& other) {
+          return other.at == d.at && other.quantity == d.quantity;
+        }))
+      missing.push_back(d);
   std::vector<Excess> unmeasured;
   for (const Limit& limit : limits) {
     bool met = false;
@@ -247,7 +261,7 @@ Judged judged(const Comparison& comparison, const CompareOptions& options, const
       if (!keeps(d.value, limit))
         result.excesses.push_back(excess_of(d, limit, limit.high && d.value > *limit.high, comparison));
     }
-    for (const Deviation& d : comparison.missing)
+    for (const Deviation& d : missing)
       if (concerns(limit, d, first_formula)) lacks(d);
     if (!met) lacks({limit.at == "*" ? kWhole : limit.at, limit.quantity, std::numeric_limits<double>::quiet_NaN()});
   }

@@ -102,6 +102,29 @@ TEST(Limits, AreNotKeptByReadingsThatTheSampleLacks) {
   EXPECT_EQ(dark.excesses.back().words, "45as110: dL has a limit and was not measured");
 }
 
+TEST(Limits, AreNotKeptByWhatHasNoValue) {
+  paint::Paint mirror = kRed;
+  mirror.measurement->rows[1].geometry.aspecular_deg = 0;
+  const CompareOptions din{{{Kind::kDin6175}}, {}};
+  const Comparison c = *compare(*subject_of(mirror), *subject_of(mirror), din);
+  for (const char* row : {"*,dE,,1\n", "45as0,dE,,1\n", "max,dE,,1\n", "mean,dE,,1\n"}) {
+    const Judged all = judged(c, din, limits(row));
+    EXPECT_STREQ(all.verdict(), "incomplete") << row;
+    EXPECT_EQ(all.excesses.size(), 1u) << row;
+  }
+  EXPECT_STREQ(judged(c, din, limits("*,dE,,1\n")).verdict("45as15"), "pass");
+  EXPECT_STREQ(judged(c, din, limits("*,dL,-1,1\n")).verdict(), "pass") << "the control";
+}
+
+TEST(Limits, NameFormulasAndGeometriesInAnySpelling) {
+  for (const auto& [spelling, name] :
+       {std::pair{"dE_cmc", "dE_cmc:2:1"}, {"dE_cmc:2.0:1", "dE_cmc:2:1"}, {"dE_CIEDE2000", "dE_ciede2000"}})
+    EXPECT_EQ(limits(fmt::format("*,{},,1\n", spelling)).front().quantity, name);
+  EXPECT_STREQ(judged(moved({-2.1, 0, 0}, kOptions), kOptions, limits("*,dE_CMC,,.1\n")).verdict(), "fail");
+  EXPECT_EQ(limits("15,texture:Grade,,1\n").front().at, "45as15");
+  EXPECT_EQ(limits("15d,texture:Grade,,1\n").front().at, "15d");
+}
+
 TEST(Limits, GiveNoVerdictWhereThereIsNone) {
   const Judged some = judged(moved({}, kOptions), kOptions, limits("45as15,dL,-1,1\n"));
   EXPECT_STREQ(some.verdict("45as15"), "pass");
@@ -170,7 +193,8 @@ TEST(Limits, AreReadAsSpreadsheetsSaveThem) {
 
 TEST(Limits, AreRefusedWithTheirLine) {
   for (const char* wrong : {"*,dL,1,-1", "*,dQ,1,2", "*,dL,,", "*,dL,x,2", "*,dL,1", "x,dL,1,2", "mean,dL,1,2",
-                            "45as15,gloss60,1,2", "*,dE_cie99,,2", "*,dL,nan,2", "*,texture:,,2", "*,metamerism_,,2"}) {
+                            "45as15,gloss60,1,2", "*,dE_cie99,,2", "paint,dL,1,2", "paint,dE,,2",
+                            "paint,metamerism_A,,2", "*,dL,nan,2", "*,texture:,,2", "*,metamerism_,,2"}) {
     const auto result = parse_limits(
         "geometry;quantity;low;high\n\n*;dL;-1;1\n" +
             [&] {
@@ -202,6 +226,12 @@ TEST(Limits, MadeByAShareAreKeptByItAndNotByMore) {
   EXPECT_EQ(kept(*maker.by_share(0.9)), 180);
   EXPECT_EQ(kept(*maker.by_share(1)), 200);
   EXPECT_EQ(kept(*maker.by_spread(100)), 200);
+  EXPECT_TRUE(maker.dropped().empty());
+  paint::Paint short_panel = kRed;
+  short_panel.measurement->rows.pop_back();
+  maker.add(*compare(*subject_of(kRed), *subject_of(short_panel), kOptions), kOptions);
+  EXPECT_EQ(maker.dropped(),
+            (std::vector<std::string>{"45as110", "chroma_index", "flop_index", "hue_shift_index", "hue_travel_deg"}));
   LimitMaker few;
   few.add(panels[0], kOptions), few.add(panels[1], kOptions);
   EXPECT_FALSE(few.by_spread(3).ok());
@@ -225,6 +255,19 @@ TEST(Limits, AreReachedByTheEightPaintsThatJustPass) {
     }
     EXPECT_GE(judged(*compare(*subject_of(kRed), *subject_of(beyond), kOptions), kOptions, all).excesses.size(), 1u);
   }
+  // A geometry without a limit takes what the others allow, up to black.
+  const auto flop = just_passing(kRed, kOptions, limits("45as45,dE,,1\n45as45,dL,-3,3\n"));
+  ASSERT_TRUE(flop.ok()) << flop.error().message;
+  const auto step = [&](std::size_t paint, std::size_t row) {
+    return (*flop)[paint].measurement->rows[row].lab.L - kRed.measurement->rows[row].lab.L;
+  };
+  EXPECT_EQ((*flop)[2].name, "red.face-darker");
+  EXPECT_LT(step(2, 1), -0.9);
+  EXPECT_NEAR(step(2, 2), step(2, 1), 1e-9);
+  EXPECT_NEAR(step(2, 0), step(2, 1), 1e-9);
+  const auto wide = just_passing(kRed, kOptions, limits("45as45,da,-30,30\n45as45,db,-30,30\n45as45,dL,-30,30\n"));
+  ASSERT_TRUE(wide.ok()) << wide.error().message;
+  EXPECT_NEAR((*wide)[2].measurement->rows[2].lab.L, 0, 1e-9);
   EXPECT_FALSE(just_passing(kRed, kOptions, limits("*,dL,-1,1\n")).ok());
   EXPECT_FALSE(just_passing(kRed, kOptions, limits("*,dL,1,2\n")).ok());
 }

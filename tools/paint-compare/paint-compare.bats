@@ -136,6 +136,10 @@ field() {
   run paint-compare -s with.paints.xml accepted.paints.xml -o table.tsv
   [ "$status" -eq 0 ]
   [[ $output == *'9 pass, 0 fail'* ]]
+  grep -v 45as110 std.csv >short.csv
+  run paint-compare -s std.paints.xml --make-limits made.csv std.paints.xml std.paints.xml short.csv -o table.tsv
+  [[ $output == *'made.csv: no limits for 45as110, '* ]]
+  ! grep -q 45as110 made.csv || false
   run paint-compare -q -s "$standard" --make-limits few.csv "$standard"
   [ "$status" -eq 3 ]
   [ ! -e few.csv ]

@@ -110,6 +110,10 @@ class Run {
     if (!options_.make_limits.empty()) {
       GONIO_ASSIGN(const std::vector<quality::Limit> limits,
                    options_.share > 0 ? maker_.by_share(options_.share) : maker_.by_spread(options_.spread));
+      if (const std::vector<std::string> dropped = maker_.dropped(); !dropped.empty())
+        session_.warn(fmt::format(
+            "{}: no limits for {}, which a sample or its standard lacks: measure it, or leave that sample out",
+            options_.make_limits, joined(dropped, ", ")));
       if (options_.make_limits.ends_with(".xml")) {
         std::vector<paint::Paint> paints;
         for (const Standard& standard : standards_.all())
