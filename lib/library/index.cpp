@@ -59,10 +59,11 @@ std::span<const paint::MetricColumn> columns() {
   return paint::metric_columns_without_fit();
 }
 
-// The guard distinguishes states of a library file.
+// The guard distinguishes states of a library file. A program can set the time of modification back, but not that of
+// the last change.
 struct Guard {
   std::uint64_t bytes = 0;
-  std::int64_t modified_ns = 0;
+  std::int64_t changed_ns = 0;
 };
 
 Result<Guard> guard_of(const std::string& path) {
@@ -71,7 +72,7 @@ Result<Guard> guard_of(const std::string& path) {
   if (!S_ISREG(info.st_mode))
     return input_error("{}: is no plain file: a library is kept with its index beside it, so give a file", path);
   return Guard{static_cast<std::uint64_t>(info.st_size),
-               static_cast<std::int64_t>(info.st_mtim.tv_sec) * 1'000'000'000 + info.st_mtim.tv_nsec};
+               static_cast<std::int64_t>(info.st_ctim.tv_sec) * 1'000'000'000 + info.st_ctim.tv_nsec};
 }
 
 std::vector<std::string> warnings_of(const formats::PaintSource& source) {
@@ -326,7 +327,7 @@ Result<std::string> staleness(const Json& directory, const Guard& guard, const s
   // Another version may have read the library otherwise.
   if (directory.value("program", "") != version) return std::string("another version of this program made it");
   if (directory.value("library_bytes", std::uint64_t{0}) != guard.bytes) return std::string("the library has changed");
-  if (directory.value("library_modified_ns", std::int64_t{0}) == guard.modified_ns) return std::string();
+  if (directory.value("library_changed_ns", std::int64_t{0}) == guard.changed_ns) return std::string();
   GONIO_ASSIGN(const std::uint64_t sum, checksum(library_path));
   if (directory.value("library_checksum", std::uint64_t{0}) == sum) return std::string();
   return std::string("the library has changed");
@@ -452,7 +453,7 @@ Result<LibraryIndex> LibraryIndex::open(const std::string& library_path,
   GONIO_ASSIGN(Built built, build([&] { return source->next(); },
                                   {{"program", version},
                                    {"library_bytes", guard.bytes},
-                                   {"library_modified_ns", guard.modified_ns},
+                                   {"library_changed_ns", guard.changed_ns},
                                    {"library_checksum", sum}},
                                   progress));
   const Stopwatch writing;

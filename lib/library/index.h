@@ -39,9 +39,9 @@ class LibraryIndex {
   enum class Origin { kMapped, kBuilt, kInMemory };
 
   // The index of the paint file `library_path`, in any format that formats::open_paints() reads. The file
-  // `<library_path>.snapindex` is mapped if it belongs to this state of the library: size and time of modification
-  // agree, or size and checksum, and a program of the same `version` made it. Otherwise the library is read, and the
-  // index is written there, whole or not at all. If that cannot be done, it stays in memory and note() says why; so
+  // `<library_path>.snapindex` is mapped if it belongs to this state of the library: size and time of its last
+  // change agree, or size and checksum, and a program of the same `version` made it. Otherwise the library is read, and
+  // the index is written there, whole or not at all. If that cannot be done, it stays in memory and note() says why; so
   // does that of FILE#NAMES, some paints of a file. `progress` is told the number of paints read so far. Error: the
   // library cannot be read, or it is no plain file.
   static Result<LibraryIndex> open(const std::string& library_path,

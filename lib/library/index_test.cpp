@@ -92,6 +92,13 @@ TEST_F(LibraryIndexFile, ChangedLibraryMakesItStale) {
   std::ofstream(path_) << text;
   fs::last_write_time(path_, fs::last_write_time(path_) + std::chrono::seconds(5));
   EXPECT_EQ(opened().name(100), "q100");
+
+  // Neither do size and time of modification tell two contents apart.
+  const auto time = fs::last_write_time(path_);
+  text.replace(text.find("q100"), 4, "r100");
+  std::ofstream(path_) << text;
+  fs::last_write_time(path_, time);
+  EXPECT_EQ(opened().name(100), "r100");
 }
 
 TEST_F(LibraryIndexFile, TouchedLibraryIsStillTheSame) {
