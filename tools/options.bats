@@ -65,6 +65,7 @@ options() {
   for tool in $tools; do
     run "$tool" --generate=man
     [ "$status" -eq 0 ] || { echo "$output"; false; }
+    [ "$("$tool" --generate man)" = "$output" ]
   done
 }
 

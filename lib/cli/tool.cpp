@@ -154,11 +154,14 @@ int tool_main(int argc, char** argv, const ToolSpec& table, const CommonOptions&
   // Linux starts a program without any argument, its name included, where the caller wants that.
   const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
   // These three answer whatever else is on the line, and even where a required option is missing.
-  for (const std::string& word : arguments) {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string& word = arguments[i];
     if (word == "--") break;
     if (word == "--help" || word == "-h") return answer(spec, help_text(spec));
     if (word == "--version") return answer(spec, fmt::format("{} {}\n", spec.name, Session::version()));
-    if (word == "--generate=man" || word == "--generate=completion") return generate(spec, word.substr(11));
+    const std::string value = word == "--generate" && i + 1 < arguments.size() ? arguments[i + 1] : "";
+    const std::string what = word.starts_with("--generate=") ? word.substr(11) : value;
+    if (what == "man" || what == "completion") return generate(spec, what);
   }
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond its limit is a writing error, which names the file
   try {
