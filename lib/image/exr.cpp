@@ -348,6 +348,8 @@ Result<OpenExr> open_exr(const std::string& path, const std::vector<std::string>
 namespace {
 
 constexpr float kMostHalf = 65504.0F;
+// Halves lose digits below 2^-14: a picture has them where colors of 1/128 of its largest keep theirs.
+constexpr float kDarkestHalf = 0x1p-7F;
 constexpr int kZipLevel = 2;  // within 3 % of the size of the highest level at a fraction of its time
 
 class MemoryOutput : public Imf::OStream {
@@ -386,9 +388,17 @@ std::vector<std::string> channel_names(const Image& image) {
 Result<PixelType> storage_type(const ImagePart& part) {
   if (auto finite = check_finite(part.image); !finite.ok())
     return input_error("part {}: {}", part.name, finite.error().message);
-  float most = 0;
-  for (const float value : part.image.data) most = std::max(most, std::fabs(value));
-  return most > kMostHalf ? PixelType::kFloat : part.type;
+  const Image& image = part.image;
+  const std::vector<std::string> names = channel_names(image);
+  const auto channels = static_cast<std::size_t>(image.channels);
+  float most = 0, most_light = 0;
+  for (std::size_t i = 0; i < image.data.size(); ++i) {
+    const float size = std::fabs(image.data[i]);
+    most = std::max(most, size);
+    if (names[i % channels] != "A") most_light = std::max(most_light, size);
+  }
+  const bool holds = most <= kMostHalf && (most_light == 0 || most_light >= kDarkestHalf);
+  return holds ? part.type : PixelType::kFloat;
 }
 
 // True if compression is worth its time. Deflate finds next to nothing in floats of high precision: of maps that were

@@ -94,6 +94,17 @@ TEST_F(ImageFile, HalvesAreRoundedAndNotTruncated) {
   EXPECT_LT(std::fabs(bias / part.image.data.size()), 0x1p-12 / std::sqrt(30000.0) * 4);
 }
 
+// Light in units of its own may be tiny everywhere; alpha says nothing of it.
+TEST_F(ImageFile, APictureTooDarkForHalvesIsOneOfFloats) {
+  ImagePart part{"dark", {2, 2, 4, std::vector<float>(16, 3e-9F), {}}, {}, PixelType::kHalf};
+  for (std::size_t i = 3; i < 16; i += 4) part.image.data[i] = 1;
+  ASSERT_TRUE(write_exr(path("x.exr"), {part}).ok());
+  EXPECT_EQ(read_exr(path("x.exr")).value()[0].image.data, part.image.data);
+  part.image.data[4] = 0.5F;  // dark pixels beside others
+  ASSERT_TRUE(write_exr(path("x.exr"), {part}).ok());
+  EXPECT_EQ(read_exr(path("x.exr")).value()[0].type, PixelType::kHalf);
+}
+
 // The textbook writer stores halves whatever comes: 70000 becomes Inf.
 TEST_F(ImageFile, HardCase_PrefilterSunAValueBeyondHalfMakesThePartFloat) {
   ImagePart part = random_part("sun", 2, 2, 3, PixelType::kHalf);
