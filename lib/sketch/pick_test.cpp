@@ -24,6 +24,15 @@ color::Lab lab_of(const color::Rgb& rgb) {
   return color::lab_from_rgb(rgb, *color::white_point({}));
 }
 
+TEST(Pick, FloatsThatStateNothingAreOfRec709) {
+  image::ImagePart red = flat(1, 1, {1, 0, 0});
+  red.attributes.clear();
+  const auto picture = picture_of(std::move(red), "a.exr", PictureView::kShown);
+  ASSERT_TRUE(picture.ok()) << picture.error().message;
+  EXPECT_NEAR(picture->pixel(0, 0)[0], 0.6274, 1e-3);
+  EXPECT_NEAR(picture->pixel(0, 0)[1], 0.0691, 1e-3);
+}
+
 TEST(Pick, DroppersAreReadWholeOrRefused) {
   const auto d = parse_dropper("a@b/c.png@12,7,2.5", "--face");
   ASSERT_TRUE(d.ok());

@@ -84,12 +84,10 @@ void take_inks_for_filters(image::Image& image) {
 }
 
 // The color space of a file that states none.
-void tag_untagged(image::ImagePart& part, bool integer, bool is_exr) {
+void tag_untagged(image::ImagePart& part, bool integer) {
   if (!image::text_attribute(part, "colorInteropID").empty() || part.attributes.contains("chromaticities")) return;
-  if (!image::text_attribute(part, "oiio:ColorSpace").empty() && !is_exr) return;
-  part.attributes["colorInteropID"] = std::string(integer  ? "srgb_rec709_display"
-                                                  : is_exr ? "lin_rec2020_scene"
-                                                           : "lin_rec709_scene");
+  if (!image::text_attribute(part, "oiio:ColorSpace").empty()) return;
+  part.attributes["colorInteropID"] = std::string(integer ? "srgb_rec709_display" : "lin_rec709_scene");
 }
 
 // Brings the picture back to light through the view that it names. The signals of an sRGB display are found again where
@@ -132,7 +130,7 @@ Result<Picture> read_picture(const std::string& path, PictureView view, const st
 }
 
 Result<Picture> picture_of(image::ImagePart part, const std::string& name, PictureView view) {
-  const bool integer = holds_integers(part), is_exr = !part.attributes.contains("goniochrome:integer");
+  const bool integer = holds_integers(part);
   Picture picture;
   picture.scene_linear = !integer;
   picture.left_out = image::left_out(part);
@@ -153,7 +151,7 @@ Result<Picture> picture_of(image::ImagePart part, const std::string& name, Pictu
     GONIO_ASSIGN(picture.rgb, image::image_through_icc(part.image, image::text_attribute(part, "ICCProfile"), name));
     picture.space = "its ICC profile";
   } else {
-    tag_untagged(part, integer, is_exr);
+    tag_untagged(part, integer);
     GONIO_ASSIGN(picture.rgb, image::working_space_rgb(part, name));
     picture.space = integer ? "sRGB" : "linear light";
     if (const auto id = image::text_attribute(part, "colorInteropID"); !id.empty()) picture.space = id;

@@ -37,9 +37,9 @@ struct Picture {
 };
 
 // Reads any image. Tagged files are what they say (ICC profile, color space, chromaticities); untagged whole numbers
-// are sRGB, untagged EXR is in the working space as render-osmesa writes it, other floats linear Rec.709. Inks of a
-// CMYK picture without a profile are converted by a rule of thumb, and a warning says so. Error, with the remedy: not
-// an image, a damaged profile or one of other channels, an unknown color space, or a view that cannot be undone.
+// are sRGB, untagged floats linear Rec.709. Inks of a CMYK picture without a profile are converted by a rule of thumb,
+// and a warning says so. Error, with the remedy: not an image, a damaged profile or one of other channels, an unknown
+// color space, or a view that cannot be undone.
 // `named`, where it has a name, is the view in place of the one that the picture names.
 Result<Picture> read_picture(const std::string& path, PictureView view, const std::string& named = "");
 // The picture of an image that was read with Inks::kKept, or of a piece of one; `name` is its name in errors.
