@@ -77,6 +77,23 @@ TEST(PaintView, UndoneFollowsItsDefinition) {
   }
 }
 
+// Linear .5, .02, .02 of Display P3, whose sRGB signals are .735357 and .151704, and which has no Rec.709 green.
+TEST(DisplayGamut, OfDisplayP3IsWider) {
+  const color::Rgb red{0.38184, 0.041957, 0.019419};
+  const color::Rgb light = screen_light(red, Screen::kDisplayP3);
+  EXPECT_NEAR(light.x, 0.5, 1e-5);
+  EXPECT_NEAR(light.y, 0.02, 1e-5);
+  EXPECT_NEAR(light.z, 0.02, 1e-5);
+  EXPECT_EQ(in_display_gamut(red, Screen::kDisplayP3), red);
+  EXPECT_NE(in_display_gamut(red), red);
+  const color::Xyz white{0.9504, 1, 1.0888};
+  const color::Lab lab = color::lab_from_rgb(red, white);
+  EXPECT_EQ(screen_color(lab, white, Screen::kDisplayP3), (std::array<int, 3>{188, 39, 39}));
+  const double hue_deg = color::hue_deg(lab);
+  EXPECT_LT(screen_chroma(lab.L, hue_deg, white), color::chroma(lab));
+  EXPECT_GT(screen_chroma(lab.L, hue_deg, white, Screen::kDisplayP3), color::chroma(lab));
+}
+
 TEST(DisplayGamut, KeepsLuminanceAndWhatIsInside) {
   const color::Rgb inside{0.3, 0.2, 0.1}, outside{0, 0.5, 0};
   EXPECT_EQ(in_display_gamut(inside), inside);

@@ -3,18 +3,8 @@
 #include <fmt/format.h>
 
 #include "color/color.h"
-#include "display/paint_view.h"
 
 namespace goniochrome::studio {
-
-namespace {
-
-// Display P3 from XYZ under D65. [CSS Color Module Level 4, 10.4 and its sample code]
-constexpr double kP3FromXyz[3][3] = {{2.493496911941425, -0.9313836179191239, -0.40271078445071684},
-                                     {-0.8294889695615747, 1.7626640603183463, 0.023624685841943577},
-                                     {0.03584583024378447, -0.07617238926804182, 0.9568845240076872}};
-
-}  // namespace
 
 std::string display_program() {
   return fmt::format(R"(#version 300 es
@@ -55,20 +45,11 @@ void main() {{
                      color::luminance({0, 0, 1}));
 }
 
-std::vector<double> to_srgb_screen() {
+std::vector<double> to_screen(display::Screen screen) {
   std::vector<double> columns;
   for (const color::Rgb& unit : {color::Rgb{1, 0, 0}, color::Rgb{0, 1, 0}, color::Rgb{0, 0, 1}}) {
-    const color::Rgb column = color::rec709_from_rec2020(unit);
+    const color::Rgb column = display::screen_light(unit, screen);
     for (int c = 0; c < 3; ++c) columns.push_back(column[c]);
-  }
-  return columns;
-}
-
-std::vector<double> to_p3_screen() {
-  std::vector<double> columns;
-  for (const color::Rgb& unit : {color::Rgb{1, 0, 0}, color::Rgb{0, 1, 0}, color::Rgb{0, 0, 1}}) {
-    const color::Xyz xyz = color::xyz_d65_from_rgb(unit);
-    for (const auto& row : kP3FromXyz) columns.push_back(row[0] * xyz.X + row[1] * xyz.Y + row[2] * xyz.Z);
   }
   return columns;
 }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "display/paint_view.h"
+
 namespace goniochrome::studio {
 
 // A fragment shader with the uniforms `picture` (scene-linear radiance, premultiplied, its first row at the top),
@@ -12,9 +14,8 @@ namespace goniochrome::studio {
 // covers nothing shows a gray backdrop, as pictures of render-osmesa do.
 std::string display_program();
 
-// The matrices `to_screen` for screens of sRGB and of Display P3, column by column; the signal curve is the same.
-std::vector<double> to_srgb_screen();
-std::vector<double> to_p3_screen();
+// The matrix `to_screen`, column by column; the signal curve of all screens is the same.
+std::vector<double> to_screen(display::Screen screen);
 
 // The fragment program that draws over a picture where its surface is seen at 15 and at 45 degrees from the mirror
 // direction of a light and at the travel, as rings in yellow, blue and pink, and the highlight of the light as a

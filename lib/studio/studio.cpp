@@ -197,7 +197,9 @@ Result<Json> Studio::State::flakes_of(JsonReader& request) {
 
 Result<Json> Studio::State::describe(JsonReader& request) const {
   GONIO_ASSIGN(const paint::Paint paint, paint_of_json(request.member("paint")));
-  return description(paint, print ? &*print : nullptr);
+  const display::Screen screen = screen_of(request);
+  GONIO_TRY(request.status());
+  return description(paint, screen, print ? &*print : nullptr);
 }
 
 Result<Json> Studio::State::variations(JsonReader& request) const {
@@ -277,8 +279,10 @@ Result<Json> Studio::State::write(JsonReader& request) const {
 
 Result<Json> Studio::State::color(JsonReader& request) const {
   const color::Lab lab = request.lab("lab");
+  const display::Screen screen = screen_of(request);
   GONIO_TRY(request.status());
-  return Json{{"css", css_color(lab, {})}, {"rgb", color::rgb_from_lab(lab, screen_white({}))}};
+  return Json{{"css", css_color(lab, color::ViewingCondition{}, screen)},
+              {"rgb", color::rgb_from_lab(lab, screen_white({}))}};
 }
 
 // The color of the curve at an aspecular angle.
@@ -286,13 +290,14 @@ Result<Json> Studio::State::at(JsonReader& request) const {
   GONIO_ASSIGN(const paint::Paint paint, paint_of_json(request.member("paint")));
   const double angle = request.number("angle");
   if (!(angle >= 0 && angle <= 180)) request.fail("an angle from 0 to 180", "angle");
+  const display::Screen screen = screen_of(request);
   GONIO_TRY(request.status());
   GONIO_ASSIGN(const paint::TargetCurve curve, paint::TargetCurve::make(paint, paint::TargetCurve::Kind::kMeasured));
   const color::Lab lab = curve.at(angle);
   return Json{{"lab", lab_json(lab)},
               {"chroma", json_number(color::chroma(lab))},
               {"hue", json_number(color::hue_deg(lab))},
-              {"css", css_color(lab, paint::condition_of(paint))}};
+              {"css", css_color(lab, paint::condition_of(paint), screen)}};
 }
 
 Result<Json> Studio::State::gloss(JsonReader& request) const {
@@ -307,12 +312,15 @@ Result<Json> Studio::State::gloss(JsonReader& request) const {
 Result<Json> Studio::State::dropper(JsonReader& request) const {
   const std::vector<double> signals = request.numbers("signals");
   if (signals.empty() || signals.size() % 3 != 0) request.fail("three signals for each pixel", "signals");
+  const display::Screen screen = screen_of(request);
   GONIO_TRY(request.status());
   std::vector<color::Rgb> lights;
   for (std::size_t i = 0; i < signals.size(); i += 3)
     lights.push_back(sketch::light_of_srgb(signals[i] / 255, signals[i + 1] / 255, signals[i + 2] / 255));
   const sketch::DropperColor found = sketch::dropper_color(lights);
-  return Json{{"lab", lab_json(found.lab)}, {"gloss", json_number(found.gloss)}, {"css", css_color(found.lab, {})}};
+  return Json{{"lab", lab_json(found.lab)},
+              {"gloss", json_number(found.gloss)},
+              {"css", css_color(found.lab, color::ViewingCondition{}, screen)}};
 }
 
 // The gradient, made and named as by paint-edit --gradient.

@@ -59,7 +59,9 @@ color::ReflectionOperator page_operator();
 //               A of each pixel from the upper left; of fewer pixels where small is true. Answers width, height, scaled
 //               (whether bounced light was traced in other paints), bounced_de00_p95 (what scaling it errs by),
 //               trace_again (whether that is more than render-osmesa takes) and coat_changed.
-// An answer that holds "error" tells in a sentence what was wrong with the request.
+// Colors that an answer has as css, and cloud colors, are those of the request's "screen": "srgb", where it says
+// nothing, or "display-p3"; so is screen{} of "describe". An answer that holds "error" tells in a sentence what was
+// wrong with the request.
 class Studio {
  public:
   Studio();

@@ -370,6 +370,9 @@ TEST(Studio, DescribesTheColorsOfAScreen) {
   EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {0, 0, 0}}}).at("css"), "#000000");
   // L* 53.585 is a reflectance factor of .2140, whose sRGB signal is .5 (IEC 61966-2-1).
   EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {53.585, 0, 0}}}).at("css"), "#808080");
+  EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {53.585, 0, 0}}, {"screen", "display-p3"}}).at("css"),
+            "color(display-p3 0.5020 0.5020 0.5020)");
+  EXPECT_TRUE(studio.answer({{"do", "color"}, {"lab", {50, 0, 0}}, {"screen", "wide"}}).contains("error"));
   const Json described = studio.answer({{"do", "describe"}, {"paint", paint_json(metallic())}});
   EXPECT_EQ(described.at("rows").size(), 5U);
   EXPECT_EQ(described.at("rows")[1].at("angle"), 25.0);

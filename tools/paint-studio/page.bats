@@ -322,6 +322,13 @@ figures() {
   [ "$status" -eq 0 ]
 }
 
+@test "colors beside the picture are those of the picture, on a screen of Display P3 too" {
+  needs_browser
+  run node "$code/wide.js" page.html .
+  echo "$output"
+  [ "$status" -eq 0 ]
+}
+
 @test "two tabs and a copy of one keep their sessions" {
   needs_browser
   run node "$code/tabs.js" page.html .

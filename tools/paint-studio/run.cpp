@@ -142,7 +142,9 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
                  {"sparkle_vertex", programs.sparkle_vertex},
                  {"display_fragment", studio::display_program()},
                  {"overlay_fragment", studio::overlay_program()}}},
-               {"screens", {{"srgb", studio::to_srgb_screen()}, {"display-p3", studio::to_p3_screen()}}},
+               {"screens",
+                {{"srgb", studio::to_screen(display::Screen::kSrgb)},
+                 {"display-p3", studio::to_screen(display::Screen::kDisplayP3)}}},
                {"layouts", paints.layouts()},
                {"environments", Json::array()},
                {"views", Json::array()}};

@@ -23,7 +23,7 @@ std::vector<double> drawn_angles_deg() {
   return angles;
 }
 
-Json rows_json(const paint::Paint& paint, const color::ViewingCondition& condition) {
+Json rows_json(const paint::Paint& paint, const color::ViewingCondition& condition, display::Screen screen) {
   Json rows = Json::array();
   if (!paint.measurement) return rows;
   for (const paint::LabReading& row : paint.measurement->rows) {
@@ -31,28 +31,29 @@ Json rows_json(const paint::Paint& paint, const color::ViewingCondition& conditi
                     {"angle", paint::aspecular_angle_deg(row.geometry)},
                     {"out_of_plane", row.geometry.out_of_plane},
                     {"lab", lab_json(row.lab)},
-                    {"css", css_color(row.lab, condition)}});
+                    {"css", css_color(row.lab, condition, screen)}});
   }
   return rows;
 }
 
 // How far from an end the screen shows it, and the nearest of its lightness and hue that it shows as it is.
-Json screen_json(const color::Lab& lab, const color::Xyz& white) {
-  const double chroma = color::chroma(lab), most = display::screen_chroma(lab.L, color::hue_deg(lab), white);
+Json screen_json(const color::Lab& lab, const color::Xyz& white, display::Screen screen) {
+  const double chroma = color::chroma(lab), most = display::screen_chroma(lab.L, color::hue_deg(lab), white, screen);
   const double share = chroma > most ? most / chroma : 1;
-  const color::Lab shown = color::lab_from_rgb(display::in_display_gamut(color::rgb_from_lab(lab, white)), white);
+  const color::Lab shown =
+      color::lab_from_rgb(display::in_display_gamut(color::rgb_from_lab(lab, white), screen), white);
   return {{"de00", color::delta_e_2000(lab, shown)}, {"nearest", lab_json({lab.L, share * lab.a, share * lab.b})}};
 }
 
 // The border of what a screen or a print shows at a lightness, in the plane of a* and b*.
 template <class Most>
-Json border_json(double lightness, const color::Xyz& white, const Most& most_chroma) {
+Json border_json(double lightness, const color::Xyz& white, display::Screen screen, const Most& most_chroma) {
   constexpr int kStep_deg = 5;
   Json border = Json::array();
   for (int hue_deg = 0; hue_deg < 360; hue_deg += kStep_deg) {
     const double chroma = most_chroma(lightness, hue_deg), h = hue_deg * kDegree;
     const color::Lab lab{lightness, chroma * math::cos(h), chroma * math::sin(h)};
-    border.push_back({{"a", lab.a}, {"b", lab.b}, {"css", display::css_color(lab, white)}});
+    border.push_back({{"a", lab.a}, {"b", lab.b}, {"css", display::css_color(lab, white, screen)}});
   }
   return border;
 }
@@ -85,11 +86,17 @@ color::Xyz screen_white(const color::ViewingCondition& condition) {
   return white.ok() ? *white : color::Xyz{0.9504, 1, 1.0888};
 }
 
-std::string css_color(const color::Lab& lab, const color::ViewingCondition& condition) {
-  return display::css_color(lab, screen_white(condition));
+display::Screen screen_of(JsonReader& request) {
+  const std::string name = request.text("screen", "srgb");
+  if (name != "srgb" && name != "display-p3") request.fail("srgb or display-p3", "screen");
+  return name == "srgb" ? display::Screen::kSrgb : display::Screen::kDisplayP3;
 }
 
-Result<Json> description(const paint::Paint& paint, const color::PrintGamut* print) {
+std::string css_color(const color::Lab& lab, const color::ViewingCondition& condition, display::Screen screen) {
+  return display::css_color(lab, screen_white(condition), screen);
+}
+
+Result<Json> description(const paint::Paint& paint, display::Screen screen, const color::PrintGamut* print) {
   const color::ViewingCondition condition = paint::condition_of(paint);
   GONIO_TRY([&]() -> Result<void> {
     const auto white = color::white_point(condition);
@@ -112,20 +119,20 @@ Result<Json> description(const paint::Paint& paint, const color::PrintGamut* pri
                         {"flop", lab_json(appearance.flop)},
                         {"travel", appearance.travel_deg},
                         {"fitted", !paint.appearance},
-                        {"face_css", css_color(appearance.face, condition)},
-                        {"flop_css", css_color(appearance.flop, condition)}};
+                        {"face_css", css_color(appearance.face, condition, screen)},
+                        {"flop_css", css_color(appearance.flop, condition, screen)}};
   const color::Xyz white = screen_white(condition);
-  json["screen"] = {{"face", screen_json(appearance.face, white)},
-                    {"flop", screen_json(appearance.flop, white)},
-                    {"border", border_json(appearance.face.L, white, [&](double lightness, double hue_deg) {
-                       return display::screen_chroma(lightness, hue_deg, white);
+  json["screen"] = {{"face", screen_json(appearance.face, white, screen)},
+                    {"flop", screen_json(appearance.flop, white, screen)},
+                    {"border", border_json(appearance.face.L, white, screen, [&](double lightness, double hue_deg) {
+                       return display::screen_chroma(lightness, hue_deg, white, screen);
                      })}};
   if (print != nullptr)
     json["print"] = {
         {"name", print->name},
         {"face", print_json(appearance.face, *print)},
         {"flop", print_json(appearance.flop, *print)},
-        {"border", border_json(std::clamp(appearance.face.L, print->darkest, print->lightest), white,
+        {"border", border_json(std::clamp(appearance.face.L, print->darkest, print->lightest), white, screen,
                                [&](double lightness, double hue_deg) { return print->most(lightness, hue_deg); })}};
   json["average"] = {{"L", average.L}, {"chroma", average.chroma}, {"hue", average.hue_deg}};
   json["gloss"] = Json::array();
@@ -137,12 +144,12 @@ Result<Json> description(const paint::Paint& paint, const color::PrintGamut* pri
     const auto& [diameter_um, coverage, spread_deg] = known->flakes;
     json["flakes"] = {{"values", {diameter_um, coverage, spread_deg}}, {"assumed", known->assumed}};
   }
-  json["rows"] = rows_json(paint, condition);
+  json["rows"] = rows_json(paint, condition, screen);
   json["measured"] = curve.kind() == paint::TargetCurve::Kind::kMeasured;
   json["curve"] = Json::array();
   for (const double angle : drawn_angles_deg()) {
     const color::Lab lab = curve.at(angle);
-    json["curve"].push_back({{"angle", angle}, {"lab", lab_json(lab)}, {"css", css_color(lab, condition)}});
+    json["curve"].push_back({{"angle", angle}, {"lab", lab_json(lab)}, {"css", css_color(lab, condition, screen)}});
   }
   json["metrics"] = metrics_json(metrics);
   return Result(std::move(json));

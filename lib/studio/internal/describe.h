@@ -7,15 +7,20 @@
 #include "base/json.h"
 #include "base/result.h"
 #include "color/print_gamut.h"
+#include "display/paint_view.h"
 #include "paint/paint.h"
+#include "studio/internal/json_reader.h"
 
 namespace goniochrome::studio {
 
 // The white that readings of this condition are relative to; that of D65 where the illuminant is unknown.
 color::Xyz screen_white(const color::ViewingCondition& condition);
 
-// "#rrggbb": the color as an sRGB display shows it, under the light that the reading is relative to.
-std::string css_color(const color::Lab& lab, const color::ViewingCondition& condition);
+// The screen of the page that asks: "srgb", where nothing is said, or "display-p3".
+display::Screen screen_of(JsonReader& request);
+
+// The color as CSS has it on a screen, under the light that the reading is relative to.
+std::string css_color(const color::Lab& lab, const color::ViewingCondition& condition, display::Screen screen);
 
 // Members: name, code, class, appearance{face, flop, travel, fitted}, average{L, chroma, hue}, gloss[], flakes{}
 // (values[] of diameter, coverage and spread, and `assumed`, by class) where there are some, rows[] of geometry, angle,
@@ -24,7 +29,7 @@ std::string css_color(const color::Lab& lab, const color::ViewingCondition& cond
 // of a* and b* at the lightness of the face. `print`{} is the same of a print, where there is one, with its name, and
 // for each end the lightnesses `low` and `high` between which it prints. Error: a paint without color, or of an unknown
 // illuminant.
-Result<Json> description(const paint::Paint& paint, const color::PrintGamut* print = nullptr);
+Result<Json> description(const paint::Paint& paint, display::Screen screen, const color::PrintGamut* print);
 
 // The colors of the lobes of a paint at the angles of a curve: a list of angle and lab.
 Json curve_json(const paint::LobeFit& fit, const color::ViewingCondition& condition);

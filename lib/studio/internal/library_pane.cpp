@@ -104,6 +104,7 @@ Result<Json> LibraryPane::filter(JsonReader& request) {
 }
 
 Result<Json> LibraryPane::rows(JsonReader& request) const {
+  const display::Screen screen = screen_of(request);
   Json list = Json::array();
   for (const double number : request.numbers("places")) {
     if (!(number >= 0 && number < static_cast<double>(index_.size()))) return input_error("there is no such paint");
@@ -117,7 +118,7 @@ Result<Json> LibraryPane::rows(JsonReader& request) const {
           in_plane.emplace_back(paint::aspecular_angle_deg(section.geometries[g]), g);
       std::ranges::sort(in_plane);
       for (const auto& [angle, g] : in_plane)
-        colors.push_back(css_color(lab_at(section.tree, place_of_[i], g), section.condition));
+        colors.push_back(css_color(lab_at(section.tree, place_of_[i], g), section.condition, screen));
     }
     list.push_back({{"name", index_.name(i)},
                     {"code", index_.code(i)},
@@ -130,6 +131,7 @@ Result<Json> LibraryPane::rows(JsonReader& request) const {
 
 Result<Json> LibraryPane::cloud(JsonReader& request) {
   GONIO_ASSIGN(const paint::Geometry geometry, paint::parse_geometry(request.text("geometry")));
+  const display::Screen screen = screen_of(request);
   GONIO_TRY(request.status());
   cloud_.clear(), cloud_colors_.clear(), cloud_paints_.clear();
   for (const library::LibrarySection& section : index_.sections()) {
@@ -140,7 +142,7 @@ Result<Json> LibraryPane::cloud(JsonReader& request) {
     for (std::size_t place = 0; place < section.tree.size; ++place) {
       const color::Lab lab = lab_at(section.tree, place, g);
       cloud_.push_back({static_cast<float>(lab.L), static_cast<float>(lab.a), static_cast<float>(lab.b)});
-      const std::array<int, 3> rgb = display::screen_color(lab, white);
+      const std::array<int, 3> rgb = display::screen_color(lab, white, screen);
       cloud_colors_.push_back(static_cast<std::uint32_t>(rgb[0]) | static_cast<std::uint32_t>(rgb[1]) << 8 |
                               static_cast<std::uint32_t>(rgb[2]) << 16 | 0xff000000U);
       cloud_paints_.push_back(section.tree.labels[place]);

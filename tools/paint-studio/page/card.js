@@ -24,10 +24,10 @@ class Card {
     swatch.style.background = css;
     return made("div", {}, [swatch, made("b", { text: name }), made("span", { text: `L* ${lab[0].toFixed(1)}  a* ${lab[1].toFixed(1)}  b* ${lab[2].toFixed(1)}` })]);
   }
-  // The card of the design as it is shown. Chips are those of the wheel and of the curve at the angles of export.
+  // The card of the design as it is shown. Chips are those of the wheel and of the curve at the angles of export, in sRGB.
   fill() {
-    const { app } = this, { paint, description, stageView } = app, { face, flop, face_css, flop_css, travel } = description.appearance;
-    const curve = chipAngles.map((angle) => [angle, app.engine.ask({ do: "at", paint, angle })]), light = document.getElementById("environment").selectedOptions[0].textContent;
+    const { app } = this, { paint, stageView } = app, ask = (wanted) => app.engine.ask({ ...wanted, paint, screen: "srgb" });
+    const { face, flop, face_css, flop_css, travel } = ask({ do: "describe" }).appearance, curve = chipAngles.map((angle) => [angle, ask({ do: "at", angle })]), light = document.getElementById("environment").selectedOptions[0].textContent;
     const gloss = (paint.gloss ?? []).map(([angle, units]) => told`${units.toFixed(0)} GU at ${angle}°`), figures = document.getElementById("figures").cloneNode(true), curves = document.getElementById("curves").cloneNode(true);
     for (const one of [figures, curves]) one.removeAttribute("id");
     for (const handle of curves.querySelectorAll(".handle, .sight")) handle.remove();

@@ -153,8 +153,7 @@ class NumberControls {
   }
   losses({ screen, print }) {
     const off = (medium, say) => (medium ? ["face", "flop"].filter((end) => medium[end].de00 > 1).map((end) => this.lossOf(end, medium[end], say(words(end), medium[end].de00.toFixed(1)))) : []);
-    const ofScreen = (end, de00) => (this.app.stage.screen === "srgb" ? told`The screen shows the ${end} ${de00} (CIEDE2000) off.` : told`Screens of sRGB show the ${end} ${de00} (CIEDE2000) off; this one shows more colors.`);
-    return [...off(screen, ofScreen), ...off(print, (end, de00) => told`A print by ${print.name} shows the ${end} ${de00} (CIEDE2000) off.`)];
+    return [...off(screen, (end, de00) => told`The screen shows the ${end} ${de00} (CIEDE2000) off.`), ...off(print, (end, de00) => told`A print by ${print.name} shows the ${end} ${de00} (CIEDE2000) off.`)];
   }
 
   // Shows the numbers of a paint: in all fields, or in those that nobody is typing in.

@@ -28,7 +28,7 @@ const lists = ["weights", "filtered", "cloud", "cloudColors", "cloudPaints", "ti
 const kindOfList = { weights: Float32Array, cloud: Float32Array, tilts: Float32Array, picture: Float32Array, numbers: Uint8Array, flakes: Float32Array };  // others: Uint32Array
 
 // The engine of a compiled module. ask() sends a request and returns the answer; it throws what the answer calls an
-// error. `progress` hears the part of a long request that is done.
+// error. Colors are those of its `screen`. `progress` hears the part of a long request that is done.
 async function makeEngine(module, progress = () => {}) {
   let memory = null, library = null;
   const encoder = new TextEncoder(), decoder = new TextDecoder();
@@ -53,8 +53,9 @@ async function makeEngine(module, progress = () => {}) {
     new Uint8Array(memory.buffer, at, text.length).set(text);
   };
   return {
+    screen: "srgb",
     ask(asked) {
-      request(JSON.stringify(asked));
+      request(JSON.stringify({ screen: this.screen, ...asked }));
       const length = library.studio_call();
       const answer = JSON.parse(decoder.decode(new Uint8Array(memory.buffer, library.studio_answer(), length)));
       if (answer.error !== undefined) throw new Error(answer.error);

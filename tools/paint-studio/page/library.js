@@ -149,7 +149,8 @@ class Cloud {
   }
   get open() { return document.getElementById("cloud-shown").open && this.app.geometries.length > 0; }
 
-  load() {
+  load(anew = false) {
+    if (anew) this.geometry = null;
     if (!this.open) return;
     const geometry = document.getElementById("cloud-angle").value;
     if (this.geometry !== geometry) {
@@ -189,7 +190,7 @@ class Cloud {
     if (!this.open || !this.points) return;
     const ratio = Math.min(window.devicePixelRatio || 1, 2), width = Math.max(16, Math.round(this.canvas.clientWidth * ratio)), height = Math.max(16, Math.round(this.canvas.clientHeight * ratio));
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
-    const context = this.canvas.getContext("2d"), at = this.projector(), image = context.createImageData(width, height);
+    const context = this.canvas.getContext("2d", { colorSpace: "display-p3" }), at = this.projector(), image = context.createImageData(width, height, { colorSpace: this.app.stage.screen });
     const pixels = new Uint32Array(image.data.buffer), depth = new Float32Array(width * height).fill(-Infinity), { points, colors } = this;
     const size = this.paints.length > 20000 ? 1 : 3;
     for (let i = 0; i < colors.length; ++i) {

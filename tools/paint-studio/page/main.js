@@ -37,6 +37,7 @@ class App {
     document.getElementById("loading").remove();
     this.follow();
     window.addEventListener("hashchange", () => this.follow());
+    matchMedia("(color-gamut: p3)").addEventListener("change", () => this.screenChanged());
     window.addEventListener("storage", ({ key, newValue }) => { if (this.tab && key === this.place) this.keepApart(newValue !== null); });
   }
   // The paint of a small library that shows most: one of interference, else a pearl, else a metallic.
@@ -136,6 +137,13 @@ class App {
     this.traced.sides = [null, null];
     this.traced.tileTexture = null;
     this.compare(this.compared.choice);
+    this.show();
+  }
+  // After the page came to another screen.
+  screenChanged() {
+    this.stage.takeScreen();
+    this.panel.showRows();
+    this.cloud.load(true);
     this.show();
   }
   // After parts or the second paint changed.

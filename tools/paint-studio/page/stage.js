@@ -68,11 +68,8 @@ class Stage {
     if (!gl) throw new Error(words("This browser has no WebGL 2, with which the picture is drawn."));
     if (!gl.getExtension("EXT_color_buffer_float"))
       throw new Error(words("The graphics of this computer cannot draw float pictures, which the page needs."));
-    this.gl = gl;
-    this.canvas = canvas;
-    this.screen = matchMedia("(color-gamut: p3)").matches && "drawingBufferColorSpace" in gl ? "display-p3" : "srgb";
-    if ("drawingBufferColorSpace" in gl) gl.drawingBufferColorSpace = this.screen;
-    Object.assign(this, { data, engine });
+    Object.assign(this, { gl, canvas, data, engine });
+    this.takeScreen();
     this.floatLinear = gl.getExtension("OES_texture_float_linear") !== null;
     this.sumKind = gl.getExtension("EXT_float_blend") !== null ? gl.RGBA32F : gl.RGBA16F;
     this.mesh = unpackedMesh(data.mesh);
@@ -98,6 +95,14 @@ class Stage {
     this.occlusion = new Occlusion(this);
     this.uploadMesh();
     gl.frontFace(gl.CW);  // counter-clockwise, seen with y down
+  }
+
+  // Pictures and colors of the page are those of Display P3 where the screen and the browser show them, else of sRGB.
+  get screen() { return this.engine.screen; }
+  takeScreen() {
+    const isWide = matchMedia("(color-gamut: p3)").matches && CSS.supports("color", "color(display-p3 1 0 0)");
+    this.engine.screen = isWide && "drawingBufferColorSpace" in this.gl && "colorSpace" in ImageData.prototype ? "display-p3" : "srgb";
+    if ("drawingBufferColorSpace" in this.gl) this.gl.drawingBufferColorSpace = this.screen;
   }
 
   program(vertex, fragment) {
@@ -498,7 +503,7 @@ class Stage {
 
   // Brings a sum to the screen, or into a framebuffer.
   show(sum, environment, stops, framebuffer = null) {
-    this.display(sum, this.environment(environment).white, stops, framebuffer, this.screen);
+    this.display(sum, this.environment(environment).white, stops, framebuffer);
   }
   // The steps that draw the mesh in several paints, in cells that stand in so many columns, with so many samples a pixel.
   *showCells(camera, width, height, columns, weights, environment, stops, samples) {
@@ -516,11 +521,11 @@ class Stage {
       if (samples > 1) yield;
     }
   }
-  // `white` is the luminance that exposure 0 brings to 1, and `screen` is "srgb" or "display-p3".
-  display(picture, white, stops, framebuffer, screen) {
+  // `white` is the luminance that exposure 0 brings to 1.
+  display(picture, white, stops, framebuffer) {
     this.cover(framebuffer, this.displayProgram, "picture", picture, (program) => {
       this.gl.uniform1i(program.at("stride"), picture.stride ?? 1);
-      this.gl.uniformMatrix3fv(program.at("to_screen"), false, this.data.screens[screen]);
+      this.gl.uniformMatrix3fv(program.at("to_screen"), false, this.data.screens[this.screen]);
       this.gl.uniform1f(program.at("gain"), 2 ** stops / (white || 1));
     });
   }
@@ -531,7 +536,7 @@ class Stage {
     for (const [picture, begin, end] of [[pictures[0], 0, border], [pictures[1], border, width]]) {
       if (end === begin) continue;
       gl.scissor(begin, 0, end - begin, height);
-      this.display(picture, white, stops, null, this.screen);
+      this.display(picture, white, stops, null);
     }
     gl.disable(gl.SCISSOR_TEST);
   }
@@ -768,12 +773,12 @@ class Stage {
     const gbuffer = this.gbuffer("tile", camera, width, height, [0, 0], environment);
     return this.pixels(this.shade("tile", gbuffer, weights, environment), this.environment(environment).white, stops);
   }
-  // The pixels of a canvas by which a screen of sRGB shows a picture.
+  // The pixels of a canvas by which the screen shows a picture.
   async pixels(radiance, white, stops) {
     const gl = this.gl, { width, height } = radiance, target = this.target("tile screen", width, height, gl.RGBA8, false);
-    this.display(radiance, white, stops, target.framebuffer, "srgb");
+    this.display(radiance, white, stops, target.framebuffer);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
-    const pixels = new Uint8ClampedArray(4 * width * height), picture = new ImageData(width, height), buffer = gl.createBuffer();
+    const pixels = new Uint8ClampedArray(4 * width * height), picture = new ImageData(width, height, { colorSpace: this.screen }), buffer = gl.createBuffer();
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
     gl.bufferData(gl.PIXEL_PACK_BUFFER, pixels.length, gl.STREAM_READ);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, 0);

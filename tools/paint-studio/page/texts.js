@@ -71,7 +71,6 @@ const german = {
   "That is doubtful: trace the view again in this paint, by render-osmesa --aov transport.": "Das ist zweifelhaft: verfolgen Sie die Ansicht neu in diesem Lack, mit render-osmesa --aov transport.",
   "A paint with a coat took the place of one without it, or the other way round: toward grazing the picture is that of the paint that was traced.":
     "Ein Lack mit Klarlack steht an der Stelle von einem ohne, oder umgekehrt: zum streifenden Blick hin zeigt das Bild den Lack, der verfolgt wurde.",
-  "Screens of sRGB show the {} {} (CIEDE2000) off; this one shows more colors.": "Bildschirme mit sRGB verfehlen {} um {} (CIEDE2000); dieser zeigt mehr Farben.",
   "{} cannot be read: it is a folder, or too large.": "{} kann nicht gelesen werden: ein Ordner, oder zu groß.", "This page does not have the light of the link: {}.": "Diese Seite hat das Licht des Verweises nicht: {}.",
   "The screen shows the {} {} (CIEDE2000) off.": "Der Bildschirm verfehlt {} um {} (CIEDE2000).", "take a* {}, b* {}": "a* {}, b* {} nehmen", "none": "keine",
   "{} parts: told by their names are {}; {} not recognized, which wear the paint.": "{} Teile: nach ihren Namen {}; {} nicht erkannt, sie tragen den Lack.",

@@ -11,9 +11,14 @@ class Tiles {
     document.getElementById("keep").addEventListener("click", () => app.keep());
   }
 
+  canvas(width, height) {
+    const canvas = made("canvas", { width, height, "aria-hidden": "true" });
+    canvas.getContext("2d", { colorSpace: this.app.stage.screen });
+    return canvas;
+  }
   // A button with a picture. It calls chosen() when it is pressed.
   tile(paint, name, note, chosen, current = false) {
-    const canvas = made("canvas", { width: 208, height: 117, "aria-hidden": "true" });
+    const canvas = this.canvas(208, 117);
     const button = made("button", { type: "button", class: "tile", onclick: chosen },
                         [canvas, made("span", { text: name }), ...(note ? [made("small", { text: note })] : [])]);
     if (current) button.setAttribute("aria-current", "true");
@@ -127,7 +132,7 @@ class Tiles {
   // The whole traced view, in the middle of the tile.
   async drawTraced({ canvas, paint }) {
     const { app } = this, picture = await app.traced.tile(app.stageView.traced, paint, app.stageView.stops);
-    const whole = made("canvas", { width: picture.width, height: picture.height }), scale = Math.min(canvas.width / picture.width, canvas.height / picture.height);
+    const whole = this.canvas(picture.width, picture.height), scale = Math.min(canvas.width / picture.width, canvas.height / picture.height);
     whole.getContext("2d").putImageData(picture, 0, 0);
     const context = canvas.getContext("2d"), width = scale * picture.width, height = scale * picture.height;
     context.clearRect(0, 0, canvas.width, canvas.height);
