@@ -14,8 +14,8 @@ function handles(browser, folder) {
   const value = (expression) => browser.evaluate(expression);
   return {
     browser, folder, value, shot: (name) => browser.screenshot(path.join(folder, name + ".png")),
-    // Waits until all small pictures are drawn, and shadows are found.
-    quiet: (seconds) => browser.until("studio.tiles.waiting.length === 0 && studio.tiles.timer === undefined && !studio.stage.occlusion.busy", seconds),
+    // Waits until all pictures are drawn, and shadows are found.
+    quiet: (seconds) => browser.until("studio.tiles.waiting.length === 0 && studio.tiles.timer === undefined && !studio.stage.occlusion.busy && studio.stageView.drawing === undefined && studio.stageView.sharp", seconds),
     status: () => value("document.getElementById('status').textContent"),
     // Takes the entry of a list that has this text, or, with `part`, that contains it.
     choose: (id, text, part = false) => value(`(() => { const list = document.getElementById("${id}"), text = ${JSON.stringify(text)};

@@ -7,6 +7,8 @@
 const { check, drive } = require("./drive.js");
 
 drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value, shot, quiet, choose, fill, checkNames }) => {
+  await value(`(() => { const draw = Tiles.prototype.drawTile; window.tilesDrawn = 0;
+    Tiles.prototype.drawTile = function (...of) { ++window.tilesDrawn; return draw.apply(this, of); }; })()`);
   const paint = () => value("studio.paint"), steps = () => value("studio.history.now.steps.length"), near = (a, b, by) => Math.abs(a - b) <= by;
   check("the first paint is one of interference, where there is one", await value(`(() => {
     const kinds = [...Array(studio.library.count).keys()].map((i) => studio.library.paint(i).class);
@@ -27,7 +29,9 @@ drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value,
   await browser.send("Emulation.setDeviceMetricsOverride", { width: 1000, height: 700, deviceScaleFactor: 1, mobile: false });
   await quiet();
 
-  // Small pictures have the shadow that was found after the page opened; it is found while the car turns, too.
+  // Small pictures have the shadow that was found after the page opened, and wait for it; it is found while the car turns, too.
+  const tiles = await value("[window.tilesDrawn, document.querySelectorAll('.tile canvas').length]");
+  check(`small pictures are drawn once: ${tiles}`, tiles[0] <= tiles[1]);
   const tile = () => value("(() => { const one = document.querySelector('#variations canvas'); return [...one.getContext('2d').getImageData(0, 0, one.width, one.height).data]; })()");
   const opened = await tile();
   await value("studio.tiles.again()");

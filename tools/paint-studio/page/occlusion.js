@@ -259,7 +259,10 @@ class Occlusion {
     this.busy = true;
   }
   // Goes on with it, and returns whether there is more to be done.
-  step() { return (this.busy = !this.work.next().done); }
+  step() {
+    this.busy = false;  // where a step fails
+    return (this.busy = !this.work.next().done);
+  }
   *steps() {
     const { stage } = this, { low, high, positions, normals } = stage.mesh, size = added(high, low, -1);
     this.ball = [...scaled(added(low, high), 0.5), 2 / (1.02 * Math.hypot(...size) || 1)];

@@ -107,7 +107,8 @@ class Tiles {
   }
   async drawNext() {
     this.timer = undefined;
-    if (this.app.stageView.lost || this.app.stageView.comesFirst) return;  // they go on after the picture
+    // They go on after the picture, and have the shadow that is sought.
+    if (this.app.stageView.lost || this.app.stageView.comesFirst || this.app.stage.occlusion.busy) return;
     while (this.waiting.length > 0 && !this.waiting[0].canvas.isConnected) this.waiting.shift();
     const next = this.waiting.shift(), app = this.app, now = {};
     if (!next) return;

@@ -63,11 +63,7 @@ class StageView {
     const { stage } = this, go = async () => {
       if (stage !== this.stage || this.lost) return;
       const waits = this.comesFirst;
-      if (!waits && !stage.occlusion.step()) {
-        this.app.tiles.again();
-        this.redraw();
-        return;
-      }
+      if (!waits && !stage.occlusion.step()) return this.redraw();
       if (!waits) await stage.drawn();
       if (this.search === go) this.shadowing = setTimeout(go, waits ? 100 : idlePause_ms);
     };
