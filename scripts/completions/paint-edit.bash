@@ -41,7 +41,7 @@ _paint_edit() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--hue --chroma --lightness --hue-shift --chroma-factor --lightness-shift --at --share --image --at-pixel --lighter --travel-to --gloss-to --face --face-shift --flop --flop-shift --travel --travel-shift --keep-residual --set --gloss --gloss-shift --gloss-angle --anisotropy --flakes --variations --step --gradient --only --suffix --rename --code --class --new --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--hue --chroma --lightness --hue-shift --chroma-factor --lightness-shift --at --share --image --at-pixel --lighter --travel-to --gloss-to --face --face-shift --flop --flop-shift --travel --travel-shift --keep-residual --set --gloss --gloss-shift --gloss-angle --anisotropy --flakes --variations --step --gradient --only --suffix --rename --code --no-code --class --new --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -74,6 +74,7 @@ Result<void> check_contradictions(const Options& o, const paint::Edit& edit) {
   if (edit.flop && edit.flop->L < 0) return usage_error("--flop has L* {}: give 0 or more", shortest(edit.flop->L));
   if (edit.travel_deg && *edit.travel_deg <= 15)
     return usage_error("--travel is {}: it lies above 15 and up to 180", shortest(*edit.travel_deg));
+  if (o.no_code && !o.code.empty()) return usage_error("--code and --no-code exclude each other");
   const bool many = !o.variations.empty() || o.gradient > 0;
   GONIO_TRY(check_identity(o, many));
   if (many && edits)
@@ -91,7 +92,7 @@ Result<void> check_contradictions(const Options& o, const paint::Edit& edit) {
 }  // namespace
 
 bool moves_identity(const Options& o) {
-  return !o.rename.empty() || !o.code.empty() || !o.paint_class.empty() || !o.new_name.empty();
+  return !o.rename.empty() || !o.code.empty() || o.no_code || !o.paint_class.empty() || !o.new_name.empty();
 }
 
 Result<paint::Edit> edit_of(const Options& o) {
@@ -173,11 +174,9 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("travel", "DEG", "60", &o.travel_deg, "aspecular angle where the color stops changing").from(15, 180);
   spec.option("travel-shift", "DEG", "10", &o.travel_shift_deg, "what is added to the travel").from(-165, 165);
   spec.flag("keep-residual", &o.keep_residual, "keep what the curve did not explain of the rows of a measured paint")
-      .more(
-          "Without it, --face, --flop and --travel state the rows anew.");
+      .more("Without it, --face, --flop and --travel state the rows anew.");
   spec.option("set", "GEOMETRY=L,A,B", "45as45=50,12.5,-3", &o.readings, "what the paint shall read at this geometry")
-      .more(
-          "The other rows stay, and face, flop and travel are fitted to all rows, unless one of them is given.");
+      .more("The other rows stay, and face, flop and travel are fitted to all rows, unless one of them is given.");
   spec.option("gloss", "GU", "90", &o.gloss, "gloss to reach").from(0, 100);
   spec.option("gloss-shift", "GU", "-5", &o.gloss_shift, "what is added to the gloss").from(-100, 100);
   spec.option("gloss-angle", "DEG", "20", &o.gloss_angle_deg, "angle of the gloss reading that is moved")
@@ -210,11 +209,11 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("suffix", "TEXT", "_green", &o.suffix, "text to append to the name of every paint that is edited");
   spec.option("rename", "NAME", "dune", &o.rename, "name of the paint that is edited, if only one is edited");
   spec.option("code", "CODE", "RM331", &o.code, "code to give to every paint that is edited");
+  spec.flag("no-code", &o.no_code, "take the code away from every paint that is edited");
   spec.option("class", "CLASS", "metallic", &o.paint_class, "class to give to every paint that is edited")
       .one_of({"solid", "metallic", "pearl", "interference", "unknown"});
   spec.option("new", "NAME", "dune", &o.new_name, "make a paint of this name from nothing, and read none")
-      .more(
-          "It needs --face, or readings by --set; with --flop also --travel. Without a flop the paint is solid.");
+      .more("It needs --face, or readings by --set; with --flop also --travel. Without a flop the paint is solid.");
   spec.option("output,o", "FILE", "edited.paints.xml", &o.output, "paint XML to write; - is standard output");
   cli::add_common_options(spec, o.common, {.explain = true});
 }

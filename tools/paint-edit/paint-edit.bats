@@ -130,6 +130,9 @@ names() { xmllint --xpath "//*[local-name()='paint']/@name" "$1" | sed -E 's/.*"
   paint-edit one.paints.xml --quiet --rename two --code X2 --class pearl --anisotropy 0.1,0.2 -o out.paints.xml
   [ "$(names out.paints.xml) $(attribute out.paints.xml two /@code) $(attribute out.paints.xml two /@class)" = "two X2 pearl" ]
   grep -q '<lobe' out.paints.xml # the color did not move
+  paint-edit out.paints.xml --quiet --no-code -o plain.paints.xml
+  ! grep -q ' code=' plain.paints.xml || false
+  run -2 paint-edit out.paints.xml --quiet --code X2 --no-code
   paint-edit out.paints.xml --quiet --anisotropy 0,0 -o round.paints.xml
   ! grep -q '<anisotropy' round.paints.xml || false
   paint-edit out.paints.xml --quiet --flakes 40,0.2 --report r.json -o coarse.paints.xml

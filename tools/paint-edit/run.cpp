@@ -97,7 +97,7 @@ class Run {
     GONIO_ASSIGN(paint::Edited done, paint::edited(paint, edit_));
     if (!options_.rename.empty()) done.paint.name = options_.rename;
     done.paint.name += options_.suffix;
-    if (!options_.code.empty()) done.paint.code = options_.code;
+    if (!options_.code.empty() || options_.no_code) done.paint.code = options_.code;
     if (const auto stated = paint::paint_class_of(options_.paint_class)) done.paint.paint_class = *stated;
     tell(paint, done);
     return write(done.paint);

@@ -20,7 +20,7 @@ struct Options {
   double hue_shift_deg = 0, chroma_factor = 1, lightness_shift = 0, travel_shift_deg = 0, gloss_shift = 0;
   std::string gloss_angle_deg = "60", share = "exact";
   std::vector<std::string> readings;
-  bool keep_residual = false;
+  bool keep_residual = false, no_code = false;
   std::vector<double> anisotropy, flakes;
   std::string image;
   std::vector<double> at_pixel, travel_to, gloss_to;

@@ -192,7 +192,7 @@ figures() {
 
 @test "flakes are read, edited, taken back and written as paint-edit has them" {
   needs_browser
-  paint-edit -q "$TESTDATA/paints.paints.xml#silver_fine" --flakes 40,0.2,0.7 --rename stated -o stated.paints.xml
+  paint-edit -q "$TESTDATA/paints.paints.xml#silver_fine" --flakes 40,0.2,0.7 --rename stated --code K1 -o stated.paints.xml
   paint-studio -q --mesh "$TESTDATA/speed-shape.obj" --env studio.env.exr --basis "$TESTDATA/b5.basis.xml" \
     "$TESTDATA/paints.paints.xml" stated.paints.xml -o flakes.html
   run node "$code/flakes.js" flakes.html .
@@ -200,6 +200,7 @@ figures() {
   [ "$status" -eq 0 ]
   bash -euo pipefail flakes-command.txt
   grep -q '<flakes diameter_um="40" coverage="0.31" spread_deg="0.7"/>' flakes-saved.xml
+  ! grep -q ' code=' flakes-saved.xml || false
   diff <(grep -E '<(paint|flakes|lab) ' flakes-saved.xml) <(grep -E '<(paint|flakes|lab) ' design.paints.xml)
 }
 

@@ -6,7 +6,7 @@ const fs = require("node:fs");
 const path = require("node:path");
 const { check, drive } = require("./drive.js");
 
-drive("flakes are edited", { width: 1000, height: 700 }, async ({ browser, folder, value, shot, quiet, choose, checkNames }) => {
+drive("flakes are edited", { width: 1000, height: 700 }, async ({ browser, folder, value, shot, quiet, choose, fill, checkNames }) => {
   const field = (name) => value(`document.querySelector('#numbers input[type=number][aria-label="${name}"]').value`), seen = async () => [await field("flake size"), await field("coverage")].join();
   const slide = (name, to) => value(`(() => { const range = document.querySelector('#numbers input[type=range][aria-label="${name}"]'); range.value = ${to};
     for (const kind of ["input", "change"]) range.dispatchEvent(new Event(kind)); })()`);
@@ -32,6 +32,16 @@ drive("flakes are edited", { width: 1000, height: 700 }, async ({ browser, folde
   await quiet();
   await value("document.querySelector('#numbers [aria-label=Flakes]').scrollIntoView({ block: 'center' })");
   await shot("flakes");
+  // The code that the paint had is emptied, and stays so in a session.
+  const code = () => value("[studio.paint.code ?? '', document.getElementById('paint-code').value].join()");
+  await fill("paint-code", "''");
+  check(`a code is taken away: ${await code()}`, (await code()) === ",");
+  await value("studio.turn('undo')");
+  check(`undo brings it back: ${await code()}`, (await code()) === "K1,K1");
+  await value("(() => { studio.turn('redo'); studio.openSession(studio.savedSession()); studio.show(); })()");
+  check(`a session has none either: ${await code()}`, (await code()) === ",");
+  await fill("paint-code", "'K2'");
+  await fill("paint-code", "''");
   fs.writeFileSync(path.join(folder, "flakes-command.txt"), await value("document.getElementById('command').textContent"));
   await browser.click("#save-xml");
   fs.writeFileSync(path.join(folder, "flakes-saved.xml"), await browser.download("stated_copy.paints.xml"));

@@ -36,7 +36,7 @@ function editsOf(library, state, lines) {
     });
     lines.push(`paint-edit ${from} ${to} --gradient ${gradient.count} -o ${quoted(file)}`);
   }
-  const label = [...(state.name !== undefined && state.name !== paint.name ? [quoted(`--rename=${state.name}`)] : []), ...(state.code !== undefined ? [quoted(`--code=${state.code}`)] : [])];
+  const label = [...(state.name !== undefined && state.name !== paint.name ? [quoted(`--rename=${state.name}`)] : []), ...(state.code ? [quoted(`--code=${state.code}`)] : state.code === "" && paint.code ? ["--no-code"] : [])];
   const edits = state.steps.map(optionsOf);
   if (label.length > 0) edits.push([...(edits.pop() ?? []), ...label]);
   if (edits.length === 0) return [source];

@@ -4,8 +4,12 @@
 
 const saidState = ({ start, of, own, steps, name, code }) => ({ ...(own ? { own } : { start, of }), steps, ...(name !== undefined && { name }), ...(code !== undefined && { code }) });
 
-// The members of a state whose paint has a name, and a code if there is one, of its own.
-const labeled = (paint, name, code) => ({ name, ...(code !== undefined && { code }), paint: { ...paint, name, ...(code !== undefined && { code }) } });
+// The members of a state whose paint has a name of its own, and a code where one is given, which is "" for none.
+function labeled({ code: known, ...paint }, name, code) {
+  if (typeof name !== "string" || !["string", "undefined"].includes(typeof code)) throw new Error(words("This file is no session of a page with this library."));
+  const own = code ?? known;
+  return { name, ...(code !== undefined && { code }), paint: { ...paint, name, ...(own && { code: own }) } };
+}
 
 class EditHistory {
   constructor(states = [], at = states.length - 1) {

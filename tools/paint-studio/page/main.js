@@ -222,7 +222,7 @@ class App {
   label(name, code) {
     const { now } = this.history;
     if (!name || (name === now.paint.name && code === (now.paint.code ?? ""))) return this.show();
-    this.history.push({ ...now, ...labeled(now.paint, name, code || undefined), goesOn: false, by_key: "" });
+    this.history.push({ ...now, ...labeled(now.paint, name, code), goesOn: false, by_key: "" });
     return this.show();
   }
   // The paint that the design began with, in the list of the header.
@@ -407,7 +407,6 @@ class App {
     let { paint } = this.origin({ start, own });
     if (own) this.engine.ask({ do: "describe", paint });  // refuses what is no paint
     for (const edit of steps) ({ paint } = this.engine.ask({ do: "edit", paint, edit }));
-    if (name !== undefined && typeof name !== "string") throw new Error(words("This file is no session of a page with this library."));
     return { start, of, own, steps, ...(name === undefined ? { paint } : labeled(paint, name, code)) };
   }
   openSession(text) {
