@@ -128,6 +128,26 @@ drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value,
   // The paint that is named beside the design is the one that is shown there.
   const beside = () => value("[document.getElementById('compare').selectedOptions[0].textContent, document.getElementById('side-right').textContent, studio.compared.weights?.paint.name]");
   await value("(() => { studio.keep(); studio.compare('palette 1'); studio.showChoices(); studio.arrange(0, -1); })()");
+  // A damaged session or link changes nothing, and pictures that are no such data leave their board.
+  const broken = await value(`(() => {
+    const before = studio.history, refused = (open, text, harm) => { const made = JSON.parse(text); harm(made); try { open(JSON.stringify(made)); return false; } catch (error) { return /no session|does not say/.test(error.message) && studio.history === before; } };
+    return [...[(one) => { one.history.states.push(one.history.states[0]); one.history.at = 0.5; }, (one) => { one.history.at = "0"; }, (one) => { one.palette = 5; }, (one) => { one.parts = { worn: 1 }; }, (one) => { one.notes = {}; }]
+      .map((harm) => refused((text) => studio.openSession(text), studio.savedSession(), harm)), ...[(one) => { one.view.azimuth = "x"; }, (one) => { delete one.view.target; }, (one) => { one.lamp = {}; }]
+      .map((harm) => refused((text) => studio.openLink(text), studio.linked(), harm))]; })()`);
+  check(`damaged sessions and links are refused: ${broken}`, broken.length === 8 && broken.every((one) => one));
+  const boards = await value(`(async () => {
+    const session = JSON.parse(studio.savedSession()), kept = "data:image/gif;base64,R0lGODlhAQABAIAAAAAAAP///yH5BAEAAAAALAAAAAABAAEAAAIBRAA7";
+    session.pictures = { made: 1, open: 0, droppers: [{ kind: "face" }], boards: [{ name: "one", zoom: 0, pictures: [{ name: "cut", data: "data:image/png;base64,%%" }, { name: "dot", data: kept }] }] };
+    studio.openSession(JSON.stringify(session));
+    await studio.pictures.restored;
+    const seen = studio.pictures.all.map(({ name }) => name), said = document.getElementById("status").textContent;
+    session.pictures.boards.push({ name: "none" });
+    studio.openSession(JSON.stringify(session));
+    await studio.pictures.restored.catch(() => {});
+    const stay = studio.pictures.all.length;
+    studio.pictures.remove();
+    return [seen, said, stay]; })()`);
+  check(`what is no picture leaves its board, and boards stay: ${JSON.stringify(boards)}`, boards[0].join() === "dot" && boards[1].includes("cut is no picture") && boards[2] === 1);
   check(`the second of the palette is the first when that goes: ${await beside()}`, (await beside()).join() === "1: evening red,evening red,evening red");
   await value("(() => { studio.compare('start'); studio.showChoices(); })()");
   await choose("library", "arctic_white");

@@ -380,8 +380,9 @@ class App {
     return JSON.stringify({ ...saidState(this.history.now), view, usual: mesh.view.distance, light: environments[environment].name, stops, lamp, turn: stage.turn });
   }
   openLink(text) {
-    const link = JSON.parse(text);
-    if (!link.view || !link.lamp) throw new Error(words("This link does not say how the paint is seen."));
+    const link = JSON.parse(text), { view, lamp, stops, turn } = link;
+    const numbers = [view?.azimuth, view?.elevation, view?.distance, view?.fov, ...(view?.target ?? []), lamp?.azimuth, lamp?.elevation, lamp?.stops, stops, turn];
+    if (numbers.length !== 12 || !numbers.every(Number.isFinite)) throw new Error(words("This link does not say how the paint is seen."));
     this.restore(this.replayed(link));
     this.stageView.see(link);
   }
@@ -410,8 +411,8 @@ class App {
     return { start, of, own, steps, ...(name === undefined ? { paint } : labeled(paint, name, code)) };
   }
   openSession(text) {
-    const session = JSON.parse(text), saved = session.history?.states, at = session.history?.at, states = [];
-    if (session.kind !== "paint-studio session" || !Array.isArray(saved) || !(saved.length > at) || !(at >= 0))
+    const session = JSON.parse(text), { states: saved, at } = session.history ?? {}, { worn = [] } = session.parts ?? {}, { notes = "", palette: kept = [] } = session, states = [];
+    if (session.kind !== "paint-studio session" || ![saved, kept, worn].every(Array.isArray) || !Number.isInteger(at) || !saved[at] || typeof notes !== "string")
       throw new Error(words("This file is no session of a page."));
     for (const one of saved) {
       const last = states.at(-1);
@@ -419,14 +420,14 @@ class App {
       else states.push({ start: last.start, of: last.of, own: last.own, steps: [...last.steps, one.edit], goesOn: true,
                          ...labeled(this.engine.ask({ do: "edit", paint: last.paint, edit: one.edit }).paint, one.name ?? last.paint.name, one.code) });
     }
-    const palette = (session.palette ?? []).map((one) => this.replayed(one));
+    const palette = kept.map((one) => this.replayed(one));
     const second = session.parts?.second ? this.replayed(session.parts.second) : null;
     this.history = new EditHistory(states, at);
     this.palette = palette;
-    this.card.notes.value = session.notes ?? "";
+    this.card.notes.value = notes;
     if (session.pictures || this.pictures.boards.length > 0)
       this.pictures.restore(session.pictures ?? { made: 0, open: -1, boards: [], droppers: [] }).catch((error) => this.say(error.message));
-    this.parts.restore(session.parts?.worn ?? [], second);
+    this.parts.restore(worn, second);
   }
   // Each tab keeps a session of its own, and a new tab begins with the last one. The newest eight stay. Browsers may refuse
   // to store anything, or so much as pictures take; the page then works without.

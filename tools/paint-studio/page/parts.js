@@ -79,7 +79,10 @@ class Parts {
   }
   restore(worn, second) {
     this.second = second;
-    for (const [part, number] of this.numbered) part.row = worn.find(([name, , of = 0]) => name === part.name && of === number)?.[1] ?? part.told;
+    for (const [part, number] of this.numbered) {
+      const row = worn.find((one) => one?.[0] === part.name && (one[2] ?? 0) === number)?.[1];
+      part.row = Number.isInteger(row) && row >= hiddenRow && row < wornWords.length && (row !== 1 || second) ? row : part.told;
+    }
     this.app.partsChanged();
     this.show();
   }

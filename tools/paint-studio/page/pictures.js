@@ -10,6 +10,15 @@ const dataOf = (file) => new Promise((resolve, reject) => {
   reader.readAsDataURL(file);
 });
 
+// The file of such data; one without bytes where they are damaged.
+function fileOf(name, data) {
+  try {
+    return new File([bytesOf(data.slice(data.indexOf(",") + 1))], name, { type: /^data:([^;,]*)/.exec(data)?.[1] ?? "" });
+  } catch {
+    return new File([], name);
+  }
+}
+
 class Pictures {
   constructor(app) {
     this.app = app;
@@ -98,7 +107,7 @@ class Pictures {
     return this.restored;
   }
   async putBack({ made: count, open, boards, droppers }) {
-    if (!Array.isArray(boards) || !Array.isArray(droppers)) throw new Error(words("The pictures of this session are damaged."));
+    if (!Array.isArray(boards) || !boards.every((one) => Array.isArray(one?.pictures)) || !Array.isArray(droppers)) throw new Error(words("The pictures of this session are damaged."));
     Object.assign(this, { boards: [], board: null, current: null, droppers: {}, made: 0 });
     const places = [];
     for (const { name, zoom, pictures } of boards) {
@@ -106,13 +115,16 @@ class Pictures {
       const board = Object.assign(this.board, { name, zoom }), found = [];
       for (const { name: file, data } of pictures) {
         const before = board.pictures.length;
-        await this.add([new File([bytesOf(data.slice(data.indexOf(",") + 1))], file, { type: /^data:([^;,]*)/.exec(data)?.[1] ?? "" })], false);
+        await this.add([fileOf(file, data)], false);
         found.push(board.pictures.length > before ? board.pictures.at(-1) : null);
       }
       places.push(found);
     }
     this.made = count;
-    for (const { kind, place: [b, i], ...found } of droppers) if (places[b]?.[i]) this.droppers[kind] = { picture: places[b][i], ...found };
+    for (const { kind, place, ...found } of droppers) {
+      const picture = places[place?.[0]]?.[place?.[1]];
+      if (picture) this.droppers[kind] = { picture, ...found };
+    }
     const board = this.boards[open] ?? this.boards.at(-1);
     if (board) this.openBoard(board);
     else this.show();
