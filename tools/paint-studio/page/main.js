@@ -3,6 +3,9 @@
 const mostKept = 4e6;    // letters of pictures that a browser is asked to keep; most keep five million in all
 const mostListed = 500;  // paints in a list that the browser unfolds
 
+// The number of a tab, which pages of plain HTTP make, too.
+const newNumber = () => crypto.getRandomValues(new Uint32Array(4)).join("-");
+
 class App {
   constructor(engine, data, library, module, code) {
     this.engine = engine;
@@ -442,7 +445,7 @@ class App {
     for (const withPictures of small && this.pictures.size > 0 ? [true, false] : [false])
       try {
         if (!this.tab) {
-          this.takeNumber(sessionStorage.getItem("paint-studio tab") ?? crypto.randomUUID());
+          this.takeNumber(sessionStorage.getItem("paint-studio tab") ?? newNumber());
           for (const { place } of this.kept().slice(7)) localStorage.removeItem(place);
         }
         localStorage.setItem(this.place, JSON.stringify({ time: Date.now(), session: this.savedSession(withPictures) }));
@@ -455,7 +458,7 @@ class App {
   takeNumber(tab) { sessionStorage.setItem("paint-studio tab", (this.tab = tab)); }
   // Another tab wrote the session of this one, as a copy of this tab does, or took it away: each has a place of its own.
   keepApart(written) {
-    if (written) this.takeNumber(crypto.randomUUID());
+    if (written) this.takeNumber(newNumber());
     this.store();
   }
   // The sessions of all tabs, the newest first.
@@ -472,7 +475,7 @@ class App {
       if (found) this.openSession(found.session);
     } catch (error) {
       if (!found) return;  // the browser keeps nothing
-      this.takeNumber(crypto.randomUUID());
+      this.takeNumber(newNumber());
       this.say(error.message);
     }
   }
