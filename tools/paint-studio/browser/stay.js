@@ -95,6 +95,18 @@ drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value,
   await value("document.querySelector('#numbers input[type=range][aria-label=gloss]').focus()");
   for (let i = 0; i < 10; ++i) await browser.key("ArrowLeft");
   check("ten keys are one step", (await steps()) === 1);
+  await value("studio.curves.plots[0].handles[0].focus()");
+  for (let i = 0; i < 3; ++i) await browser.key("ArrowUp");
+  check("three keys on a reading are one step", (await steps()) === 2);
+  await value("studio.turn('undo')");
+  const focused = await value(`["#parts select", "#variations button"].map((one) => {
+    const element = document.querySelector(one);
+    element.focus();
+    if (element.tagName === "SELECT") element.dispatchEvent(new Event("change"));
+    else element.click();
+    return document.activeElement === document.querySelector(one); })`);
+  check(`what is made anew keeps the focus: ${focused}`, focused.every((one) => one));
+  await value("while (studio.history.now.steps.length > 1) studio.turn('undo')");
   check("a paint that was edited is a copy", (await paint()).name === "candy_red copy" && (await value("document.getElementById('command').textContent")).includes("--rename"));
   await fill("paint-name", JSON.stringify("evening red"));
   check("it gets the name that is asked for", (await paint()).name === "evening red");

@@ -106,7 +106,7 @@ class Curves {
       const step = { ArrowUp: 1, ArrowDown: -1 }[event.key];
       if (!step) return;
       event.preventDefault();
-      this.app.commit(edit(this.rows[number].lab[plot.channel] + step * (event.shiftKey ? 5 : 1)));
+      this.app.commit(edit(this.rows[number].lab[plot.channel] + step * (event.shiftKey ? 5 : 1)), true);
     });
     return circle;
   }

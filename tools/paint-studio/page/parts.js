@@ -46,9 +46,10 @@ class Parts {
   }
   // Shows the list, and the part that was clicked.
   show() {
+    const rows = document.getElementById("parts"), held = [...rows.children, this.box].findIndex((one) => one.contains(document.activeElement));
     document.getElementById("parts-text").textContent = this.summary;
     document.getElementById("second-name").textContent = this.second ? this.second.paint.name : words("none yet");
-    document.getElementById("parts").replaceChildren(...this.list.map((part) => {
+    rows.replaceChildren(...this.list.map((part) => {
       const name = made("span", { class: "name", text: part.name || words("unnamed part") }), note = made("small", { words: part.told > 0 ? "by its name" : "not recognized" });
       const row = made("div", { class: "part" }, [name, note, this.chooser(part)]);
       if (part === this.chosen) row.setAttribute("aria-current", "true");
@@ -57,6 +58,7 @@ class Parts {
     this.box.hidden = this.chosen === null;
     if (this.chosen) this.box.replaceChildren(made("span", { text: this.chosen.name || words("unnamed part") }), this.chooser(this.chosen),
                                               made("button", { type: "button", "aria-label": "Close", text: "×", onclick: () => this.choose(null) }));
+    if (held >= 0) [...rows.children, this.box][held]?.querySelector("select")?.focus({ preventScroll: true });
   }
   choose(part) {
     this.chosen = part;

@@ -178,7 +178,7 @@ class Pictures {
       event.preventDefault();
       const size = event.shiftKey ? 10 : 1, here = this.droppers[this.kind], now = here?.picture === picture ? here.at : [canvas.width >> 1, canvas.height >> 1];
       const edit = this.drop(picture, [clamped(now[0] + size * step[0], 0, canvas.width - 1), clamped(now[1] + size * step[1], 0, canvas.height - 1)]);
-      if (edit) this.app.commit(edit);
+      if (edit) this.app.commit(edit, true);
     });
     canvas.addEventListener("wheel", (event) => {
       if (!event.ctrlKey) return;

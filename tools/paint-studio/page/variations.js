@@ -32,7 +32,10 @@ class Tiles {
       const before = place.children[i]?.querySelector("canvas");
       if (before) tile.querySelector("canvas").getContext("2d").drawImage(before, 0, 0);
     });
+    const held = [...place.children].findIndex((one) => one.contains(document.activeElement));
     place.replaceChildren(...tiles);
+    const next = tiles[held];
+    (next?.querySelector("button") ?? next)?.focus({ preventScroll: true });
     this.go();
   }
 
