@@ -94,8 +94,10 @@ drive("files of every kind are opened", { width: 1000, height: 700 }, async ({ b
   // Meshes by the same readers; each replaces the one before.
   await choose("environment", "studio");
   const parts = () => value("studio.stage.mesh.parts.map(({ name, row }) => [name, row])");
+  await value("(window.before = [...studio.stage.targets.values()].map(({ texture }) => texture)).length");
   const ofBox = await open(path.join(data, "box.obj"));
   check(`the box is there: ${ofBox}`, (await parts()).map(([name]) => name).join() === "White,Red,Green,Gray" && ofBox.includes("told by their names are none; 4 not recognized"));
+  check("pictures of the mesh before are freed", await value("before.length > 0 && !before.some((one) => studio.stage.gl.isTexture(one))"));
   const ofDoors = await open(path.join(data, "doors.glb"));
   check(`the doors are there: ${ofDoors}`, (await parts()).map(([name]) => name).join() === "Closet,Left.Panel,Left.Pane,Right.Panel,Right.Pane");
   await browser.until("studio.stageView.full_ms > 0", 30).catch(() => {});

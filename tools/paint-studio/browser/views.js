@@ -7,7 +7,7 @@ const fs = require("node:fs");
 const path = require("node:path");
 const { check, drive } = require("./drive.js");
 
-drive("the views were looked at", { width: 1000, height: 1000 }, async ({ browser, folder, value, status, shot, quiet, choose, fill }, ...paints) => {
+drive("the views were looked at", { width: 1000, height: 1000 }, async ({ browser, folder, value, status, shot, quiet, choose, fill, give }, ...paints) => {
   const views = await value("studio.data.views.map((one) => one.name)"), named = (name) => `(() => { const app = studio;
     return app.library.paint([...Array(app.library.count).keys()].find((i) => app.library.paint(i).name === ${JSON.stringify(name)})); })()`;
   const base64 = (expression) => value(`(() => { const bytes = new Uint8Array((${expression}).buffer); let text = "";
@@ -124,5 +124,9 @@ drive("the views were looked at", { width: 1000, height: 1000 }, async ({ browse
     }
     const middle = (list) => list.sort((a, b) => a - b)[list.length >> 1];
     return { edit_to_picture_ms: middle(all), shading_ms: middle(shows), memory_mb: app.engine.bytes() / 1e6 }; })()`);
+  // They are of their mesh alone.
+  await give("#open-files", [path.join(process.env.TESTDATA, "box.obj")]);
+  await browser.until("studio.stage.mesh.parts.length === 4");
+  check("another mesh has no traced views", await value("studio.stageView.traced === null && document.querySelector('#environment optgroup') === null"));
   console.log(JSON.stringify({ ...times, bounced_de00_p95: errors }));
 });

@@ -58,6 +58,7 @@ class Card {
     }
     recorder.stop();
     await ended;
+    for (const track of stream.getTracks()) track.stop();
     stageView.look(first);
     save(`${fileName(app.paint.name)}.webm`, new Blob(pieces, { type: kind }), kind);
     app.say(words("The film is saved."));

@@ -275,14 +275,19 @@ class Occlusion {
       this.changed();
     }
     if (this.ground || stage.data.environments.every((one) => one.ground_light)) return;
-    const reach = 0.6 * Math.max(size[0], size[2]) + 2 * size[1], places = new Float32Array(3 * groundSize ** 2);
+    const ground = (this.places ??= this.groundPlaces(size));
+    yield* this.look(ground, above);
+    this.ground = ground;
+    this.changed();
+  }
+  // Places of the ground, which stay while its shadow is sought again.
+  groundPlaces(size) {
+    const { low, high } = this.stage.mesh, reach = 0.6 * Math.max(size[0], size[2]) + 2 * size[1], places = new Float32Array(3 * groundSize ** 2);
     const line = (i) => { const u = (2 * i + 1) / groundSize - 1; return (reach * u) / Math.sqrt(1 - u * u); };  // as the tool lays its texels
     for (let i = 0; i < places.length; i += 3)
       places.set([(low[0] + high[0]) / 2 + line((i / 3) % groundSize), low[1], (low[2] + high[2]) / 2 + line(Math.floor(i / 3 / groundSize))], i);
     const ground = this.points(groundSize, places, places.map((_, i) => (i % 3 === 1 ? 1 : 0)));
-    yield* this.look(ground, above);
-    this.ground = { ...ground, reach, shade: this.picture(ground, stage.gl.RGBA8, 1) };
-    this.changed();
+    return { ...ground, reach, shade: this.picture(ground, this.stage.gl.RGBA8, 1) };
   }
   changed() {
     this.keys = { mesh: [], ground: [] };

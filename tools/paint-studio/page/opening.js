@@ -204,12 +204,13 @@ class Opening {
     return new Promise((resolve, reject) => {
       worker.onmessage = ({ data: { part, error, ...made } }) => {
         if (part !== undefined) return app.say(told`${name} is being filtered: ${Math.round(100 * part)} %`);
-        worker.terminate();
-        URL.revokeObjectURL(address);
         return error === undefined ? resolve({ ...made, seconds: (performance.now() - begin) / 1000 }) : reject(new Error(error));
       };
       worker.onerror = (event) => reject(new Error(told`${name}: the filter stopped: ${event.message}`));
       worker.postMessage({ module: this.module, basis: app.data.basis, name, bytes });
+    }).finally(() => {
+      worker.terminate();
+      URL.revokeObjectURL(address);
     });
   }
 }

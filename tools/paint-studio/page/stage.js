@@ -300,10 +300,7 @@ class Stage {
   target(name, width, height, kind, withDepth, withSecond = false) {
     const gl = this.gl, known = this.targets.get(name);
     if (known && known.width === width && known.height === height) return known;
-    if (known) {
-      for (const texture of [known.texture, known.depth, known.second]) gl.deleteTexture(texture);
-      gl.deleteFramebuffer(known.framebuffer);
-    }
+    if (known) this.forget(known);
     const made = { width, height, framebuffer: gl.createFramebuffer(), key: "" };
     gl.bindFramebuffer(gl.FRAMEBUFFER, made.framebuffer);
     const attached = (at, what) => {
@@ -320,6 +317,17 @@ class Stage {
     if (withSecond) gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
     this.targets.set(name, made);
     return made;
+  }
+
+  forget({ texture, depth, second, framebuffer }) {
+    for (const one of [texture, depth, second]) this.gl.deleteTexture(one);
+    this.gl.deleteFramebuffer(framebuffer);
+  }
+  // Frees what takes the most memory, before another stage takes the place of this one.
+  drop() {
+    this.gathered.drop();
+    for (const target of this.targets.values()) this.forget(target);
+    for (const made of this.environments) for (const { texture } of made?.cubes ?? []) this.gl.deleteTexture(texture);
   }
 
   // The visible points of every pixel at one sample, and the light that they lose in an environment, unless that is null. They are drawn

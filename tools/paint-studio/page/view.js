@@ -79,6 +79,8 @@ class StageView {
     for (const light of this.app.data.environments) delete light.ground_light;  // the shadow of the mesh before
     this.view = { ...mesh.view };
     if (this.traced !== null) this.choose(document.getElementById("environment").value = "0");
+    document.querySelector("#environment optgroup")?.remove();  // views of the mesh before
+    this.stage.drop();
     this.begin();
     this.app.parts.forMesh();
   }
