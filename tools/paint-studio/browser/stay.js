@@ -128,18 +128,6 @@ drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value,
     return { stays, said: document.getElementById("status").textContent }; })()`);
   check(`a session of another library is refused: ${JSON.stringify(refused)}`, refused.stays && refused.said.includes("another library"));
   check("the design stays", JSON.stringify(await paint()) === red);
-  check("notes of a session are kept", await value(`(() => { studio.openSession(JSON.stringify({ ...JSON.parse(studio.savedSession()), notes: "as seen at noon" })); return JSON.parse(studio.kept()[0].session).notes === "as seen at noon"; })()`));
-  await value("document.getElementById('notes').focus()");
-  await browser.key("z", 2);
-  check("undo in a text is of the text", JSON.stringify(await paint()) === red);
-  // A field shows what the paint has.
-  const gloss = await value(`(() => { const field = document.querySelector("#numbers input[type=number][aria-label=gloss]"); field.focus(); field.value = 500; field.dispatchEvent(new Event("change")); return [field.valueAsNumber, studio.paint.gloss[0][1]]; })()`);
-  check(`a field shows what the paint has: ${gloss}`, gloss.join() === "100,100");
-  await browser.click("#undo");
-
-  // The paint that is named beside the design is the one that is shown there.
-  const beside = () => value("[document.getElementById('compare').selectedOptions[0].textContent, document.getElementById('side-right').textContent, studio.compared.weights?.paint.name]");
-  await value("(() => { studio.keep(); studio.compare('palette 1'); studio.showChoices(); studio.arrange(0, -1); })()");
   // A damaged session or link changes nothing, and pictures that are no such data leave their board.
   const broken = await value(`(() => {
     const before = studio.history, refused = (open, text, harm) => { const made = JSON.parse(text); harm(made); try { open(JSON.stringify(made)); return false; } catch (error) { return /no session|does not say/.test(error.message) && studio.history === before; } };
@@ -160,6 +148,18 @@ drive("everything stays", { width: 1400, height: 900 }, async ({ browser, value,
     studio.pictures.remove();
     return [seen, said, stay]; })()`);
   check(`what is no picture leaves its board, and boards stay: ${JSON.stringify(boards)}`, boards[0].join() === "dot" && boards[1].includes("cut is no picture") && boards[2] === 1);
+  check("notes of a session are kept", await value(`(() => { studio.openSession(JSON.stringify({ ...JSON.parse(studio.savedSession()), notes: "as seen at noon" })); return JSON.parse(studio.kept()[0].session).notes === "as seen at noon"; })()`));
+  await value("document.getElementById('notes').focus()");
+  await browser.key("z", 2);
+  check("undo in a text is of the text", JSON.stringify(await paint()) === red);
+  // A field shows what the paint has.
+  const gloss = await value(`(() => { const field = document.querySelector("#numbers input[type=number][aria-label=gloss]"); field.focus(); field.value = 500; field.dispatchEvent(new Event("change")); return [field.valueAsNumber, studio.paint.gloss[0][1]]; })()`);
+  check(`a field shows what the paint has: ${gloss}`, gloss.join() === "100,100");
+  await browser.click("#undo");
+
+  // The paint that is named beside the design is the one that is shown there.
+  const beside = () => value("[document.getElementById('compare').selectedOptions[0].textContent, document.getElementById('side-right').textContent, studio.compared.weights?.paint.name]");
+  await value("(() => { studio.keep(); studio.compare('palette 1'); studio.showChoices(); studio.arrange(0, -1); })()");
   check(`the second of the palette is the first when that goes: ${await beside()}`, (await beside()).join() === "1: evening red,evening red,evening red");
   await value("(() => { studio.compare('start'); studio.showChoices(); })()");
   await choose("library", "arctic_white");

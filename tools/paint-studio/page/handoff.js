@@ -96,7 +96,7 @@ class Handoff {
     const nearest = app.attempt(() => app.engine.ask({ do: "nearest", paint, metric, count: 1 }).list[0]);
     if (nearest?.code) paint.code = nearest.code;
     this.write("cxf", false, ".cxf", "application/xml", paint, { created: new Date().toISOString().slice(0, 19) + "Z" });
-    app.say(nearest?.code ? `The file has the code ${nearest.code} of the nearest paint, ${nearest.name}.` : "The nearest paint has no code, so that the file has none of it.");
+    app.say(nearest?.code ? told`The file has the code ${nearest.code} of the nearest paint, ${nearest.name}.` : words("The nearest paint has no code, so that the file has none of it."));
   }
 
   write(as, lobes, ending, type, paint = this.app.paint, more = {}) {

@@ -309,8 +309,8 @@ class App {
         this.comparedWeights.paint = found;
         this.compared.weights = this.comparedWeights;
       });
-      if (kind === "step") this.compared.name += `, step ${number}`;
-      if (kind === "start") this.compared.name += ", as it was";
+      if (kind === "step") this.compared.name += `, ${words("step")} ${number}`;
+      if (kind === "start") this.compared.name += words(", as it was");
     }
     this.stageView.showBorder();
     this.stageView.redraw();
@@ -355,7 +355,7 @@ class App {
     list.replaceChildren(option("none", words("nothing")), option("start", words("the paint it began with")));
     const { states, at } = this.history, first = Math.max(0, states.length - 40);
     group(words("History"), states.slice(first).map((state, i) => [first + i, state]).filter(([i]) => i !== at).map(([i, state]) =>
-      option(`step ${i}`, `step ${i}: ${state.paint.name}${state.steps.length > 0 ? ", " + Object.keys(state.steps.at(-1)).join(" ") : ""}`)));
+      option(`step ${i}`, `${words("step")} ${i}: ${state.paint.name}${state.steps.length > 0 ? ", " + Object.keys(state.steps.at(-1)).join(" ") : ""}`)));
     group(words("Palette"), this.palette.map((state, i) => option(`palette ${i}`, `${i + 1}: ${state.paint.name}`)));
     const { choice } = this.compared, number = Number(choice.slice(8));
     const listed = this.library.count <= mostListed ? [...Array(this.library.count).keys()] : choice.startsWith("library") ? [number] : [];
@@ -372,7 +372,7 @@ class App {
                   [words("chroma index"), number(metrics.chroma_index)], [words("hue shift index"), number(metrics.hue_shift_index)],
                   [[noted("Lobes"), " ", words("miss the readings by")], told`${number(fit.de00_mean, 2)} on average, ${number(fit.de00_max, 2)} at most (CIEDE2000)`]];
     if (fit.gamut_de00 > 0.05) rows.push([words("Lost outside the working space"), number(fit.gamut_de00, 2) + " (CIEDE2000)"]);
-    if (metrics.flags.length > 0) rows.push(["Flags", metrics.flags.join(", ")]);
+    if (metrics.flags.length > 0) rows.push([words("Flags"), metrics.flags.join(", ")]);
     document.getElementById("figures").replaceChildren(
       ...rows.flatMap(([name, value]) => [made("dt", {}, [name].flat()), made("dd", { text: value })]));
   }

@@ -28,7 +28,7 @@ const german = {
   "Print a card": "Karte drucken", "Copy link": "Verweis kopieren", "The same by commands": "Dasselbe als Befehle", "Copy the commands": "Befehle kopieren",
   "Paints (XML, CSV, CxF, XLSX, CGATS, QTX ...), meshes (OBJ, glTF), light (HDR), pictures and sessions; they can be dropped on the page as well":
     "Lacke (XML, CSV, CxF, XLSX, CGATS, QTX ...), Netze (OBJ, glTF), Licht (HDR), Bilder und Sitzungen; man kann sie auch auf die Seite ziehen",
-  "History": "Verlauf", "Undo (Ctrl+Z)": "Rückgängig (Strg+Z)", "Redo (Ctrl+Y)": "Wiederholen (Strg+Y)", "Picture": "Bild",
+  "Undo (Ctrl+Z)": "Rückgängig (Strg+Z)", "Redo (Ctrl+Y)": "Wiederholen (Strg+Y)", "Picture": "Bild",
   "The mesh in the paint. Arrow keys do what dragging does, and plus and minus come closer.": "Das Netz im Lack. Pfeiltasten tun, was Ziehen tut; Plus und Minus ändern den Abstand.",
   "Border between the paint and the one it is compared with": "Grenze zwischen dem Lack und dem, mit dem er verglichen wird", "Paint": "Lack", "Change the color under the cross": "Die Farbe unter dem Kreuz ändern",
   "Plane of a* and b*": "Ebene von a* und b*", "Lightness of face and flop": "Helligkeit von Aufsicht und Flop", "L*, a* and b* against the aspecular angle": "L*, a* und b* über dem Winkel zum Glanz", "Turn of the light": "Drehung des Lichts",
@@ -54,7 +54,7 @@ const german = {
   "This place is turned away from {}.": "Diese Stelle ist abgewandt: {}.", "the lamp": "die Lampe", "the brightest light": "das hellste Licht", "gray": "grau", "chroma {}, hue {}°": "Buntheit {}, Farbton {}°",
   "{}° from the mirror direction of {}: L* {}, a* {}, b* {} ({})": "{}° vom Spiegelwinkel ({}): L* {}, a* {}, b* {} ({})",
   "A print by {} shows the {} {} (CIEDE2000) off.": "Ein Druck mit {} verfehlt {} um {} (CIEDE2000).", "take L* {}, a* {}, b* {}": "L* {}, a* {}, b* {} nehmen",
-  "History": "Bisherige Schritte", "Traced views": "Verfolgte Ansichten",
+  "History": "Bisherige Schritte", ", as it was": ", wie er war", "Flags": "Vermerke", "measured by": "gemessen nach", "Traced views": "Verfolgte Ansichten",
   "Drag a reading, or focus it and use the up and down keys. The broken line is what the lobes show.":
     "Ziehen Sie an einem Messwert, oder wählen Sie ihn aus und nehmen Sie die Tasten nach oben und unten. Die gestrichelte Linie ist, was die Keulen zeigen.",
   "This paint is designed: face, flop and travel make its curve. The broken line is what the lobes show.":
@@ -98,6 +98,7 @@ const german = {
   "sum {}: {}": "Summe {}: {}", "Light: {}.": "Licht: {}.", "Travel {}°.": "Farblauf {}°.", "Gloss {}.": "Glanz {}.", "{} GU at {}°": "{} GU bei {}°",
   "The commands": "Die Befehle", "The link": "Der Verweis", "{}: copied.": "{}: kopiert.", "This browser refuses to copy. {}: {}": "Dieser Browser lässt nicht kopieren. {}: {}",
   "{} does not pass the filter of the list.": "{} geht nicht durch den Filter der Liste.", "This library has no paint named {}.": "Diese Bibliothek hat keinen Lack mit dem Namen {}.",
+  "The file has the code {} of the nearest paint, {}.": "Die Datei hat den Code {} des nächsten Lacks, {}.", "The nearest paint has no code, so that the file has none of it.": "Der nächste Lack hat keinen Code, die Datei also keinen von ihm.",
   "Choose a paint to compare with: the gradient leads to it.": "Wählen Sie einen Lack zum Vergleich: zu ihm führt der Verlauf.",
   "The address of this page is cut: copy the whole link.": "Die Adresse dieser Seite ist abgeschnitten: kopieren Sie den ganzen Verweis.",
   "The address of this page holds no paint.": "Die Adresse dieser Seite enthält keinen Lack.", "This link does not say how the paint is seen.": "Dieser Verweis sagt nicht, wie man den Lack sieht.",
