@@ -53,7 +53,7 @@ const german = {
   // Sentences with values, in their order.
   "This place is turned away from {}.": "Diese Stelle ist abgewandt: {}.", "the lamp": "die Lampe", "the brightest light": "das hellste Licht", "gray": "grau", "chroma {}, hue {}°": "Buntheit {}, Farbton {}°",
   "{}° from the mirror direction of {}: L* {}, a* {}, b* {} ({})": "{}° vom Spiegelwinkel ({}): L* {}, a* {}, b* {} ({})",
-  "A print by {} shows the {} {} (CIEDE2000) off.": "Ein Druck mit {} verfehlt {} um {} (CIEDE2000).", "take L* {}, a* {}, b* {}": "L* {}, a* {}, b* {} nehmen",
+  "A print by {} shows the {} {} (CIEDE2000) off.": "Ein Druck mit {} verfehlt die Farbe ({}) um {} (CIEDE2000).", "take L* {}, a* {}, b* {}": "L* {}, a* {}, b* {} nehmen",
   "History": "Bisherige Schritte", ", as it was": ", wie er war", "Flags": "Vermerke", "measured by": "gemessen nach", "Traced views": "Verfolgte Ansichten",
   "Drag a reading, or focus it and use the up and down keys. The broken line is what the lobes show.":
     "Ziehen Sie an einem Messwert, oder wählen Sie ihn aus und nehmen Sie die Tasten nach oben und unten. Die gestrichelte Linie ist, was die Keulen zeigen.",
@@ -72,7 +72,7 @@ const german = {
   "A paint with a coat took the place of one without it, or the other way round: toward grazing the picture is that of the paint that was traced.":
     "Ein Lack mit Klarlack steht an der Stelle von einem ohne, oder umgekehrt: zum streifenden Blick hin zeigt das Bild den Lack, der verfolgt wurde.",
   "{} cannot be read: it is a folder, or too large.": "{} kann nicht gelesen werden: ein Ordner, oder zu groß.", "This page does not have the light of the link: {}.": "Diese Seite hat das Licht des Verweises nicht: {}.",
-  "The screen shows the {} {} (CIEDE2000) off.": "Der Bildschirm verfehlt {} um {} (CIEDE2000).", "take a* {}, b* {}": "a* {}, b* {} nehmen", "none": "keine",
+  "The screen shows the {} {} (CIEDE2000) off.": "Der Bildschirm verfehlt die Farbe ({}) um {} (CIEDE2000).", "take a* {}, b* {}": "a* {}, b* {} nehmen", "none": "keine",
   "{} parts: told by their names are {}; {} not recognized, which wear the paint.": "{} Teile: nach ihren Namen {}; {} nicht erkannt, sie tragen den Lack.",
   "The design lies outside the library: its nearest paint differs by more than 10 on average.": "Der Entwurf liegt außerhalb der Bibliothek: sein nächster Lack weicht im Mittel um mehr als 10 ab.",
   "Its hue turns in another way than that of its nearest paint (off-radial).": "Sein Farbton dreht sich anders als der seines nächsten Lacks.",
