@@ -61,6 +61,7 @@ drive("files of every kind are opened", { width: 1000, height: 700 }, async ({ b
   check("what is refused changes nothing", JSON.stringify(await value("[studio.paint, studio.data.mesh.parts.length, studio.data.environments.length]")) === before);
   fs.writeFileSync(path.join(folder, "told.json"), JSON.stringify(told));
 
+  check("lines of a comment count", (await value(`xmlEvents("<a>\\n<!-- one\\ntwo -->\\ntext\\n</a>").slice(-5).join("|")`)) === "t|5|\ntext\n|/|5");
   check("a basis is told", (await open(path.join(data, "b5.basis.xml"))).includes("is the basis of this page"));
   check("another basis is told", (await open(path.join(data, "b7.basis.xml"))).includes("--basis"));
 

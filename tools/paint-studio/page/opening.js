@@ -29,7 +29,10 @@ function xmlEvents(text) {
     add(others.length, ...others.flatMap((one) => [one.localName, one.prefix, one.namespaceURI, one.value, lineOf(one)]));
     for (const child of element.childNodes)
       if (child.nodeType === Node.ELEMENT_NODE) walk(child);
-      else if (child.nodeType === Node.TEXT_NODE || child.nodeType === Node.CDATA_SECTION_NODE) add("t", (ended += linesIn(child.data)), child.data);
+      else {
+        ended += linesIn(child.data);
+        if (child.nodeType === Node.TEXT_NODE || child.nodeType === Node.CDATA_SECTION_NODE) add("t", ended, child.data);
+      }
     add("/", ended);
   };
   walk(root.documentElement);
