@@ -206,11 +206,11 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .more("They are equally spaced in Lab at face, flop and every common geometry.");
   spec.heading = "input and output";
   add_only_option(spec, o.only, "edit the paints of this name, and pass the others on");
-  spec.option("suffix", "TEXT", "_green", &o.suffix, "text to append to the name of every paint that is edited");
+  spec.option("suffix", "TEXT", "_green", &o.suffix, "text to append to the names of edited paints");
   spec.option("rename", "NAME", "dune", &o.rename, "name of the paint that is edited, if only one is edited");
-  spec.option("code", "CODE", "RM331", &o.code, "code to give to every paint that is edited");
-  spec.flag("no-code", &o.no_code, "take the code away from every paint that is edited");
-  spec.option("class", "CLASS", "metallic", &o.paint_class, "class to give to every paint that is edited")
+  spec.option("code", "CODE", "RM331", &o.code, "code of edited paints");
+  spec.flag("no-code", &o.no_code, "take the code of edited paints away");
+  spec.option("class", "CLASS", "metallic", &o.paint_class, "class of edited paints")
       .one_of({"solid", "metallic", "pearl", "interference", "unknown"});
   spec.option("new", "NAME", "dune", &o.new_name, "make a paint of this name from nothing, and read none")
       .more("It needs --face, or readings by --set; with --flop also --travel. Without a flop the paint is solid.");
