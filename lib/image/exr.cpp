@@ -348,7 +348,7 @@ Result<OpenExr> open_exr(const std::string& path, const std::vector<std::string>
 namespace {
 
 constexpr float kMostHalf = 65504.0F;
-// Halves lose digits below 2^-14: a picture has them where colors of 1/128 of its largest keep theirs.
+// Halves lose digits below 2^-14. Where the largest light is below this, colors a 128th as bright would lose theirs.
 constexpr float kDarkestHalf = 0x1p-7F;
 constexpr int kZipLevel = 2;  // within 3 % of the size of the highest level at a fraction of its time
 

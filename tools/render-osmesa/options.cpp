@@ -166,8 +166,7 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
       .one_of(std::move(choices))
       .more(
           "auto takes cpu or, where the scene needs it, path, smoothed. Rays add what the mesh does to light to "
-          "pictures of all "
-          "but path." +
+          "pictures of all but path." +
           engine_items() +
           "\n- gpu is gl on the first GPU with OpenGL 3.3.\nPictures of cpu and gl are the same; they differ from the "
           "truth by 0.2 to 0.5 dE00 in the mean. integral takes several hundred times as long. It and path draw rough "
